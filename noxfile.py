@@ -1,0 +1,58 @@
+"""Tasks: `nox -l` lists them, `nox -s NAME` runs one in an environment of its own."""
+
+from __future__ import annotations
+
+import nox
+
+nox.options.sessions = ["tests", "style", "types", "imports"]
+PYTHONS = ["3.11", "3.12", "3.13"]
+
+
+@nox.session(python=PYTHONS)
+def tests(session: nox.Session) -> None:
+    """Run the tests."""
+    session.install(".[dev,all]")
+    session.run("pytest", *session.posargs)
+
+
+@nox.session
+def coverage(session: nox.Session) -> None:
+    """Run the tests and show which branches they miss."""
+    session.install("-e", ".[dev,all]")
+    session.run("pytest", "--cov", "--cov-report=term-missing:skip-covered", *session.posargs)
+
+
+@nox.session
+def style(session: nox.Session) -> None:
+    """Check style and format."""
+    session.install("ruff")
+    session.run("ruff", "check", ".")
+    session.run("ruff", "format", "--check", ".")
+
+
+@nox.session
+def types(session: nox.Session) -> None:
+    """Check types, strictly."""
+    session.install(".[dev,all]")
+    session.run("mypy")
+
+
+@nox.session
+def imports(session: nox.Session) -> None:
+    """Check that rooms import only from rooms below."""
+    session.install("-e", ".[dev,all]")
+    session.run("lint-imports")
+
+
+@nox.session
+def bench(session: nox.Session) -> None:
+    """Measure speed as ratios, side by side; the result is kept in benchmarks/."""
+    session.install(".[dev,all]")
+    session.run("pytest", "benchmarks", "--benchmark-json=benchmarks/result.json", *session.posargs)
+
+
+@nox.session
+def picture(session: nox.Session) -> None:
+    """Draw the README's picture."""
+    session.install(".[dev,all]", "matplotlib")
+    session.run("python", "docs/picture.py")

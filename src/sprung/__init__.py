@@ -1,0 +1,76 @@
+"""Find the physical parameters of a two-axle road vehicle from drop tests.
+
+Examples
+--------
+>>> import sprung
+>>> campaign = sprung.read("campaign.toml")          # doctest: +SKIP
+>>> result = sprung.identify(campaign)               # doctest: +SKIP
+>>> result.parameters["k_sf"].value                  # doctest: +SKIP
+"""
+
+from __future__ import annotations
+
+import importlib
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sprung import report as report
+    from sprung import study as study
+    from sprung.pipeline import Result, check, identify, load, modes
+    from sprung.recording import Campaign, Drop, read, write
+    from sprung.simulation import simulate, simulate_file
+    from sprung.vehicle import Load, Sensor, Vehicle
+
+__all__ = [
+    "Campaign",
+    "Drop",
+    "Load",
+    "Result",
+    "Sensor",
+    "Vehicle",
+    "check",
+    "identify",
+    "load",
+    "modes",
+    "read",
+    "simulate",
+    "simulate_file",
+    "write",
+]
+
+__version__ = version("sprung")
+
+_HOME = {
+    "Campaign": "recording",
+    "Drop": "recording",
+    "Load": "vehicle",
+    "Result": "pipeline",
+    "Sensor": "vehicle",
+    "Vehicle": "vehicle",
+    "check": "pipeline",
+    "identify": "pipeline",
+    "load": "pipeline",
+    "modes": "pipeline",
+    "read": "recording",
+    "simulate": "simulation",
+    "simulate_file": "simulation",
+    "write": "recording",
+}
+_ROOMS = ("report", "study")
+
+
+def __getattr__(name: str) -> Any:
+    # Public names load their rooms when they are first used, so that `sprung --help` need not wait for the numerics.
+    if name in _HOME:
+        value = getattr(importlib.import_module(f"sprung.{_HOME[name]}"), name)
+    elif name in _ROOMS:
+        value = importlib.import_module(f"sprung.{name}")
+    else:
+        raise AttributeError(f"module 'sprung' has no attribute '{name}'")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,5 @@
+"""Lets ``python -m sprung`` do what ``sprung`` does."""
+
+from sprung.cli import main
+
+main()

@@ -1,0 +1,170 @@
+"""The commands. Each takes what it is given to one function of the package, and prints what comes back."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any, Optional
+
+import typer
+from rich.console import Console
+
+import sprung
+
+REJECTED = 3
+NOTHING_USABLE = 2
+
+app = typer.Typer(
+    help="Find the physical parameters of a two-axle road vehicle from drop tests.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+CampaignFile = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.")]
+Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
+
+
+@contextmanager
+def working(first: str) -> Iterator[Callable[[str], None]]:
+    """Show what is being done while somebody watches; standard output stays clean."""
+    console = Console(stderr=True)
+    with console.status(first) as status:
+        yield status.update
+
+
+def print_json(document: Any) -> None:
+    """Print one JSON document."""
+    sys.stdout.write(json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
+
+
+def show(view: Any) -> None:
+    """Print what the report makes of a result."""
+    sprung.report.show(view)
+
+
+@app.command(epilog="Example: [bold]sprung identify campaign.toml -o results[/bold]")
+def identify(
+    campaign: CampaignFile,
+    output: Annotated[
+        Optional[Path],  # noqa: UP045 (typer reads it)
+        typer.Option("-o", "--output", metavar="DIR", help="Where to write results.json and series.npz."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Identify every parameter and write the results folder (default: results/ beside the campaign)."""
+    with working("reading the recordings") as progress:
+        read = sprung.read(campaign)
+        folder = output or (read.path or campaign).parent / "results"
+        result = sprung.identify(read, progress=progress)
+        result.save(folder)
+    conclude(result, folder, as_json)
+
+
+def conclude(result: Any, folder: Path, as_json: bool) -> None:
+    """Print a result and leave with the status that belongs to its verdict."""
+    if as_json:
+        sys.stdout.write(result.to_json())
+    else:
+        show(sprung.report.result_view(result, Console().width))
+        sys.stdout.write(f"\nWritten: {folder / 'results.json'}, {folder / 'series.npz'}\n")
+    if result.verdict.state == "reject":
+        raise typer.Exit(REJECTED)
+
+
+@app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
+def check(campaign: CampaignFile, as_json: Json = False) -> None:
+    """Read and judge the recordings, identify nothing."""
+    with working("reading the recordings"):
+        found = sprung.check(sprung.read(campaign))
+    if as_json:
+        print_json(asdict(found))
+    else:
+        show(sprung.report.check_view(found))
+    if not found.usable:
+        raise typer.Exit(NOTHING_USABLE)
+
+
+@app.command(epilog="Example: [bold]sprung modal campaign.toml --method svm[/bold]")
+def modal(
+    campaign: CampaignFile,
+    method: Annotated[str, typer.Option(help="era, or svm: the paper's State Variable Method.")] = "era",
+    as_json: Json = False,
+) -> None:
+    """Find natural frequencies and damping ratios per load; no vehicle model."""
+    with working("reading the recordings"):
+        found = sprung.modes(sprung.read(campaign), method=method)
+    if as_json:
+        print_json({load: [asdict(mode) for mode in modes] for load, modes in found.items()})
+    else:
+        show(sprung.report.modes_view(found))
+
+
+@app.command(epilog="Example: [bold]sprung simulate vehicle.toml -o campaign --noise 0.05[/bold]")
+def simulate(
+    vehicle: Annotated[Path, typer.Argument(metavar="VEHICLE.toml", help="[vehicle], [parameters], [[sensor]], ...")],
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The campaign folder to write.")],
+    rate: Annotated[float, typer.Option(help="Samples per second.")] = 500.0,
+    noise: Annotated[float, typer.Option(help="Sensor noise, m/s² root-mean-square.")] = 0.02,
+    seed: Annotated[int, typer.Option(help="Of the noise.")] = 1,
+    as_json: Json = False,
+) -> None:
+    """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
+    with working("simulating"):
+        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed)
+        written = sprung.write(campaign, output)
+    if as_json:
+        print_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
+    else:
+        sys.stdout.write(f"Written: {written}, {len(campaign.drops)} recordings\nNext:    sprung identify {written}\n")
+
+
+@app.command(epilog="Example: [bold]sprung demo[/bold]")
+def demo(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
+    as_json: Json = False,
+) -> None:
+    """Write an example campaign, the paper's school bus, and identify it."""
+    with working("dropping the school bus") as progress:
+        written = sprung.write(sprung.study.demo_campaign(), folder)
+        result = sprung.identify(sprung.read(written), progress=progress)
+        results = result.save(folder / "results")
+    conclude(result, results, as_json)
+    if not as_json:
+        sys.stdout.write(
+            f"\nThe recordings and what was known beforehand: {written}\n"
+            f"Everything that was found, for other programs:  {results / 'results.json'}\n"
+            f"Change something there and run again:           sprung identify {written}\n"
+        )
+
+
+@app.command(epilog="Example: [bold]sprung paper --json[/bold]")
+def paper(as_json: Json = False) -> None:
+    """Show the paper's tables beside ours, its misprints, and where its method breaks."""
+    with working("reproducing the paper") as progress:
+        reproduction = sprung.study.reproduce(progress=progress)
+    if as_json:
+        print_json(reproduction.document())
+    else:
+        show(sprung.report.paper_view(reproduction))
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        sys.stdout.write(f"sprung {sprung.__version__}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
+    ] = False,
+) -> None:
+    """Find the physical parameters of a two-axle road vehicle from drop tests."""

@@ -1,0 +1,151 @@
+"""What can go wrong, in words that tell what to do.
+
+Two nouns: a `Problem` makes an input unusable and is raised, together with all others found, as one `InputError`;
+a `Fault` is something wrong with one recording that the rest of the campaign survives, and is reported with the result.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+
+class SprungError(Exception):
+    """Base of every error that sprung raises on purpose."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One reason why an input cannot be used.
+
+    Attributes
+    ----------
+    where
+        File, and place in it: ``campaign.toml: sensor[2].position``.
+    found
+        What stands there.
+    expected
+        What should stand there.
+    do
+        The one thing to do about it.
+    """
+
+    where: str
+    found: str
+    expected: str
+    do: str
+
+    def __str__(self) -> str:
+        return f"{self.where}: found {self.found}; expected {self.expected}. {self.do}"
+
+
+class InputError(SprungError, ValueError):
+    """Bad input; carries every problem found, not only the first.
+
+    Attributes
+    ----------
+    problems : tuple of Problem
+    """
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(str(problem) for problem in self.problems))
+
+
+class MissingLibraryError(SprungError, ImportError):
+    """An optional library is needed for what was asked; the message holds the command that installs it."""
+
+
+class ResultFileError(InputError):
+    """A saved result cannot be read back: newer schema, truncated or edited."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something wrong with a recording or the campaign which the rest of the campaign survives.
+
+    Attributes
+    ----------
+    code
+        One of the contract's fault codes, such as ``missing`` or ``no-release``.
+    where
+        Recording and channel, such as ``empty_bounce.csv: wheel_fl``.
+    what
+        What was found, and what was done about it.
+    do
+        What the user can do.
+    """
+
+    code: str
+    where: str
+    what: str
+    do: str
+
+
+class Problems:
+    """Collects problems while an input is read, so that the user sees all of them at once.
+
+    Examples
+    --------
+    >>> problems = Problems()
+    >>> problems.add("a.csv", "an empty file", "samples", "Record again.")
+    >>> bool(problems)
+    True
+    """
+
+    def __init__(self) -> None:
+        self._found: list[Problem] = []
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def __iter__(self) -> Iterator[Problem]:
+        return iter(self._found)
+
+    def add(self, where: str, found: str, expected: str, do: str) -> None:
+        """Note one more problem."""
+        self._found.append(Problem(where, found, expected, do))
+
+    @contextmanager
+    def collecting(self) -> Iterator[None]:
+        """Take up the problems of an `InputError` raised inside the block, and go on after it."""
+        try:
+            yield
+        except InputError as error:
+            self._found.extend(error.problems)
+
+    def raise_if_any(self) -> None:
+        """Raise one `InputError` with everything collected so far.
+
+        Raises
+        ------
+        InputError
+            If anything was collected.
+        """
+        if self._found:
+            raise InputError(self._found)
+
+
+def did_you_mean(word: str, allowed: Iterable[str]) -> str:
+    """Say which allowed word was probably meant.
+
+    Parameters
+    ----------
+    word
+        What was written.
+    allowed
+        What may be written.
+
+    Returns
+    -------
+    str
+        ``Did you mean 'wheels'?`` if one is close, otherwise the allowed words.
+    """
+    allowed = sorted(allowed)
+    close = difflib.get_close_matches(word.lower(), [name.lower() for name in allowed], n=1, cutoff=0.6)
+    if close:
+        meant = next(name for name in allowed if name.lower() == close[0])
+        return f"Did you mean '{meant}'?"
+    return f"Allowed: {', '.join(allowed)}." if allowed else "Nothing is allowed here."

@@ -1,0 +1,99 @@
+"""Modes of the identified vehicle, with the uncertainty that its parameters hand down to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification.joint import Fit
+from sprung.identification.likelihood import solve_modes
+from sprung.modal import Mode, name_modes
+from sprung.vehicle import LinearModel, Rows, Sensor
+
+Real = NDArray[np.float64]
+
+_TOUCHED = 1e-3
+"""Relative change of a pole along an undetermined direction above which the pole is undetermined too."""
+
+
+@dataclass(frozen=True)
+class ModeEstimate:
+    """One mode of the identified vehicle.
+
+    Attributes
+    ----------
+    name
+        One of the paper's seven.
+    pole
+        [re, im], 1/s; im is 0 for a real pole, not negative for others.
+    frequency, frequency_std
+        Undamped natural frequency |pole|/2π and its standard uncertainty, Hz; the latter None where the data do not
+        determine the mode.
+    damped_frequency
+        Hz.
+    damping_ratio, damping_ratio_std
+        -re/|pole|; 1 for a real pole.
+    """
+
+    name: str
+    pole: tuple[float, float]
+    frequency: float
+    frequency_std: float | None
+    damped_frequency: float
+    damping_ratio: float
+    damping_ratio_std: float | None
+
+
+def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
+    """Give the modes of one load, lowest frequency first.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    model
+        Equations of motion with the load.
+    sensors
+        The sensors.
+
+    Returns
+    -------
+    tuple of ModeEstimate
+    """
+    rows = Rows.of([sensor.row for sensor in sensors], fit.names)
+    modes = solve_modes(model, rows, fit.values, 1.0)
+    slopes = modes.pole_slopes * fit.slopes[:, None]
+    upper = np.flatnonzero(modes.poles.imag >= 0)
+    named = name_modes([Mode(complex(modes.poles[j]), modes.coordinates[:, j]) for j in upper])
+    left = set(upper.tolist())
+    estimates = []
+    for mode in named:
+        nearest = min(left, key=lambda j: abs(modes.poles[j] - mode.pole))
+        left.remove(nearest)
+        estimates.append(_estimate(mode, slopes[:, nearest], fit))
+    return tuple(estimates)
+
+
+def _estimate(mode: Mode, slope: NDArray[np.complex128], fit: Fit) -> ModeEstimate:
+    pole, size = mode.pole, abs(mode.pole)
+    of_size = (np.conj(pole) * slope).real / size
+    real = pole.imag == 0
+    of_damping = np.zeros_like(of_size) if real else -slope.real / size + pole.real * of_size / size**2
+    undetermined = np.abs(slope @ fit.undetermined).max(initial=0.0) > _TOUCHED * size
+
+    def std(direction: Real) -> float | None:
+        variance = float(direction @ fit.relative_covariance @ direction)
+        return None if undetermined else max(variance, 0.0) ** 0.5
+
+    return ModeEstimate(
+        name=mode.name or "unnamed",
+        pole=(float(pole.real), float(pole.imag)),
+        frequency=mode.frequency,
+        frequency_std=std(of_size / (2 * np.pi)),
+        damped_frequency=mode.damped_frequency,
+        damping_ratio=mode.damping_ratio,
+        damping_ratio_std=std(of_damping),
+    )

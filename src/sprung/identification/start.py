@@ -1,0 +1,94 @@
+"""Where the fit starts: vehicles of every usual kind, tried on the records, when nobody has told us which it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from sprung.estimate import Known
+from sprung.vehicle import Sensor
+
+BODY_FREQUENCIES = (0.9, 1.25, 1.75, 2.5, 3.5)
+"""Hz: from a limousine to an empty lorry."""
+
+HOP_FREQUENCIES = (8.0, 11.0, 15.0, 21.0)
+"""Hz."""
+
+DAMPING_RATIOS = (0.1, 0.25, 0.6)
+
+_GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
+_WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
+
+
+def catalogue(known: Mapping[str, Known], sensors: Sequence[Sensor]) -> Iterator[dict[str, float]]:
+    """Make vehicles of every usual kind, of the size that the known quantities and the sensors' places tell.
+
+    Parameters
+    ----------
+    known
+        What was measured beforehand, the wheelbase included.
+    sensors
+        The sensors; the body's outline is taken from theirs where nothing better is known.
+
+    Yields
+    ------
+    dict
+        Values, SI, of every parameter of every linear model; the known ones hold.
+    """
+    places = np.array([sensor.position for sensor in sensors if sensor.position is not None])
+    wheelbase, front_share = _length(known, places)
+    total = _mass(known, wheelbase)
+    half_track = float(np.mean(np.abs(places[:, 1]))) or 0.27 * wheelbase
+    a, b = (1 - front_share) * wheelbase, front_share * wheelbase
+    for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
+        wheel = _WHEEL_SHARE * total
+        sprung_mass = total - 4 * wheel
+        values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
+        for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
+            spring = corner * (2 * np.pi * body) ** 2
+            values |= {
+                f"m_u{axle}": wheel,
+                f"k_s{axle}": spring,
+                f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
+                f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
+                f"c_t{axle}": 0.0,
+                f"k_a{axle}": 0.0,
+            }
+            values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
+        values |= {"a": a, "b": b}
+        yield values | {name: one.value for name, one in known.items() if name in values}
+
+
+def _length(
+    known: Mapping[str, Known], places: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
+) -> tuple[float, float]:
+    """Give wheelbase and the front axle's share of the weight."""
+    value = {name: one.value for name, one in known.items()}
+    wheelbase = value.get("wheelbase")
+    if wheelbase is None and "a" in value and "b" in value:
+        wheelbase = value["a"] + value["b"]
+    if wheelbase is None:
+        wheelbase = float(np.ptp(places[:, 0]))
+    if "b" in value:
+        share = value["b"] / wheelbase
+    elif "a" in value:
+        share = 1 - value["a"] / wheelbase
+    elif "front_axle_mass" in value and "rear_axle_mass" in value:
+        share = value["front_axle_mass"] / (value["front_axle_mass"] + value["rear_axle_mass"])
+    else:
+        share = 0.5
+    return wheelbase, float(np.clip(share, 0.1, 0.9))
+
+
+def _mass(known: Mapping[str, Known], wheelbase: float) -> float:
+    value = {name: one.value for name, one in known.items()}
+    if "total_mass" in value:
+        return value["total_mass"]
+    axles = [value[name] for name in ("front_axle_mass", "rear_axle_mass") if name in value]
+    if axles:
+        return sum(axles) * 2 / len(axles)
+    if "m_s" in value:
+        return value["m_s"] / (1 - 4 * _WHEEL_SHARE)
+    return _GRAVITY_FREE_MASS * (wheelbase / 2.7) ** 3

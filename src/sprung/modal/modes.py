@@ -1,0 +1,138 @@
+"""A mode of free vibration, and the modes of a vehicle whose matrices are known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sprung.vehicle import Matrices
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """One mode: a pair of conjugate poles, or one real pole of an overdamped motion.
+
+    Attributes
+    ----------
+    pole
+        1/s, imaginary part not negative.
+    shape
+        How far each channel or coordinate moves, its largest entry 1; shape (channel,).
+    name
+        One of `sprung.modal.MODE_NAMES`; None where nothing was said about what moves.
+    """
+
+    pole: complex
+    shape: Complex
+    name: str | None = None
+
+    @property
+    def frequency(self) -> float:
+        """Undamped natural frequency |pole|/2π, Hz."""
+        return abs(self.pole) / (2 * np.pi)
+
+    @property
+    def damped_frequency(self) -> float:
+        """Frequency of the motion itself, Hz; 0 for a real pole."""
+        return abs(self.pole.imag) / (2 * np.pi)
+
+    @property
+    def damping_ratio(self) -> float:
+        """Share of critical damping; 1 for a real pole of a decaying motion."""
+        return -self.pole.real / abs(self.pole)
+
+
+def similarity(one: ArrayLike, other: ArrayLike) -> Real:
+    """Compare shapes: the modal assurance criterion |u·v|²/(|u|²|v|²), blind to their lengths and phases.
+
+    Parameters
+    ----------
+    one, other
+        Shapes as columns, shape (channel, n) and (channel, m).
+
+    Returns
+    -------
+    ndarray
+        Between 0 and 1, shape (n, m).
+    """
+    u, v = np.asarray(one), np.asarray(other)
+    lengths = np.outer(np.linalg.norm(u, axis=0), np.linalg.norm(v, axis=0))
+    comparison: Real = (np.abs(u.conj().T @ v) / np.where(lengths > 0, lengths, 1.0)) ** 2
+    return comparison
+
+
+def together(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
+    """Put the two real poles of each overdamped motion together, in the order of undamped natural frequency.
+
+    Two real poles λ₁ λ₂ belong together where their shapes are most alike; their undamped natural frequency is √(λ₁λ₂).
+
+    Parameters
+    ----------
+    modes
+        In any order.
+
+    Returns
+    -------
+    list of tuple of Mode
+        One mode each, or two with real poles.
+    """
+    found = [(mode,) for mode in modes if mode.pole.imag != 0]
+    real = sorted((mode for mode in modes if mode.pole.imag == 0), key=lambda mode: abs(mode.pole))
+    groups: list[tuple[Mode, ...]] = list(found)
+    if real:
+        shapes = np.stack([mode.shape for mode in real], axis=1)
+        alike = np.triu(similarity(shapes, shapes), 1)
+        left = set(range(len(real)))
+        for i, j in np.argwhere(alike > 0)[np.argsort(-alike[alike > 0], kind="stable")].tolist():
+            if i in left and j in left:
+                groups.append((real[i], real[j]))
+                left -= {i, j}
+        groups.extend((real[i],) for i in left)
+    return sorted(groups, key=lambda group: float(np.mean([np.log(max(abs(m.pole), 1e-300)) for m in group])))
+
+
+def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
+    """Make modes of all poles of a real system.
+
+    Parameters
+    ----------
+    poles
+        1/s, complex ones with their conjugates; shape (pole,).
+    shapes
+        Their shapes as columns, shape (channel, pole).
+
+    Returns
+    -------
+    tuple of Mode
+        One for each conjugate pair and each real pole, in the order of `together`.
+    """
+    poles, shapes = np.asarray(poles, dtype=complex), np.asarray(shapes, dtype=complex)
+    modes = []
+    for pole, shape in zip(poles.tolist(), shapes.T, strict=True):
+        if pole.imag >= 0:
+            largest = shape[np.argmax(np.abs(shape))]
+            modes.append(Mode(pole, shape / (largest if largest != 0 else 1.0)))
+    return tuple(mode for group in together(modes) for mode in group)
+
+
+def vibrations(matrices: Matrices) -> tuple[Mode, ...]:
+    """Give the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), without names.
+
+    Parameters
+    ----------
+    matrices
+        M, C and K.
+
+    Returns
+    -------
+    tuple of Mode
+        Shapes in the seven coordinates, in the order of `together`.
+    """
+    poles, vectors = np.linalg.eig(matrices.state)
+    return modes_from(poles, vectors[:7])

@@ -1,0 +1,230 @@
+"""The result: everything an identification gives, one frozen record, and its way to a folder and back."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from sprung.errors import Fault, Problem, ResultFileError
+from sprung.estimate import Estimate
+from sprung.identification import Correlation, ModeEstimate, Scale, Unidentifiable
+from sprung.pipeline.check import DropReport
+from sprung.recording import write_whole
+from sprung.validation import Verdict
+
+SCHEMA: Literal[1] = 1
+"""Version of results.json; a change that an old reader would misread raises it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """What the figures draw of one drop.
+
+    Attributes
+    ----------
+    channels
+        Channel names.
+    time
+        On the file's own clock, s, shape (time,).
+    measured, fitted
+        m/s², positive up, shape (channel, time); NaN in channels that were left out.
+    """
+
+    channels: tuple[str, ...]
+    time: NDArray[np.float64]
+    measured: NDArray[np.float64]
+    fitted: NDArray[np.float64]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class VehicleName(_Frozen):
+    """Whose result it is."""
+
+    name: str
+
+
+class FitReport(_Frozen):
+    """How the fit went.
+
+    Attributes
+    ----------
+    samples, drops
+        Samples (over all channels) and drops that were fitted.
+    noise
+        Estimated noise of each channel, m/s² root-mean-square.
+    model
+        Extras beyond the paper's seven degrees of freedom.
+    tracks
+        Whether springs and dampers of an axle share their half-distance.
+    method
+        What estimated it.
+    iterations, converged, starts, starts_agreeing
+        Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
+    inflation
+        By how much the colour of the residuals enlarged every variance; 1 for white residuals.
+    misfit
+        Model error of each channel as a part of its signal; 0 where none is significant.
+    """
+
+    samples: int
+    drops: int
+    noise: dict[str, float]
+    model: tuple[str, ...]
+    tracks: Literal["shared", "separate"]
+    method: str
+    iterations: int
+    converged: bool
+    starts: int
+    starts_agreeing: int
+    inflation: float
+    misfit: dict[str, float]
+
+
+class Result(_Frozen):
+    """Everything an identification gives; the contract's results.json, and the series beside it.
+
+    Attributes
+    ----------
+    schema_version, version
+        Of results.json, and of the sprung that wrote it.
+    vehicle
+        Whose result it is.
+    verdict
+        ``state`` and ``reasons``.
+    parameters
+        By name: value, std, interval95, unit, status.
+    scale
+        Whether absolute scale is known, and what is left without it.
+    unidentifiable
+        Combinations that the data do not determine.
+    correlation
+        Of the estimated parameters.
+    modes
+        By load: the modes of the identified vehicle, lowest first.
+    fit, drops, faults
+        How the fit went, what was used of each drop, and what was wrong.
+    series
+        By drop name: what the figures draw.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, populate_by_name=True)
+
+    schema_version: Literal[1] = Field(default=SCHEMA, alias="schema")
+    version: str = Field(alias="sprung")
+    vehicle: VehicleName
+    verdict: Verdict
+    parameters: dict[str, Estimate]
+    scale: Scale
+    unidentifiable: tuple[Unidentifiable, ...]
+    correlation: Correlation
+    modes: dict[str, tuple[ModeEstimate, ...]]
+    fit: FitReport
+    drops: tuple[DropReport, ...]
+    faults: tuple[Fault, ...]
+    series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
+
+    def to_json(self) -> str:
+        """Write the contract's results.json as text."""
+        document = self.model_dump(mode="json", by_alias=True)
+        return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+    def save(self, folder: str | Path) -> Path:
+        """Write results.json and series.npz, whole or not at all.
+
+        Parameters
+        ----------
+        folder
+            Made if it is missing.
+
+        Returns
+        -------
+        Path
+            The folder.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be written.
+        """
+        arrays: dict[str, NDArray[Any]] = {}
+        for name, series in self.series.items():
+            arrays[f"{name}/channels"] = np.array(series.channels)
+            arrays[f"{name}/time"] = series.time
+            arrays[f"{name}/measured"] = series.measured
+            arrays[f"{name}/fitted"] = series.fitted
+        buffer = io.BytesIO()
+        np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
+        write_whole(Path(folder), {"series.npz": buffer.getvalue(), "results.json": self.to_json().encode()})
+        return Path(folder)
+
+
+def load(folder: str | Path) -> Result:
+    """Give back a saved result.
+
+    Parameters
+    ----------
+    folder
+        As given to `Result.save`, or its results.json.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    ResultFileError
+        If the files are missing, cut off, edited into something else, or written by a newer sprung.
+    """
+    folder = Path(folder)
+    path = folder if folder.suffix == ".json" else folder / "results.json"
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise _refuse(path, error.strerror or str(error), "a saved result", "Name the folder given to save.") from error
+    except ValueError as error:
+        raise _refuse(
+            path, f"no valid JSON ({error})", "a whole results.json", "Run the identification again."
+        ) from error
+    newer = document.get("schema") if isinstance(document, dict) else None
+    if isinstance(newer, int) and newer > SCHEMA:
+        raise _refuse(path, f"schema {newer}", f"schema {SCHEMA} or older", "Update sprung to read this result.")
+    try:
+        return Result.model_validate({**document, "series": _read_series(path.with_name("series.npz"))})
+    except (ValidationError, TypeError) as error:
+        what = error.errors()[0] if isinstance(error, ValidationError) else {"loc": (), "msg": str(error)}
+        place = ".".join(str(part) for part in what["loc"])
+        raise _refuse(
+            path, f"{place}: {what['msg']}", "a result as sprung wrote it", "Run the identification again."
+        ) from error
+
+
+def _read_series(path: Path) -> dict[str, Series]:
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            names = sorted({key.rpartition("/")[0] for key in archive.files})
+            return {
+                name: Series(
+                    tuple(archive[f"{name}/channels"].tolist()),
+                    archive[f"{name}/time"],
+                    archive[f"{name}/measured"],
+                    archive[f"{name}/fitted"],
+                )
+                for name in names
+            }
+    except (OSError, ValueError, KeyError, EOFError) as error:
+        raise _refuse(path, str(error), "the series of a saved result", "Run the identification again.") from error
+
+
+def _refuse(path: Path, found: str, expected: str, do: str) -> ResultFileError:
+    return ResultFileError([Problem(str(path), found, expected, do)])

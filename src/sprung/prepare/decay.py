@@ -1,0 +1,61 @@
+"""A decay: the part of a recording in which the free-vibration model holds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.errors import Fault
+from sprung.prepare.release import Rest
+
+
+@dataclass(frozen=True, eq=False)
+class Decay:
+    """The usable part of one drop.
+
+    Attributes
+    ----------
+    name
+        The drop's short name.
+    file
+        The recording's file name.
+    load
+        Name of the load on the vehicle.
+    values
+        Shape (channel, time), m/s², positive up; NaN throughout in a channel that is left out.
+    rate
+        Samples per second.
+    start
+        Time of the first sample on the file's own clock, s.
+    rest
+        What the sensors read while the vehicle stood on the blocks.
+    faults
+        What is wrong with the drop.
+    """
+
+    name: str
+    file: str
+    load: str
+    values: NDArray[np.float64]
+    rate: float
+    start: float
+    rest: Rest
+    faults: tuple[Fault, ...] = ()
+
+    @property
+    def usable(self) -> NDArray[np.bool_]:
+        """Which channels are not left out; shape (channel,)."""
+        usable: NDArray[np.bool_] = np.logical_not(np.isnan(self.values).any(axis=1))
+        return usable
+
+    @property
+    def samples(self) -> int:
+        """Samples in each channel."""
+        return int(self.values.shape[1])
+
+    @property
+    def end(self) -> float:
+        """Time of the last sample on the file's own clock, s."""
+        return self.start + (self.samples - 1) / self.rate

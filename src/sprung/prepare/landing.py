@@ -1,0 +1,122 @@
+"""The landing: when the last tyre to lift off has come down for good, and free vibration begins.
+
+A tyre's force can be read off the accelerometers. Per unit of unsprung mass it is the wheel's reading plus the
+suspension's force; that force carries the body, so it follows the body's reading above the wheel, and its size is
+weighed by the release itself: at that moment the tyre force vanishes while the spring has not yet moved, and the wheel's
+reading jumps to minus the static suspension force over the unsprung mass. No mass or rate needs to be known.
+
+Above a corner the body's reading stands for the suspension's force only as far as the body's inertia is spread like a
+car's. So the first landing is also taken from what no such assumption touches: a tyre that meets the ground drives the
+wheel's reading up, at once and far more steeply than any spring.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.prepare.release import Release
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import WHEELS, Sensor, Wheel
+
+Real = NDArray[np.float64]
+
+_JUMP = 0.015
+"""s after the release within which the wheel's reading has jumped, blocks and filters being what they are."""
+
+_ON_THE_GROUND = 0.25
+"""Part of the static tyre force above which a tyre is certainly on the ground."""
+
+
+def suspension_jump(
+    values: Real, rate: float, release: Release, sensors: Sequence[Sensor], dropped: Sequence[Wheel]
+) -> dict[Wheel, float]:
+    """Weigh the corners by the release.
+
+    Parameters
+    ----------
+    values
+        Shape (channel, time), m/s².
+    rate
+        Samples per second.
+    release
+        The release.
+    sensors
+        One for each channel.
+    dropped
+        The wheels that fell.
+
+    Returns
+    -------
+    dict
+        For each dropped wheel with a sensor the static suspension force over the unsprung mass, m/s².
+    """
+    window = slice(release.sample, release.sample + max(int(np.ceil(_JUMP * rate)), 2))
+    jumps: dict[Wheel, float] = {}
+    for channel, sensor in enumerate(sensors):
+        if sensor.on != "body" and sensor.on in dropped:
+            lowest = float(values[channel, window].min() - release.rest.level[channel])
+            jumps[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
+    return jumps
+
+
+def find_decay(
+    values: Real,
+    release: Release,
+    sensors: Sequence[Sensor],
+    suspension: Mapping[Wheel, float],
+    dropped: Sequence[Wheel],
+    wheelbase: float,
+) -> int | None:
+    """Find the first sample from which every tyre stays on the ground.
+
+    Parameters
+    ----------
+    values
+        Shape (channel, time), m/s²; channels that are left out NaN.
+    release
+        The release.
+    sensors
+        One for each channel.
+    suspension
+        Static suspension force over unsprung mass, m/s², by wheel, as `suspension_jump` weighs it.
+    dropped
+        The wheels that fell.
+    wheelbase
+        m, however roughly.
+
+    Returns
+    -------
+    int or None
+        None where no wheel that can be judged ever left the ground and came back.
+    """
+    reading = values - release.rest.level[:, None] + STANDARD_GRAVITY
+    body = [i for i, s in enumerate(sensors) if s.on == "body" and not np.isnan(values[i]).any()]
+    if len(body) < 3:
+        return None
+    places = np.array([sensors[i].position for i in body], dtype=float)
+    plane = np.column_stack([np.ones(len(body)), places[:, :2]])
+    half_track = float(np.abs(places[:, 1]).mean())
+    last = None
+    for channel, sensor in enumerate(sensors):
+        if sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
+            continue
+        x = 0.0 if sensor.on in WHEELS[:2] else -wheelbase
+        y = half_track if sensor.on in ("fl", "rl") else -half_track
+        above = np.array([1.0, x, y]) @ np.linalg.pinv(plane) @ reading[body]
+        force = reading[channel] + suspension[sensor.on] * above / STANDARD_GRAVITY
+        static = STANDARD_GRAVITY + suspension[sensor.on]
+        low = np.flatnonzero(force[release.sample :] < _ON_THE_GROUND * static)
+        if low.size:
+            last = max(last or 0, release.sample + int(low[-1]) + 1)
+        if sensor.on in dropped:
+            last = max(last or 0, _steepest_rise(reading[channel], release.sample))
+    return last
+
+
+def _steepest_rise(reading: Real, release: int) -> int:
+    """Give the sample after the steepest rise between the release and the wheel's hardest impact."""
+    impact = release + int(np.argmax(reading[release:]))
+    return impact if impact - release < 2 else release + int(np.argmax(np.diff(reading[release : impact + 1]))) + 1

@@ -1,0 +1,156 @@
+"""From recordings to decays: release found, landing awaited, what cannot be used left out and named."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.errors import Fault
+from sprung.prepare.decay import Decay
+from sprung.prepare.landing import find_decay, suspension_jump
+from sprung.prepare.release import Release, Rest, find_release, no_rest
+from sprung.recording import Campaign, Drop, Recording
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Wheel
+
+Real = NDArray[np.float64]
+
+SHORTEST = 0.5
+"""s: a decay shorter than this holds less than half a period of a body mode, and is left out."""
+
+_TYPICAL_SUSPENSION = 70.0
+"""Static suspension force over unsprung mass, m/s², for a wheel that no release has weighed: between car and bus."""
+
+
+class Prepared(NamedTuple):
+    """What preparing a campaign gives.
+
+    Attributes
+    ----------
+    decays
+        One for each drop that can be used, in the campaign's order.
+    left_out
+        For the other drops their names and why.
+    """
+
+    decays: tuple[Decay, ...]
+    left_out: tuple[tuple[Drop, Recording, tuple[Fault, ...]], ...]
+
+
+def prepare(campaign: Campaign) -> Prepared:
+    """Find the usable part of every drop.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+
+    Returns
+    -------
+    Prepared
+    """
+    releases = [_release(recording) for recording in campaign.recordings]
+    suspension = _weigh_corners(campaign, releases)
+    decays, left_out = [], []
+    for drop, recording, release in zip(campaign.drops, campaign.recordings, releases, strict=True):
+        decay = _decay(campaign, drop, recording, release, suspension)
+        if isinstance(decay, Decay):
+            decays.append(decay)
+        else:
+            left_out.append((drop, recording, (*recording.faults, decay)))
+    return Prepared(tuple(decays), tuple(left_out))
+
+
+def _release(recording: Recording) -> Release | None:
+    if not recording.usable.any():
+        return None
+    found = find_release(recording.values[recording.usable], recording.rate)
+    if found is None:
+        return None
+    spread = np.full((3, len(recording.channels)), np.nan)
+    spread[:, recording.usable] = found.rest[:3]
+    level, variance, neighbour = spread
+    return Release(found.sample, Rest(level, variance, neighbour, found.rest.samples))
+
+
+def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[Wheel, float]:
+    """Pool what all releases say about the corners; a wheel that never fell is taken to be like its neighbour."""
+    jumps: defaultdict[Wheel, list[float]] = defaultdict(list)
+    for drop, recording, release in zip(campaign.drops, campaign.recordings, releases, strict=True):
+        if release is not None:
+            found = suspension_jump(recording.values, recording.rate, release, campaign.sensors, drop.wheels)
+            for station, jump in found.items():
+                if np.isfinite(jump):
+                    jumps[station].append(jump)
+    weighed: dict[Wheel, float] = {station: float(np.median(found)) for station, found in jumps.items()}
+    across: dict[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
+    return {station: weighed.get(station, weighed.get(across[station], _TYPICAL_SUSPENSION)) for station in across}
+
+
+def _decay(
+    campaign: Campaign, drop: Drop, recording: Recording, release: Release | None, suspension: dict[Wheel, float]
+) -> Decay | Fault:
+    where = recording.name
+    if not recording.usable.any():
+        return Fault("missing", where, "no channel of this drop can be used; it is left out", "Record the drop again.")
+    faults = list(recording.faults)
+    first = _first_sample(campaign, drop, recording, release, suspension, faults)
+    last = recording.values.shape[1] - 1
+    if drop.end is not None:
+        last = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6)))
+    length = (last - first) / recording.rate
+    if length < SHORTEST:
+        return Fault(
+            "no-decay",
+            where,
+            f"{max(length, 0.0):.2f} s of free vibration, at least {SHORTEST} s are needed; the drop is left out",
+            "Record for at least three seconds after the release.",
+        )
+    return Decay(
+        name=drop.name,
+        file=recording.name,
+        load=drop.load,
+        values=recording.values[:, first : last + 1],
+        rate=recording.rate,
+        start=recording.start + first / recording.rate,
+        rest=no_rest(len(recording.channels)) if release is None else release.rest,
+        faults=tuple(faults),
+    )
+
+
+def _first_sample(
+    campaign: Campaign,
+    drop: Drop,
+    recording: Recording,
+    release: Release | None,
+    suspension: dict[Wheel, float],
+    faults: list[Fault],
+) -> int:
+    if drop.start is not None:
+        return max(0, int(np.ceil((drop.start - recording.start) * recording.rate - 1e-6)))
+    if release is None:
+        faults.append(
+            Fault(
+                "no-release",
+                recording.name,
+                "no rest before the motion was found; the recording is used from its first sample on",
+                "Give start = ... for this drop, or let the recording begin before the release.",
+            )
+        )
+        return 0
+    found = find_decay(recording.values, release, campaign.sensors, suspension, drop.wheels, _wheelbase(campaign))
+    if found is not None:
+        return found
+    # Without a reading at the wheels that fell: the fall itself, and two periods of the slowest usual wheel hop.
+    fall = np.sqrt(2 * (drop.height or 0.1) / STANDARD_GRAVITY)
+    return release.sample + int((fall + 0.25) * recording.rate)
+
+
+def _wheelbase(campaign: Campaign) -> float:
+    if campaign.wheelbase is not None:
+        return campaign.wheelbase.value
+    x = [sensor.position[0] for sensor in campaign.sensors if sensor.position is not None]
+    return max(x) - min(x)

@@ -1,0 +1,234 @@
+"""Reading a campaign, or a vehicle file: every fault of all its files at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sprung.errors import InputError, Problem, Problems, did_you_mean
+from sprung.recording.campaign import Campaign, Drop, ModelChoice
+from sprung.recording.checks import check, refused_unit
+from sprung.recording.formats import Table, read_table
+from sprung.recording.schema import CampaignFile, VehicleFileSchema
+from sprung.recording.signals import column_of, recording_of
+from sprung.recording.understanding import Draft, understand
+from sprung.vehicle import EMPTY, Load, Sensor, Vehicle
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Mapping
+
+    from sprung.estimate import Known
+    from sprung.recording.recording import Recording
+
+FILE = "campaign.toml"
+"""The campaign file's name, where only its folder is given."""
+
+
+@dataclass(frozen=True, eq=False)
+class VehicleFile:
+    """What a vehicle file says: a vehicle to simulate, and the campaign to simulate with it.
+
+    Attributes
+    ----------
+    vehicle
+        Its parameters.
+    sensors, loads, drops
+        As in a `Campaign`; the drops have no recordings.
+    wheelbase, wheel_height, roll_axis_height, known, model
+        As in a `Campaign`: what the simulated campaign may say about itself.
+    path
+        Where the file is.
+    """
+
+    vehicle: Vehicle
+    sensors: tuple[Sensor, ...]
+    loads: tuple[Load, ...]
+    drops: tuple[Drop, ...]
+    wheelbase: Known | None = None
+    wheel_height: float | None = None
+    roll_axis_height: float | None = None
+    known: Mapping[str, Known] = field(default_factory=dict)
+    model: ModelChoice = field(default_factory=ModelChoice)
+    path: Path | None = None
+
+
+def read(path: str | os.PathLike[str]) -> Campaign:
+    """Read a campaign and its recordings.
+
+    Parameters
+    ----------
+    path
+        The campaign file, or the folder that holds it as ``campaign.toml``.
+
+    Returns
+    -------
+    Campaign
+        In SI, positive up. Spoilt channels and drops are NaN, and named in the faults of their recordings.
+
+    Raises
+    ------
+    InputError
+        If something is wrong with the campaign file, or with a recording so that it cannot be used; every problem of
+        all the files at once.
+    """
+    path = Path(path) / FILE if Path(path).is_dir() else Path(path)
+    problems = Problems()
+    draft = understand(CampaignFile, path, problems)
+    check(draft, problems)
+    files = _files(draft, problems)
+    tables = _tables(files, path.parent, problems)
+    _check_channels(draft, tables, problems)
+    _check_starts_and_ends(draft, tables, problems)
+    recordings = _recordings(draft, files, tables, problems)
+    problems.raise_if_any()
+    _refuse_unusable(recordings)
+    vehicle = draft.file.vehicle
+    return Campaign(
+        name=vehicle.name or path.absolute().parent.name,
+        sensors=draft.file.sensor,
+        drops=draft.file.drop,
+        recordings=recordings,
+        loads=_loads(draft.file),
+        wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
+        cg_height=vehicle.cg_height,
+        wheel_height=vehicle.wheel_height,
+        roll_axis_height=vehicle.roll_axis_height,
+        known={name: measured.known for name, measured in draft.file.known.items()},
+        model=draft.file.model,
+        path=path,
+    )
+
+
+def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
+    """Read a vehicle file: a vehicle's parameters, and the sensors, loads and drops to simulate.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    VehicleFile
+
+    Raises
+    ------
+    InputError
+        If something is wrong with it; every problem at once.
+    """
+    path = Path(path)
+    problems = Problems()
+    draft = understand(VehicleFileSchema, path, problems)
+    check(draft, problems)
+    section = draft.file.vehicle
+    name = section.name or path.stem
+    vehicle = _vehicle(draft, name, problems)
+    problems.raise_if_any()
+    assert vehicle is not None  # noqa: S101 (its problems were raised; for the type checker)
+    return VehicleFile(
+        vehicle=vehicle,
+        sensors=draft.file.sensor,
+        loads=_loads(draft.file),
+        drops=draft.file.drop,
+        wheelbase=section.wheelbase.known if section.wheelbase else None,
+        wheel_height=section.wheel_height,
+        roll_axis_height=section.roll_axis_height,
+        known={name: measured.known for name, measured in draft.file.known.items()},
+        model=draft.file.model,
+        path=path,
+    )
+
+
+def _vehicle(draft: Draft[VehicleFileSchema], name: str, problems: Problems) -> Vehicle | None:
+    """Make the vehicle of a file, or note what keeps it from being one."""
+    if ("parameters",) in draft.lost:
+        return None
+    # What was written but not understood is a problem already: it must not be called missing as well.
+    held = {str(place[1]): 1.0 for place in draft.lost if place[0] == "parameters"}
+    parameters = {**held, **draft.file.parameters}
+    try:
+        return Vehicle.from_parameters(parameters, cg_height=draft.file.vehicle.cg_height, name=name)
+    except InputError as error:
+        for problem in error.problems:
+            where = problem.where.replace(f"vehicle {name}: ", f"{draft.name}: parameters.")
+            where = where.replace(f"vehicle {name}", f"{draft.name}: parameters")
+            problems.add(where, problem.found, problem.expected, problem.do)
+    return None
+
+
+def _loads(file: CampaignFile) -> tuple[Load, ...]:
+    return (EMPTY, *(load for load in file.load if load.name != EMPTY.name))
+
+
+def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, str]:
+    """Give the recordings' names by the drop's index in the file, also of drops that are faulty otherwise."""
+    written = [] if ("drop",) in draft.lost else draft.document.get("drop", [])
+    files = {index: entry["file"] for index, entry in enumerate(written) if isinstance(entry, dict) and "file" in entry}
+    for index in draft.numbered("drop"):
+        if index not in files:
+            where = draft.where("drop", index, "file")
+            problems.add(where, "nothing", "the name of its recording", 'Add file = "..." to it.')
+    return {index: file for index, file in files.items() if isinstance(file, str)}
+
+
+def _tables(files: Mapping[int, str], folder: Path, problems: Problems) -> dict[int, Table]:
+    """Read every recording that can be read."""
+    tables: dict[int, Table] = {}
+    for index, file in files.items():
+        try:
+            tables[index] = read_table(folder / file)
+        except InputError as error:
+            for problem in error.problems:
+                where = problem.where.replace(Path(file).name, file, 1)
+                problems.add(where, problem.found, problem.expected, problem.do)
+    return tables
+
+
+def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Table], problems: Problems) -> None:
+    """Every sensor must be in some recording; in which it is missing, the recording itself will say."""
+    columns = sorted({name for table in tables.values() for name in table.channels})
+    for index, sensor in zip(draft.numbered("sensor"), draft.file.sensor, strict=True):
+        if tables and not any(column_of(table, sensor.channel) for table in tables.values()):
+            where = draft.where("sensor", index, "channel")
+            expected = "the name of a column of the recordings"
+            problems.add(
+                where,
+                f"'{sensor.channel}', which no recording has",
+                expected,
+                did_you_mean(sensor.channel, columns).replace("Allowed:", "They have:"),
+            )
+
+
+def _recordings(
+    draft: Draft[CampaignFile], files: Mapping[int, str], tables: Mapping[int, Table], problems: Problems
+) -> tuple[Recording, ...]:
+    sensors = tuple(sensor for sensor in draft.file.sensor if refused_unit(sensor) is None)
+    recordings: list[Recording] = []
+    for index, table in tables.items():
+        with problems.collecting():
+            recordings.append(recording_of(table, sensors, files[index]))
+    return tuple(recordings)
+
+
+def _check_starts_and_ends(draft: Draft[CampaignFile], tables: Mapping[int, Table], problems: Problems) -> None:
+    for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
+        time = tables[index].time if index in tables else np.empty(0)
+        for key, value in (("start", drop.start), ("end", drop.end)):
+            if value is not None and len(time) > 1 and not time.min() <= value <= time.max():
+                expected = f"a time within the recording, {time.min():.6g} to {time.max():.6g} s on its own clock"
+                do = f"Correct {key}, or leave it out."
+                problems.add(draft.where("drop", index, key), f"{value:g} s", expected, do)
+
+
+def _refuse_unusable(recordings: tuple[Recording, ...]) -> None:
+    if any(recording.usable.any() for recording in recordings):
+        return
+    raise InputError(
+        Problem(fault.where, fault.what, "something usable in at least one drop", fault.do)
+        for recording in recordings
+        for fault in recording.faults
+    )

@@ -1,0 +1,81 @@
+"""The campaign file and the vehicle file, key by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from sprung.estimate import Known
+from sprung.recording.campaign import Drop, ModelChoice
+from sprung.vehicle import DERIVED, LINEAR_EXTRAS, PARAMETERS, Finite, Load, NotNegative, Positive, Sensor
+
+SCHEMA = 1
+"""The schema that this version reads and writes."""
+
+KNOWABLE = (*PARAMETERS, *(name for name in DERIVED if name != "wheelbase"))
+"""What ``[known]`` may hold; the wheelbase has its place in ``[vehicle]``."""
+
+EXTRAS = (*LINEAR_EXTRAS, *(name for name in ("friction", "rebound") if name not in LINEAR_EXTRAS))
+"""Every extra of the model by name, those of a later version among them."""
+
+
+class Measured(BaseModel):
+    """A number, or { value = ..., std = ... }."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    value: Finite
+    """SI."""
+    std: NotNegative = 0.0
+    """Standard uncertainty; 0 means exact."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _number(cls, given: object) -> object:
+        return {"value": given} if isinstance(given, int | float) and not isinstance(given, bool) else given
+
+    @property
+    def known(self) -> Known:
+        """The same as the record of the estimate room."""
+        return Known(self.value, self.std)
+
+
+class VehicleSection(BaseModel):
+    """``[vehicle]``: what is measured on the vehicle with a tape."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str | None = Field(default=None, min_length=1)
+    """For people to read; the folder's name where it is left out."""
+    wheelbase: Measured | None = None
+    """Front axle to rear axle, m."""
+    cg_height: Positive | None = None
+    """Of the sprung mass's centre of gravity above the ground, m; left out, loads count as level with it."""
+    wheel_height: Positive | None = None
+    """Of the wheel centres above the ground, m."""
+    roll_axis_height: Finite | None = None
+    """Above the ground, m."""
+
+
+class CampaignFile(BaseModel):
+    """campaign.toml."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    number: int = Field(default=SCHEMA, alias="schema")
+    """Of the schema."""
+    vehicle: VehicleSection = VehicleSection()
+    known: Mapping[str, Measured] = Field(default_factory=dict)
+    """Measured beforehand, by a name in `KNOWABLE`."""
+    model: ModelChoice = ModelChoice()
+    sensor: tuple[Sensor, ...] = ()
+    load: tuple[Load, ...] = ()
+    drop: tuple[Drop, ...] = ()
+
+
+class VehicleFileSchema(CampaignFile):
+    """VEHICLE.toml of ``sprung simulate``: a campaign file with the vehicle's parameters and without recordings."""
+
+    parameters: Mapping[str, Finite] = Field(default_factory=dict)
+    """By the names of `sprung.vehicle.PARAMETERS`, SI."""

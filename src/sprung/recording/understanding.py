@@ -1,0 +1,116 @@
+"""From a TOML file to the records it describes, as far as they can be understood."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from pydantic import ValidationError
+
+from sprung.errors import InputError, Problem, Problems
+from sprung.recording.document import toml_document
+from sprung.recording.schema import SCHEMA, CampaignFile
+from sprung.recording.sentences import Place, problems_of, where_in
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+File = TypeVar("File", bound=CampaignFile)
+File_co = TypeVar("File_co", bound=CampaignFile, covariant=True)
+
+
+@dataclass(frozen=True)
+class Draft(Generic[File_co]):
+    """What could be understood of a file, so that the rest of it can still be checked.
+
+    Attributes
+    ----------
+    name
+        The file's.
+    document
+        All of it, as TOML gives it.
+    file
+        What is left of it without its faulty entries.
+    lost
+        The entries left out, such as ("sensor", 2).
+    """
+
+    name: str
+    document: Mapping[str, Any]
+    file: File_co
+    lost: frozenset[Place]
+
+    def complete(self, section: str) -> bool:
+        """Say whether nothing of a section was left out, or written under a name that is none."""
+        known = type(self.file).model_json_schema()["properties"]
+        misnamed = any(place[0] not in known for place in self.lost)
+        return (section in self.document or not misnamed) and all(place[0] != section for place in self.lost)
+
+    def numbered(self, section: str) -> Iterator[int]:
+        """Give the index in the document of every entry of ``sensor``, ``load`` or ``drop`` that was understood."""
+        written = () if (section,) in self.lost else self.document.get(section, ())
+        return (index for index in range(len(written)) if (section, index) not in self.lost)
+
+    def where(self, *place: str | int) -> str:
+        """Say a place in the file: ``campaign.toml: sensor[3].position (body_rl)``, counting from 1."""
+        return where_in(self.name, place, self.document)
+
+
+def understand(model: type[File], path: Path, problems: Problems) -> Draft[File]:
+    """Read a file into its model, entry by entry as far as that goes.
+
+    Parameters
+    ----------
+    model
+        The file's schema.
+    path
+        The file.
+    problems
+        Takes up every fault found in it.
+
+    Returns
+    -------
+    Draft
+        What remains when the faulty entries are left out.
+
+    Raises
+    ------
+    InputError
+        If nothing of it can be understood: it is missing, not TOML, or of a newer schema.
+    """
+    document = toml_document(path)
+    number = document.get("schema", SCHEMA)
+    if number != SCHEMA:
+        newer = isinstance(number, int) and number > SCHEMA
+        do = "Update sprung: the file was written for a newer version." if newer else f"Write schema = {SCHEMA}."
+        found, expected = f"schema {number!r}", f"schema {SCHEMA}, which this version of sprung reads"
+        raise InputError([Problem(f"{path.name}: schema", found, expected, do)])
+    try:
+        return Draft(path.name, document, _validated(model, document), frozenset())
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+    lost = {detail["loc"][:2] for detail in details}
+    for problem in problems_of(model, details, path.name, document):
+        problems.add(problem.where, problem.found, problem.expected, problem.do)
+    return Draft(path.name, document, _validated(model, _without(document, lost)), frozenset(lost))
+
+
+def _validated(model: type[File], document: Mapping[str, Any]) -> File:
+    # By way of JSON, because only there strict typing (no number from "5" or true) takes lists for tuples.
+    return model.model_validate_json(json.dumps(document, default=str), strict=True)
+
+
+def _without(document: Mapping[str, Any], lost: set[Place]) -> dict[str, Any]:
+    kept: dict[str, Any] = {}
+    for key, value in document.items():
+        if (key,) in lost:
+            continue
+        if isinstance(value, dict):
+            kept[key] = {name: inner for name, inner in value.items() if (key, name) not in lost}
+        elif isinstance(value, list):
+            kept[key] = [inner for index, inner in enumerate(value) if (key, index) not in lost]
+        else:
+            kept[key] = value
+    return kept

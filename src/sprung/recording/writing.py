@@ -1,0 +1,143 @@
+"""Writing a campaign: the campaign file and one text table per drop, as `sprung.recording.read` reads them back."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import tomli_w
+
+from sprung.recording.formats import split_unit
+from sprung.recording.reading import FILE
+from sprung.recording.schema import SCHEMA
+from sprung.recording.signals import own_unit
+from sprung.recording.whole import write_whole
+from sprung.units import acceleration_factor
+from sprung.vehicle import EMPTY, Sensor
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from pydantic import BaseModel
+
+    from sprung.estimate import Known
+    from sprung.recording.campaign import Campaign, Drop
+    from sprung.recording.recording import Recording
+
+
+def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
+    """Write a campaign into a folder, whole or not at all.
+
+    The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
+    out stays without numbers. Recordings of other formats become text tables.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    folder
+        Where to; made if it does not exist. Files of the same names in it are replaced.
+
+    Returns
+    -------
+    Path
+        The campaign file.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written to.
+    """
+    names = tuple(_file_names(campaign.drops))
+    files = {
+        name: _table(recording, campaign.sensors) for name, recording in zip(names, campaign.recordings, strict=True)
+    }
+    files[FILE] = _toml(_document(campaign, names))
+    write_whole(folder, files)
+    return Path(folder) / FILE
+
+
+def _file_names(drops: Sequence[Drop]) -> Iterator[str]:
+    """Name each drop's text table: its file's own name where that stays within the folder, and no two alike."""
+    taken: set[str] = set()
+    for drop in drops:
+        path = PurePosixPath(drop.file or drop.name)
+        if path.is_absolute() or ".." in path.parts:
+            path = PurePosixPath(path.name)
+        plain = path.with_name(path.stem if drop.file else path.name)
+        name, count = f"{plain}.csv", 1
+        while name.lower() in taken:  # some file systems take A.csv for a.csv
+            count += 1
+            name = f"{plain}_{count}.csv"
+        taken.add(name.lower())
+        yield name
+
+
+def _document(campaign: Campaign, files: Sequence[str]) -> dict[str, Any]:
+    heights = ("cg_height", "wheel_height", "roll_axis_height")
+    vehicle: dict[str, Any] = {"name": campaign.name}
+    if campaign.wheelbase is not None:
+        vehicle["wheelbase"] = _measured(campaign.wheelbase)
+    vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
+    sections = {
+        "vehicle": vehicle,
+        "known": {name: _measured(known) for name, known in campaign.known.items()},
+        "model": written(campaign.model),
+        "sensor": [written(sensor) for sensor in campaign.sensors],
+        "load": [written(load) for load in campaign.loads if load.name != EMPTY.name],
+        "drop": [{"file": file} | written(drop, "file") for file, drop in zip(files, campaign.drops, strict=True)],
+    }
+    return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
+
+
+def written(record: BaseModel, *without: str) -> dict[str, Any]:
+    """Give the keys of a record that say more than their defaults, as TOML holds them.
+
+    Parameters
+    ----------
+    record
+        A sensor, load, drop or the choice of the model.
+    *without
+        Keys to leave out.
+    """
+    return record.model_dump(exclude_defaults=True, exclude_none=True, exclude=set(without))
+
+
+def _measured(known: Known) -> float | dict[str, float]:
+    return known.value if known.exact else {"value": known.value, "std": known.std}
+
+
+def _toml(document: Mapping[str, Any]) -> bytes:
+    lists = {name: entries for name, entries in document.items() if isinstance(entries, list)}
+    parts = [tomli_w.dumps({name: value for name, value in document.items() if name not in lists})]
+    for name, entries in lists.items():
+        # Entry by entry, for tomli-w would put short ones on one line, where nobody expects a drop.
+        tables = (re.sub(r"^(\[+)", rf"\1{name}.", tomli_w.dumps(entry), flags=re.MULTILINE) for entry in entries)
+        parts += [f"[[{name}]]\n{table}" for table in tables]
+
+    def one_line(match: re.Match[str]) -> str:
+        return "= [" + ", ".join(line.strip().removesuffix(",") for line in match[1].rstrip().split("\n")) + "]"
+
+    # Vectors read better on one line; no text can look like this, for TOML writes line breaks in text as \n.
+    return re.sub(r"= \[\n((?:    [^\n]*,\n)+)\]", one_line, "\n".join(parts)).encode()
+
+
+def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:
+    per_unit = np.array([_si_per_reading(sensor) for sensor in sensors])
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerow(["time", *recording.channels])
+    # Times to 0.1 ns give the rate back to eleven digits and stay short where the step is a round number.
+    columns = np.vstack([recording.time.round(10), recording.values / per_unit[:, None]]).T
+    np.savetxt(text, columns, fmt=["%.15g"] + ["%.9g"] * len(sensors), delimiter=",")
+    return text.getvalue().encode()
+
+
+def _si_per_reading(sensor: Sensor) -> float:
+    """Give m/s², positive up, in one unit of a sensor's reading: the inverse of what reading does."""
+    factor = acceleration_factor(own_unit(sensor, split_unit(sensor.channel)[1]))
+    return -factor if sensor.direction == "down" else factor

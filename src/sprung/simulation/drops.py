@@ -1,0 +1,117 @@
+"""Drops from blocks, as they would have been recorded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from sprung.errors import Problems
+from sprung.recording import Campaign, Drop, ModelChoice
+from sprung.simulation.beforehand import Given
+from sprung.simulation.setup import Setup, check_not_negative
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Load, Sensor, Vehicle, drop_from_blocks
+
+DEFAULT_HEIGHT = 0.05
+"""Height of the blocks where a drop does not say, m."""
+
+
+def simulate(
+    vehicle: Vehicle,
+    *,
+    sensors: Sequence[Sensor | Mapping[str, Any]] | None = None,
+    loads: Sequence[Load | Mapping[str, Any]] | None = None,
+    drops: Sequence[Drop | Mapping[str, Any]] | None = None,
+    rate: float = 500.0,
+    noise: float | Mapping[str, float] = 0.02,
+    seed: int | None = None,
+    duration: float = 3.2,
+    rest: float = 0.4,
+    offset: float = 0.0,
+    known: Mapping[str, Given] | None = None,
+    model: ModelChoice | Mapping[str, Any] | None = None,
+    gravity: float = STANDARD_GRAVITY,
+) -> Campaign:
+    """Simulate the drop tests of a vehicle, as they would have been recorded.
+
+    The vehicle rests on its blocks, is released, loses and regains contact with the ground, and vibrates freely: all of
+    it exact (`drop_from_blocks`), and only then measured with noise.
+
+    Parameters
+    ----------
+    vehicle
+        The vehicle.
+    sensors, loads, drops
+        Records, or mappings as they stand in a campaign file. Defaults: eight sensors, four at the body's corners and
+        one on each wheel; the empty vehicle; with each load a drop of all, front, rear, left and right wheels. A drop
+        without a height is one from 0.05 m.
+    rate
+        Samples per second.
+    noise
+        White noise, m/s² rms per sample: one number, or one for each channel by name. With 0 the records are exact.
+    seed
+        Of the noise; None gives other noise each time.
+    duration, rest
+        Seconds recorded after and before the release.
+    offset
+        Standard deviation of the zero-g offset that each channel draws in every drop, m/s².
+    known
+        Quantities known beforehand, as in a campaign file. The wheelbase is always known, exactly where not given here.
+    model
+        What is said about the model to identify.
+    gravity
+        m/s².
+
+    Returns
+    -------
+    Campaign
+        Every recording begins at time 0 and is released at ``rest``.
+
+    Raises
+    ------
+    InputError
+        If something does not fit together; all faults at once.
+
+    Examples
+    --------
+    >>> from sprung.vehicle import TABLE_1_CAR
+    >>> campaign = simulate(TABLE_1_CAR, loads=[{"name": "sandbags", "added": {"mass": 140}}], seed=1)
+    >>> [drop.name for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
+    (['empty_roll_right', 'sandbags_bounce'], (8, 1800))
+    """
+    problems = Problems()
+    setup = Setup.of(
+        vehicle,
+        sensors=sensors,
+        loads=loads,
+        drops=drops,
+        rate=rate,
+        noise=noise,
+        offset=offset,
+        gravity=gravity,
+        known=known,
+        model=model,
+        problems=problems,
+    )
+    check_not_negative(problems, duration=duration, rest=rest)
+    problems.raise_if_any()
+
+    before = math.ceil(rest * rate - 1e-9)
+    after = round((rest + duration) * rate) - before
+    first = max(before / rate - rest, 0.0)
+    loaded = {load.name: load for load in setup.loads}
+    released, accelerations = [], []
+    for drop in setup.drops:
+        height = DEFAULT_HEIGHT if drop.height is None else drop.height
+        released.append(drop.model_copy(update={"height": height}))
+        with problems.collecting():
+            fall = drop_from_blocks(
+                vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity
+            )
+            motion = fall.motion(1 / rate, after, first)
+            accelerations.append(np.hstack([np.zeros((7, before)), motion.acceleration]))
+    problems.raise_if_any()
+    return setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))

@@ -1,0 +1,50 @@
+"""From a vehicle file to a campaign."""
+
+from __future__ import annotations
+
+import os
+
+from sprung.recording import Campaign, read_vehicle
+from sprung.simulation.drops import simulate
+
+
+def simulate_file(
+    path: str | os.PathLike[str], *, rate: float = 500.0, noise: float = 0.02, seed: int | None = None
+) -> Campaign:
+    """Simulate the drop tests that a vehicle file describes.
+
+    Parameters
+    ----------
+    path
+        VEHICLE.toml: ``[vehicle]``, ``[parameters]`` in SI, ``[[sensor]]``, ``[[load]]`` and ``[[drop]]`` without files.
+    rate
+        Samples per second.
+    noise
+        White noise of every channel, m/s² rms.
+    seed
+        Of the noise; None gives other noise each time.
+
+    Returns
+    -------
+    Campaign
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used; all faults at once.
+    """
+    file = read_vehicle(path)
+    known = dict(file.known)
+    if file.wheelbase is not None:
+        known["wheelbase"] = file.wheelbase
+    return simulate(
+        file.vehicle,
+        sensors=file.sensors or None,
+        loads=file.loads,
+        drops=file.drops or None,
+        rate=rate,
+        noise=noise,
+        seed=seed,
+        known=known,
+        model=file.model,
+    )

@@ -1,0 +1,141 @@
+"""A test set up: what is tested, with which sensors and loads, and how that becomes a campaign."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.errors import Problems, did_you_mean
+from sprung.estimate import Known
+from sprung.recording import Campaign, Drop, ModelChoice, Recording
+from sprung.simulation.beforehand import Given, known_quantities
+from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
+from sprung.simulation.sensing import Sensing
+from sprung.vehicle import EMPTY, Load, Rows, Sensor, Vehicle
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Setup:
+    """A vehicle, and everything around it that fits together.
+
+    Attributes
+    ----------
+    vehicle
+        What is tested.
+    loads
+        The first one is ``empty``.
+    drops
+        Each with a load that exists and a file name of its own.
+    sensing
+        Sensors, and what they and the logger make of an acceleration.
+    known
+        Measured beforehand, ``wheelbase`` among it.
+    model
+        What is said about the model to identify.
+    """
+
+    vehicle: Vehicle
+    loads: tuple[Load, ...]
+    drops: tuple[Drop, ...]
+    sensing: Sensing
+    known: dict[str, Known]
+    model: ModelChoice
+
+    @classmethod
+    def of(
+        cls,
+        vehicle: Vehicle,
+        *,
+        sensors: Sequence[Sensor | Mapping[str, Any]] | None,
+        loads: Sequence[Load | Mapping[str, Any]] | None,
+        drops: Sequence[Drop | Mapping[str, Any]] | None = None,
+        rate: float,
+        noise: float | Mapping[str, float],
+        offset: float,
+        gravity: float,
+        known: Mapping[str, Given] | None,
+        model: ModelChoice | Mapping[str, Any] | None,
+        problems: Problems,
+    ) -> Setup:
+        """Put a test together from the arguments of `simulate`; what does not fit is added to the problems."""
+        chosen_sensors = default_sensors(vehicle) if sensors is None else records(Sensor, "sensors", sensors, problems)
+        given_loads = records(Load, "loads", loads or (), problems)
+        all_loads = (EMPTY, *(load for load in given_loads if load != EMPTY))
+        chosen_drops = default_drops(all_loads) if drops is None else records(Drop, "drops", drops, problems)
+
+        for kind, given in (("sensors", sensors), ("drops", drops)):
+            if given is not None and not len(given):
+                problems.add(
+                    f"simulate: {kind}", "none", "at least one", "Leave the argument out for the default ones."
+                )
+        check_unlike("sensors", "channel", [sensor.channel for sensor in chosen_sensors], problems)
+        check_unlike("loads", "name", [load.name for load in given_loads], problems)
+        check_unlike("drops", "file", [drop.file for drop in chosen_drops if drop.file is not None], problems)
+        # A load that is faulty itself has been named above, and the drops with it are not at fault.
+        names = {load.name for load in all_loads} | {str(dict(load).get("name")) for load in loads or ()}
+        for name in sorted({drop.load for drop in chosen_drops} - names):
+            problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
+        return cls(
+            vehicle,
+            all_loads,
+            name_files(chosen_drops),
+            Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems),
+            known_quantities(known, vehicle.wheelbase, problems),
+            record(ModelChoice, "model", model or {}, problems) or ModelChoice(),
+        )
+
+    def campaign(
+        self, drops: Sequence[Drop], accelerations: Iterable[Array], what: str, random: np.random.Generator
+    ) -> Campaign:
+        """Measure what happened.
+
+        Parameters
+        ----------
+        drops
+            One for each recording, with a file name.
+        accelerations
+            In each of them, of the seven coordinates, (7, time), m/s² and rad/s².
+        what
+            What was simulated, for the history.
+        random
+            Where noise and offsets come from.
+        """
+        sensors, rate = self.sensing.sensors, self.sensing.rate
+        parameters = self.vehicle.parameters
+        S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
+        recordings = [
+            Recording(
+                name=str(drop.file),
+                channels=tuple(sensor.channel for sensor in sensors),
+                values=self.sensing.readings(S @ acceleration, random),
+                start=0.0,
+                rate=rate,
+                history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
+            )
+            for drop, acceleration in zip(drops, accelerations, strict=True)
+        ]
+        return Campaign(
+            name=self.vehicle.name,
+            sensors=sensors,
+            drops=tuple(drops),
+            recordings=tuple(recordings),
+            loads=self.loads,
+            wheelbase=self.known["wheelbase"],
+            cg_height=self.vehicle.cg_height,
+            known={name: quantity for name, quantity in self.known.items() if name != "wheelbase"},
+            model=self.model,
+        )
+
+
+def check_not_negative(problems: Problems, **lengths: float) -> None:
+    """Add a problem for every length of time or space that is negative or not finite."""
+    for name, value in lengths.items():
+        if not (math.isfinite(value) and value >= 0):
+            problems.add(f"simulate: {name}", repr(value), "a number that is not negative", "Correct it.")

@@ -1,0 +1,63 @@
+"""Unit text to SI, once, at the door. Inside sprung every number is SI and carries no unit."""
+
+from __future__ import annotations
+
+from sprung.errors import did_you_mean
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of free fall, m/s² (CGPM 1901): the size of the unit g and of gravity in the model."""
+
+_ACCELERATION = {
+    "m/s^2": 1.0,
+    "g": STANDARD_GRAVITY,
+    "mg": 1e-3 * STANDARD_GRAVITY,
+    "mm/s^2": 1e-3,
+    "cm/s^2": 1e-2,
+    "gal": 1e-2,
+    "ft/s^2": 0.3048,
+    "in/s^2": 0.0254,
+}
+_SPELLINGS = {
+    "m/s/s": "m/s^2",
+    "ms-2": "m/s^2",
+    "m*s-2": "m/s^2",
+    "ms^-2": "m/s^2",
+    "m*s^-2": "m/s^2",
+    "g_n": "g",
+    "g0": "g",
+    "g_0": "g",
+    "gn": "g",
+}
+
+
+def acceleration_factor(text: str) -> float:
+    """Give the factor that turns a reading into m/s².
+
+    Parameters
+    ----------
+    text
+        A unit of acceleration as loggers write it: ``m/s²``, ``m/s^2``, ``g``, ``mg``, ``mm/s2``, ``ft/s^2``...
+
+    Returns
+    -------
+    float
+        Metres per second squared in one of that unit.
+
+    Raises
+    ------
+    ValueError
+        If the unit is not one of acceleration; the message names the nearest one.
+
+    Examples
+    --------
+    >>> acceleration_factor("m/s²"), acceleration_factor("[g]")
+    (1.0, 9.80665)
+    """
+    plain = text.strip().strip("[]()").replace(" ", "").replace("²", "^2").replace("**", "^").replace("·", "*")
+    plain = plain.replace("⁻", "-").lower()
+    if plain.endswith("s2"):
+        plain = plain[:-1] + "^2"
+    plain = _SPELLINGS.get(plain, plain)
+    if plain not in _ACCELERATION:
+        raise ValueError(f"'{text}' is not a unit of acceleration. {did_you_mean(text, _ACCELERATION)}")
+    return _ACCELERATION[plain]

@@ -1,0 +1,139 @@
+"""The ground under the wheels: what it carries at rest, and the equations of motion where it carries nothing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle.load import EMPTY, Load
+from sprung.vehicle.model import Matrices
+from sprung.vehicle.parameters import Vehicle
+from sprung.vehicle.rows import WHEELS, Wheel
+
+Array = NDArray[np.float64]
+
+HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
+"""Everything moving up by one unit, in the coordinates: gravity is the generalised force -M g HEAVE."""
+
+
+def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
+    """Give stiffness, N/m, and damping, N s/m, of the tyre at each wheel station."""
+    front, rear = (vehicle.k_tf, vehicle.c_tf), (vehicle.k_tr, vehicle.c_tr)
+    return {"fl": front, "fr": front, "rl": rear, "rr": rear}
+
+
+def static_wheel_loads(vehicle: Vehicle, load: Load = EMPTY, gravity: float = STANDARD_GRAVITY) -> Array:
+    """Give the force of flat ground on each wheel at rest.
+
+    Parameters
+    ----------
+    vehicle, load
+        What stands there.
+    gravity
+        m/s².
+
+    Returns
+    -------
+    ndarray
+        N, shape (4,), in the order of `WHEELS`. Negative where the wheel would have to be held down.
+    """
+    return Ground.under(vehicle, load, gravity).wheel_loads
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """A loaded vehicle on flat ground, and its tyre forces as functions of Y = {X, Ẋ, 1}.
+
+    Attributes
+    ----------
+    matrices
+        M, C and K of the loaded vehicle with all wheels on the ground.
+    stiffness, damping
+        Of each tyre, N/m and N s/m, shape (4,).
+    wheel_loads
+        Static, N, shape (4,).
+    """
+
+    matrices: Matrices
+    stiffness: Array
+    damping: Array
+    wheel_loads: Array
+
+    @classmethod
+    def under(cls, vehicle: Vehicle, load: Load, gravity: float) -> Ground:
+        """Put a vehicle with its load on the ground; gravity in m/s²."""
+        stiffness, damping = np.array([tyre_rates(vehicle)[station] for station in WHEELS]).T
+        matrices = vehicle.matrices(load)
+        sag = np.linalg.solve(matrices.K, gravity * matrices.M @ HEAVE)
+        return cls(matrices, stiffness, damping, stiffness * sag[3:])
+
+    @property
+    def compression(self) -> Array:
+        """Tyre rate times tyre compression, N: rows over Y, shape (4, 15)."""
+        rows = np.zeros((4, 15))
+        rows[:, 3:7] = -np.diag(self.stiffness)
+        rows[:, 14] = self.wheel_loads
+        return rows
+
+    @property
+    def force(self) -> Array:
+        """Force of each tyre if it is in contact, N: rows over Y, shape (4, 15)."""
+        rows = self.compression
+        rows[:, 10:14] = -np.diag(self.damping)
+        return rows
+
+    def generator(self, contact: NDArray[np.bool_]) -> Array:
+        """Give the generator of Ẏ = generator Y: eq. (3), less the tyre forces that are absent.
+
+        Parameters
+        ----------
+        contact
+            Which wheels are on the ground, shape (4,).
+
+        Returns
+        -------
+        ndarray
+            Shape (15, 15); its last column holds the constant force.
+        """
+        generator = np.zeros((15, 15))
+        generator[:14, :14] = self.matrices.state
+        generator[7:14] -= np.linalg.solve(self.matrices.M, np.eye(7)[:, 3:][:, ~contact] @ self.force[~contact])
+        return generator
+
+    def rest(self, blocks: Array) -> Array:
+        """Find how the vehicle rests on blocks.
+
+        Parameters
+        ----------
+        blocks
+            Height under each wheel, m, shape (4,).
+
+        Returns
+        -------
+        ndarray
+            X, shape (7,). One wheel may hang, never two, as a vehicle that stands on flat ground rests on any three.
+        """
+        found = []
+        for hanging in (-1, 0, 1, 2, 3):
+            on = np.arange(4) != hanging
+            K = self.matrices.K - np.diag(np.append(np.zeros(3), np.where(on, 0.0, self.stiffness)))
+            F = np.append(np.zeros(3), np.where(on, self.stiffness * blocks, -self.wheel_loads))
+            X = np.asarray(np.linalg.solve(K, F), dtype=np.float64)
+            force = self.wheel_loads - self.stiffness * (X[3:] - blocks)
+            found.append((float(np.min(np.where(on, force, -force))), X))
+        # One of the five neither pulls at a wheel nor lets one sink in; rounding may blur which, where it matters not.
+        return max(found, key=lambda each: each[0])[1]
+
+    def keeps_contact(self, Y: Array) -> bool:
+        """Whether, with all wheels on the ground, too little energy is left for any tyre force to reach zero."""
+        M, _, K = self.matrices
+        energy = 0.5 * (Y[:7] @ K @ Y[:7] + Y[7:14] @ M @ Y[7:14])
+        # Energy never grows, and by Cauchy and Schwarz |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
+        # where 1 / K_z and 1 / M_z are the wheel's diagonal entries of K⁻¹ and M⁻¹: no tyre unloads by more.
+        flexibility, mobility = (np.diag(np.linalg.inv(matrix))[3:] for matrix in (K, M))
+        reach = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
+        return bool(np.all(math.sqrt(2 * energy) * reach < self.wheel_loads))

@@ -1,0 +1,125 @@
+"""Known loads: what they add to the mass matrix, as elements like any other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from sprung.vehicle import rows
+from sprung.vehicle.elements import Element
+from sprung.vehicle.rows import Wheel
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class Item(BaseModel):
+    """One piece of a load: a mass at a place."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    mass: Positive
+    """kg."""
+    position: tuple[Finite, Finite, Finite] | None = None
+    """x forward of the front axle, y left of the centreline, z above the ground, m; for items on the body."""
+    inertia: tuple[NotNegative, NotNegative] = (0.0, 0.0)
+    """Its own [I_xx, I_yy] about its centre, kg m²."""
+    on: Wheel | None = None
+    """The wheel it sits on, for items not on the body."""
+
+    @model_validator(mode="after")
+    def _somewhere(self) -> Item:
+        if (self.position is None) == (self.on is None):
+            raise ValueError('an item needs either a position on the body or the wheel it sits on (on = "fl")')
+        return self
+
+    def elements(self, cg_height: float | None) -> Iterator[Element]:
+        """Give what the item adds to the vehicle.
+
+        Parameters
+        ----------
+        cg_height
+            Height of the empty body's centre of gravity above the ground, m; None counts the item as level with it.
+        """
+        if self.on is not None:
+            yield Element("mass", self.mass, rows.wheel(self.on))
+        elif self.position is not None:
+            x, y, z = self.position
+            above = 0.0 if cg_height is None else z - cg_height
+            roll_inertia, pitch_inertia = (own + self.mass * above**2 for own in self.inertia)
+            yield Element("mass", self.mass, rows.body_point(x, y))
+            yield Element("mass", roll_inertia, rows.roll())
+            yield Element("mass", pitch_inertia, rows.pitch())
+
+
+class Added(BaseModel):
+    """A load of which only totals are known, taken as centred on the body's centre of gravity (the paper's bus)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    mass: NotNegative
+    """kg, on the body."""
+    I_yy: NotNegative = 0.0
+    """kg m², pitch."""
+    I_xx: NotNegative = 0.0
+    """kg m², roll."""
+    m_uf: NotNegative = 0.0
+    """kg on each front wheel: the paper's simulation adds about 10 % to every mass (its lost eq. (20))."""
+    m_ur: NotNegative = 0.0
+    """kg on each rear wheel."""
+
+    def elements(self) -> Iterator[Element]:
+        """Give what the load adds to the vehicle."""
+        yield Element("mass", self.mass, rows.bounce())
+        yield Element("mass", self.I_yy, rows.pitch())
+        yield Element("mass", self.I_xx, rows.roll())
+        yield Element("mass", self.m_uf, rows.wheel("fl"))
+        yield Element("mass", self.m_uf, rows.wheel("fr"))
+        yield Element("mass", self.m_ur, rows.wheel("rl"))
+        yield Element("mass", self.m_ur, rows.wheel("rr"))
+
+
+class Load(BaseModel):
+    """A known load: a list of items, or totals. The load named ``empty`` has neither and always exists."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    name: str = Field(min_length=1)
+    items: tuple[Item, ...] = ()
+    added: Added | None = None
+
+    @model_validator(mode="after")
+    def _one_description(self) -> Load:
+        if self.items and self.added is not None:
+            raise ValueError("give either items or added totals, not both")
+        if self.name == "empty" and (self.items or self.added is not None):
+            raise ValueError("the load named 'empty' is the vehicle as it is; give this load another name")
+        if self.name != "empty" and not self.items and self.added is None:
+            raise ValueError("a load needs items = [...] or added = {...}")
+        return self
+
+    @property
+    def mass(self) -> float:
+        """Total mass, kg."""
+        if self.added is not None:
+            return self.added.mass + 2 * (self.added.m_uf + self.added.m_ur)
+        return sum(item.mass for item in self.items)
+
+    def elements(self, cg_height: float | None = None) -> tuple[Element, ...]:
+        """Give the mass elements that the load adds; ΔM is their sum, full where the items are off centre.
+
+        Parameters
+        ----------
+        cg_height
+            Height of the empty body's centre of gravity above the ground, m; None counts every item as level with it.
+        """
+        if self.added is not None:
+            return tuple(self.added.elements())
+        return tuple(element for item in self.items for element in item.elements(cg_height))
+
+
+EMPTY = Load(name="empty")
+"""The vehicle as it is."""

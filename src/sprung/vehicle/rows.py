@@ -1,0 +1,102 @@
+"""Rows: which displacement an element, a load or a sensor feels, as a linear function of the vehicle's coordinates.
+
+Coordinates are the paper's, X = [z_s, θ, φ, z_uA, z_uB, z_uC, z_uD]: sprung-mass bounce, pitch (positive nose down),
+roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right. A row g says that
+something feels g·X. Every row is affine in the geometric parameters (a, b and the half-distances), so a row is its
+constant part and one slope per parameter; derivatives with respect to geometry need nothing else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Wheel = Literal["fl", "fr", "rl", "rr"]
+
+WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
+"""Wheel stations in the order of the coordinates: A, B, C, D of the paper."""
+
+COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD")
+
+_Z, _THETA, _PHI = np.eye(7)[:3]
+
+
+@dataclass(frozen=True, eq=False)
+class Row:
+    """A displacement g·X with g affine in geometric parameters.
+
+    Attributes
+    ----------
+    constant
+        Shape (7,): the part of g that depends on no parameter.
+    slopes
+        For each geometric parameter the change of g per metre, shape (7,).
+    """
+
+    constant: NDArray[np.float64]
+    slopes: Mapping[str, NDArray[np.float64]] = field(default_factory=lambda: MappingProxyType({}))
+
+    def __sub__(self, other: Row) -> Row:
+        """Give the row of the difference of two displacements."""
+        names = self.slopes.keys() | other.slopes.keys()
+        nothing = np.zeros(7)
+        return Row(
+            self.constant - other.constant,
+            {name: self.slopes.get(name, nothing) - other.slopes.get(name, nothing) for name in names},
+        )
+
+
+def body_point(x: float, y: float) -> Row:
+    """Vertical displacement of a point of the body.
+
+    Parameters
+    ----------
+    x, y
+        Position, m: forward of the front axle, left of the centreline. The centre of gravity is at x = -a.
+    """
+    return Row(_Z - x * _THETA + y * _PHI, {"a": -_THETA})
+
+
+def pitch() -> Row:
+    """Pitch angle of the body, rad."""
+    return Row(_THETA)
+
+
+def roll() -> Row:
+    """Roll angle of the body, rad."""
+    return Row(_PHI)
+
+
+def bounce() -> Row:
+    """Vertical displacement of the sprung mass's centre of gravity."""
+    return Row(_Z)
+
+
+def wheel(station: Wheel) -> Row:
+    """Vertical displacement of one wheel."""
+    return Row(np.eye(7)[3 + WHEELS.index(station)])
+
+
+def corner(station: Wheel, half_distance: str) -> Row:
+    """Vertical displacement of the body above one wheel, at a half-distance from the centreline which is a parameter.
+
+    Parameters
+    ----------
+    station
+        The wheel station.
+    half_distance
+        Name of the parameter: ``t_f2`` for the front springs.
+    """
+    side = 1.0 if station[1] == "l" else -1.0
+    along = {"a": -_THETA} if station[0] == "f" else {"b": _THETA}
+    return Row(_Z, {**along, half_distance: side * _PHI})
+
+
+def travel(station: Wheel, half_distance: str) -> Row:
+    """Suspension travel at one wheel: body above the wheel minus wheel, positive in rebound."""
+    return corner(station, half_distance) - wheel(station)

@@ -1,0 +1,50 @@
+"""Accelerometers: where they sit, which way they point, and the row of the motion they feel."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from sprung.vehicle import rows
+from sprung.vehicle.load import Finite, Positive
+from sprung.vehicle.rows import Row
+
+
+class Sensor(BaseModel):
+    """One accelerometer, as a campaign file describes it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    channel: str = Field(min_length=1)
+    """Column or channel name in the recordings."""
+    on: Literal["body", "fl", "fr", "rl", "rr"]
+    """The body, or a wheel station."""
+    position: tuple[Finite, Finite, Finite] | None = None
+    """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""
+    unit: str | None = None
+    """Overrides what the file says; m/s² when neither says."""
+    direction: Literal["up", "down"] = "up"
+    """Which way its positive reading points."""
+    range: Positive | None = None
+    """Full scale, in the sensor's unit."""
+    resolution: Positive | None = None
+    """Smallest step, in the sensor's unit."""
+    high_pass: Positive | None = None
+    """Corner frequency of an AC-coupled sensor, Hz."""
+    logger: str | None = None
+    """Name of the logger that recorded it, where several did."""
+
+    @model_validator(mode="after")
+    def _placed(self) -> Sensor:
+        if self.on == "body" and self.position is None:
+            raise ValueError("a body sensor needs its position = [x, y, z]")
+        return self
+
+    @property
+    def row(self) -> Row:
+        """The displacement whose second derivative it feels, positive up."""
+        if self.on == "body":
+            assert self.position is not None  # noqa: S101 (checked on construction; for the type checker)
+            return rows.body_point(self.position[0], self.position[1])
+        return rows.wheel(self.on)
