@@ -31,8 +31,9 @@ def main() -> None:
         axes.set(xlim=(0.3, 1.6), xlabel="time, s", ylabel="acceleration, m/s²", title=title)
         axes.spines["right"].set_visible(False)
     body.legend(frameon=False, loc="lower right")
-    wheel.annotate("release", (0.4, 9), (0.5, 60), arrowprops={"arrowstyle": "-", "lw": 0.6})
-    wheel.annotate("landing: the decay\nis fitted from here", (series.time[0], 40), (0.75, 48), arrowprops={"arrowstyle": "-", "lw": 0.6})
+    thin = {"arrowstyle": "-", "lw": 0.6}
+    wheel.annotate("release", (0.4, 9), (0.32, 60), arrowprops=thin)
+    wheel.annotate("landing: the decay\nis fitted from here", (series.time[0], 40), (0.75, 48), arrowprops=thin)
 
     text.axis("off")
     lines = []
