@@ -10,7 +10,7 @@ evaluation touches the records in one matrix product and everything else is smal
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +29,9 @@ _CLOSE = 1e-6
 
 _DEFECTIVE = 100.0
 """Condition number of a pole from which two modes have all but met in one shape, and the long way is taken."""
+
+_SECOND = np.repeat([0, 1], 14)
+"""Which half of the 28 functions (e^{λt}, t e^{λt}) each belongs to."""
 
 _RIDGE = 1e-13
 """Relative ridge on the amplitudes' normal equations: keeps a mode that no channel sees from dividing by zero."""
@@ -87,33 +90,48 @@ class Evaluation(NamedTuple):
 
 
 class ModalSolution(NamedTuple):
-    """Poles and acceleration shapes of one load at the sensors, with their derivatives.
+    """Poles and shapes of one load.
 
     Attributes
     ----------
     poles
         λ, 1/s, shape (14,).
-    pole_slopes
-        Derivative of each pole by each parameter, shape (parameter, 14).
-    coordinates
-        Displacement of the seven coordinates per unit of modal amplitude, shape (7, 14).
+    right, left
+        Eigenvectors of the state matrix as columns, and their inverse, shape (14, 14).
     shapes
         s: reading of each channel per unit of modal amplitude, shape (channel, 14).
-    shape_slopes
-        σ, shape (parameter, channel, 14).
-    secular_slopes
-        τ, shape (parameter, channel, 14).
-    condition
-        Largest condition number of a pole: infinite where two modes meet in one shape.
     """
 
     poles: Complex
-    pole_slopes: Complex
-    coordinates: Complex
+    right: Complex
+    left: Complex
     shapes: Complex
-    shape_slopes: Complex
-    secular_slopes: Complex
-    condition: float
+
+    @property
+    def condition(self) -> float:
+        """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
+        # Displacements and velocities are made comparable by a mean frequency.
+        balance = np.repeat([float(np.abs(self.poles).mean()), 1.0], 7)
+        right = np.linalg.norm(self.right * balance[:, None], axis=0)
+        return float((right * np.linalg.norm(self.left / balance, axis=1)).max())
+
+
+class ModalSlopes(NamedTuple):
+    """Derivatives of poles and readings by the parameters.
+
+    Attributes
+    ----------
+    poles
+        Shape (parameter, 14).
+    shapes
+        σ, shape (parameter, channel, 14).
+    secular
+        τ, shape (parameter, channel, 14).
+    """
+
+    poles: Complex
+    shapes: Complex
+    secular: Complex
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +181,18 @@ class Likelihood:
             counts[group.members] = group.present * group.samples[:, None]
         return counts
 
+    @property
+    def energy(self) -> Real:
+        """Sum of squares of all centred records of each channel, (m/s²)², shape (channel,)."""
+        energy: Real = np.sum([group.energy.sum(axis=0) for group in self.groups], axis=0)
+        return energy
+
+    @property
+    def largest(self) -> Likelihood:
+        """The part of it with most drops that share one load and one rate; the other drops count as perfectly fitted."""
+        group = max(self.groups, key=lambda group: len(group.members))
+        return replace(self, groups=(group,))
+
     def evaluate(self, values: Real, weights: Real) -> Evaluation:
         """Evaluate fit and derivatives.
 
@@ -187,7 +217,9 @@ class Likelihood:
             if modes.condition > _DEFECTIVE:
                 part = _stack(self._longhand(group, values, weights))
             else:
-                part = _evaluate_group(group, modes, weights)
+                span = float(group.samples.max()) / group.rate
+                slopes = differentiate_modes(group.model, self.sensors, values, modes, span)
+                part = _evaluate_group(group, modes, slopes, weights)
             residual[group.members] = part.residual
             leverage[group.members] = part.leverage
             gradient[group.members] = part.gradient
@@ -218,7 +250,7 @@ class Likelihood:
         return records
 
     def _modes(self, group: Group, values: Real) -> ModalSolution:
-        return solve_modes(group.model, self.sensors, values, float(group.samples.max()) / group.rate)
+        return solve_modes(group.model, self.sensors, values)
 
     def _longhand(self, group: Group, values: Real, weights: Real) -> list[Longhand]:
         records = group.blocked.reshape(*group.energy.shape, -1)
@@ -248,8 +280,8 @@ def _group(decays: Sequence[Decay], members: NDArray[np.int64], model: LinearMod
     return Group(members, model, blocks(records), energy, present, samples, rate)
 
 
-def solve_modes(model: LinearModel, sensors: Rows, values: Real, span: float) -> ModalSolution:
-    """Solve the eigenvalue problem of one load and differentiate the response with it.
+def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolution:
+    """Solve the eigenvalue problem of one load.
 
     Parameters
     ----------
@@ -259,47 +291,50 @@ def solve_modes(model: LinearModel, sensors: Rows, values: Real, span: float) ->
         The sensors' rows.
     values
         Parameters, SI.
+
+    Returns
+    -------
+    ModalSolution
+    """
+    A = model.matrices(values).state
+    poles, right = np.linalg.eig(A)
+    return ModalSolution(poles, right, np.linalg.inv(right), sensors.at(values) @ (A[7:] @ right))
+
+
+def differentiate_modes(
+    model: LinearModel, sensors: Rows, values: Real, modes: ModalSolution, span: float
+) -> ModalSlopes:
+    """Differentiate the response by the parameters.
+
+    Parameters
+    ----------
+    model, sensors, values
+        As for `solve_modes`, which gave `modes`.
+    modes
+        Poles and shapes.
     span
         Length of the longest record, s: decides which poles are too close to be told apart.
 
     Returns
     -------
-    ModalSolution
+    ModalSlopes
 
     Notes
     -----
     The derivative of e^{At} in modal coordinates has the entries D_kj (e^{λ_j t} - e^{λ_k t})/(λ_j - λ_k), with
     D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What is left is
     D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones.
-
     """
-    lower, dlower = model.accelerations(values)
-    poles, V = np.linalg.eig(np.vstack([np.hstack([np.zeros((7, 7)), np.eye(7)]), lower]))
-    left = np.linalg.inv(V)
-    S, dS = sensors.at(values), sensors.slopes
-    accelerations = lower @ V
-    shapes = S @ accelerations
-    changes = dlower @ V
-    D = left[:, 7:] @ changes
-    difference = poles[None, :] - poles[:, None]
+    lower, slopes = model.accelerations(values)
+    changes = slopes @ modes.right
+    D = modes.left[:, 7:] @ changes
+    difference = modes.poles[None, :] - modes.poles[:, None]
     close = np.abs(difference) * span < _CLOSE
     mixing = np.where(close, 0.0, 1.0 / np.where(close, 1.0, difference))
-    return ModalSolution(
-        poles,
-        np.einsum("pjj->pj", D),
-        V[:7],
-        shapes,
-        dS @ accelerations + S @ changes + shapes @ (D * mixing),
-        shapes @ (D * close),
-        _condition(poles, V, left),
+    of_sensors = sensors.slopes @ (lower @ modes.right) + sensors.at(values) @ changes
+    return ModalSlopes(
+        np.diagonal(D, axis1=1, axis2=2), of_sensors + modes.shapes @ (D * mixing), modes.shapes @ (D * close)
     )
-
-
-def _condition(poles: Complex, right: Complex, left: Complex) -> float:
-    """Give the largest |w||v|/|w·v| of all poles, displacements and velocities made comparable by a mean frequency."""
-    balance = np.repeat([float(np.abs(poles).mean()), 1.0], 7)
-    lengths = np.linalg.norm(right * balance[:, None], axis=0) * np.linalg.norm(left / balance, axis=1)
-    return float(lengths.max())
 
 
 class _Amplitudes(NamedTuple):
@@ -327,15 +362,21 @@ def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real) -> _Amp
     lagged = pair.first * step
     whole = np.block([[pair.zeroth, lagged], [lagged, pair.second * step**2]])
     gram = np.asarray(whole - N[:, :, None] * np.conj(means)[:, :, None] * means[:, None, :], dtype=np.complex128)
-    zeroth, first = correlate(group.blocked, exponent)
-    data: Complex = np.concatenate([zeroth, first * step], axis=2)
+    # Poles come in conjugate pairs, one beside the other: one of each pair is enough for real records.
+    upper = exponent.imag >= 0
+    zeroth, first = correlate(group.blocked, exponent[upper])
+    data = np.concatenate([zeroth, first * step], axis=2)[
+        :, :, np.tile(np.cumsum(upper) - 1, 2) + _SECOND * upper.sum()
+    ]
+    data = np.where(np.tile(upper, 2), data, data.conj())
 
     s = modes.shapes
-    normal = np.einsum("cj,dc,ck->djk", s.conj(), w, s, optimize=True) * gram[:, :14, :14]
+    weighted = s.conj() * w[:, :, None]
+    normal = (np.swapaxes(weighted, 1, 2) @ s) * gram[:, :14, :14]
     size = np.sqrt(np.maximum(np.einsum("djj->dj", normal).real, np.finfo(float).tiny))
     scale = size[:, :, None] * size[:, None, :]
     inverse: Complex = np.linalg.inv(normal / scale + _RIDGE * np.eye(14)) / scale
-    q = (inverse @ np.einsum("cj,dc,dcj->dj", s.conj(), w, data[:, :, :14], optimize=True)[:, :, None])[:, :, 0]
+    q = (inverse @ (weighted * data[:, :, :14]).sum(axis=1)[:, :, None])[:, :, 0]
     fitted = s * q[:, None, :]
     smoothed = fitted @ np.swapaxes(gram[:, :, :14], 1, 2)
     explained = np.sum(fitted.conj() * (2 * data[:, :, :14] - smoothed[:, :, :14]), axis=2).real
@@ -343,19 +384,20 @@ def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real) -> _Amp
     return _Amplitudes(gram, data, smoothed, inverse, w, q, residual)
 
 
-def _evaluate_group(group: Group, modes: ModalSolution, weights: Real) -> Evaluation:
+def _evaluate_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, weights: Real) -> Evaluation:
     linear = _solve_amplitudes(group, modes, weights)
     s, w, gram = modes.shapes, linear.weights, linear.gram
-    drops, parameters = len(group.members), len(modes.shape_slopes)
-    leverage = np.einsum("cj,djk,dkj,ck,dc->dc", s.conj(), gram[:, :14, :14], linear.inverse, s, w, optimize=True).real
+    drops, parameters = len(group.members), len(slopes.shapes)
+    hat = gram[:, :14, :14] * np.swapaxes(linear.inverse, 1, 2)
+    leverage = w * ((s.conj() @ hat) * s).sum(axis=2).real
 
     # Derivatives of the fitted records: coefficients of (e^{λt}, t e^{λt}) for every parameter, channel and drop.
-    slopes = np.concatenate([modes.shape_slopes, modes.secular_slopes], axis=2)
-    J = slopes * np.tile(linear.amplitudes, 2)[:, None, None, :]
+    J = np.concatenate([slopes.shapes, slopes.secular], axis=2) * np.tile(linear.amplitudes, 2)[:, None, None, :]
     weighted = J.conj() * w[:, None, :, None]
-    gradient = np.einsum("dpcj,dcj->dp", weighted, linear.data - linear.smoothed, optimize=True).real
+    weighted = weighted.reshape(drops, parameters, -1)
+    gradient = (weighted @ (linear.data - linear.smoothed).reshape(drops, -1, 1))[:, :, 0].real
     products = (J.reshape(drops, -1, 28) @ np.swapaxes(gram, 1, 2)).reshape(J.shape)
-    within = weighted.reshape(drops, parameters, -1) @ np.swapaxes(products.reshape(drops, parameters, -1), 1, 2)
-    across = np.einsum("cj,dc,dpcj->dpj", s.conj(), w, products[..., :14], optimize=True)
+    within = weighted @ np.swapaxes(products.reshape(drops, parameters, -1), 1, 2)
+    across = ((s.conj() * w[:, :, None])[:, None] * products[..., :14]).sum(axis=2)
     information = (within - across.conj() @ linear.inverse @ np.swapaxes(across, 1, 2)).real.sum(axis=0)
     return Evaluation(linear.residual, leverage, gradient, information)

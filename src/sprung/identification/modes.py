@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.joint import Fit
-from sprung.identification.likelihood import solve_modes
+from sprung.identification.likelihood import differentiate_modes, solve_modes
 from sprung.modal import Mode, name_modes
 from sprung.vehicle import LinearModel, Rows, Sensor
 
@@ -64,10 +64,10 @@ def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> t
     tuple of ModeEstimate
     """
     rows = Rows.of([sensor.row for sensor in sensors], fit.names)
-    modes = solve_modes(model, rows, fit.values, 1.0)
-    slopes = modes.pole_slopes * fit.slopes[:, None]
+    modes = solve_modes(model, rows, fit.values)
+    slopes = differentiate_modes(model, rows, fit.values, modes, 1.0).poles * fit.slopes[:, None]
     upper = np.flatnonzero(modes.poles.imag >= 0)
-    named = name_modes([Mode(complex(modes.poles[j]), modes.coordinates[:, j]) for j in upper])
+    named = name_modes([Mode(complex(modes.poles[j]), modes.right[:7, j]) for j in upper])
     left = set(upper.tolist())
     estimates = []
     for mode in named:

@@ -92,7 +92,8 @@ class Quadratic:
     def slopes(self, values: ArrayLike) -> Array:
         """Give its exact derivative by each parameter; shape (parameter, 7, 7)."""
         g = self.rows.at(values)
-        by_coefficient = np.einsum("ep,ei,ej->pij", self.coefficients[:, 1:], g, g, optimize=True)
+        squares = (g[:, :, None] * g[:, None, :]).reshape(len(g), -1)
+        by_coefficient = (self.coefficients[:, 1:].T @ squares).reshape(-1, 7, 7)
         half = np.swapaxes(self.rows.slopes, 1, 2) @ (self._kappa(values)[:, None] * g)
         slopes: Array = by_coefficient + half + np.swapaxes(half, 1, 2)
         return slopes

@@ -1,0 +1,202 @@
+"""The way up the likelihood: Gauss-Newton on what exact knowledge leaves free, damped after Levenberg and Marquardt.
+
+The noise level of each channel is estimated along with the parameters: after every step the weights are taken from the
+residuals, so that what is maximised is the likelihood itself, not a sum of squares with weights that somebody chose.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification.knowledge import Knowledge
+from sprung.identification.likelihood import Evaluation, Likelihood
+
+Real = NDArray[np.float64]
+
+NOISE_FLOOR = 1e-6
+"""Smallest noise level, as a part of a channel's root-mean-square: below it, rounding in the sums of squares would show."""
+
+RANK = 1e-12
+"""Information, as a part of the largest, that is nothing but rounding."""
+
+_CONVERGED = 1e-8  # expected gain in log-likelihood: the parameters are within 1e-4 of a standard error
+_SETTLED = 1e-3  # relative change of the noise levels
+_SAME = 0.01  # distance in standard errors, squared, within which a climb will end where another one has
+_ITERATIONS = 100
+_LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
+_LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """Where a climb stands.
+
+    Attributes
+    ----------
+    u
+        Coordinates of the parameters, shape (parameter,).
+    weights
+        1/σ² of each channel with which `evaluation` was made, shape (channel,).
+    evaluation
+        The likelihood there.
+    steps
+        How many were taken.
+    converged
+        Whether the last step promised no further gain.
+    """
+
+    u: Real
+    weights: Real
+    evaluation: Evaluation
+    steps: int = 0
+    converged: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Climb:
+    """A likelihood and what is known beside it.
+
+    Attributes
+    ----------
+    likelihood
+        The records.
+    knowledge
+        What is known beforehand, and the coordinates.
+    """
+
+    likelihood: Likelihood
+    knowledge: Knowledge
+
+    @cached_property
+    def _observations(self) -> Real:
+        counts: Real = np.maximum(self.likelihood.observations.sum(axis=0), 1.0)
+        return counts
+
+    @cached_property
+    def _constants(self) -> Real:
+        """Offsets by channel: one for each drop."""
+        offsets: Real = (self.likelihood.observations > 0).sum(axis=0)
+        return offsets
+
+    @cached_property
+    def _energy(self) -> Real:
+        energy: Real = np.maximum(self.likelihood.energy, np.finfo(float).tiny)
+        return energy
+
+    def variance(self, residual: Real, leverage: Real) -> Real:
+        """Estimate each channel's noise variance, the eliminated unknowns taken off the number of samples.
+
+        Parameters
+        ----------
+        residual, leverage
+            As in an `Evaluation`, shape (drop, channel).
+
+        Returns
+        -------
+        ndarray
+            (m/s²)², shape (channel,).
+        """
+        freedom = np.maximum(self._observations - self._constants - leverage.sum(axis=0), 1.0)
+        variance: Real = residual.sum(axis=0) / freedom + NOISE_FLOOR**2 * self._energy / self._observations
+        return variance
+
+    def cost(self, point: Point) -> float:
+        """Give minus twice the log-likelihood, up to a constant."""
+        prior = self.knowledge.prior(point.u).residual
+        variance = self.variance(point.evaluation.residual, point.evaluation.leverage)
+        return float(self._observations @ np.log(variance) + prior @ prior)
+
+    def first_cost(self, u: Real) -> float:
+        """Rate a start: the same from one group of drops alone, its channels weighted by their energy."""
+        weights = self._observations / self._energy
+        residual = self.likelihood.largest.misfit(self.knowledge.coordinates.values(u), weights)
+        return float(self._observations @ np.log(self.variance(residual, np.zeros_like(residual))))
+
+    def system(self, point: Point, inflation: float = 1.0) -> tuple[Real, Real, Real]:
+        """Give information and gradient in the free directions, and those directions.
+
+        Parameters
+        ----------
+        point
+            Where.
+        inflation
+            By how much the records tell less than they would with white residuals.
+
+        Returns
+        -------
+        information, gradient, free
+            Shapes (direction, direction), (direction,) and (parameter, direction).
+        """
+        slopes = self.knowledge.coordinates.slopes(point.u)
+        prior = self.knowledge.prior(point.u)
+        free = self.knowledge.free(point.u)
+        data = point.evaluation.information * np.outer(slopes, slopes) / inflation
+        gradient = point.evaluation.gradient.sum(axis=0) * slopes / inflation + prior.slopes.T @ prior.residual
+        return free.T @ (data + prior.slopes.T @ prior.slopes) @ free, free.T @ gradient, free
+
+    def to_the_top(self, u: Real, summit: Point | None = None) -> Point:
+        """Climb from a start.
+
+        Parameters
+        ----------
+        u
+            Coordinates to start from, exact knowledge fulfilled.
+        summit
+            Where another climb has ended: coming within a tenth of a standard error of it, this one ends there too.
+
+        Returns
+        -------
+        Point
+        """
+        weights = self._observations / self._energy
+        residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), weights)
+        point = self._evaluate(u, 1 / self.variance(residual, np.zeros_like(residual)), 0)
+        damping = 1e-3
+        while point.steps < _ITERATIONS:
+            information, gradient, free = self.system(point)
+            if not gradient.size:
+                return replace(point, converged=True)
+            if summit is not None:
+                distance = free.T @ (summit.u - point.u)
+                if distance @ information @ distance < _SAME:
+                    return summit
+            moved, damping, gain = self._step(point, information, gradient, free, damping)
+            if moved is None:
+                return replace(point, converged=gain < 1e-3)
+            settled = np.abs(np.log(moved.weights / point.weights)).max() < _SETTLED
+            point = moved
+            if gain < _CONVERGED and settled:
+                return replace(point, converged=True)
+        return point
+
+    def _evaluate(self, u: Real, weights: Real, steps: int) -> Point:
+        return Point(u, weights, self.likelihood.evaluate(self.knowledge.coordinates.values(u), weights), steps)
+
+    def _step(
+        self, point: Point, information: Real, gradient: Real, free: Real, damping: float
+    ) -> tuple[Point | None, float, float]:
+        """Take one damped step that does not lose; give None where there is none left to take."""
+        now = self._weighted(point.u, point.evaluation.residual, point.weights)
+        diagonal = np.diag(information)
+        diagonal = np.maximum(diagonal, RANK * diagonal.max())
+        gain = np.inf
+        while damping < _MOST_DAMPING:
+            step = np.linalg.solve(information + np.diag(damping * diagonal), gradient)
+            gain = float(gradient @ step)
+            move = free @ step
+            move *= min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300))
+            u = self.knowledge.bind(point.u + move)
+            residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), point.weights)
+            if self._weighted(u, residual, point.weights) <= now + 1e-10 * abs(now):
+                weights = 1 / self.variance(residual, point.evaluation.leverage)
+                return self._evaluate(u, weights, point.steps + 1), max(damping / 10, _LEAST_DAMPING), gain
+            damping = max(damping, 1e-8) * 8
+        return None, damping, gain
+
+    def _weighted(self, u: Real, residual: Real, weights: Real) -> float:
+        prior = self.knowledge.prior(u).residual
+        return float(residual.sum(axis=0) @ weights + prior @ prior)
