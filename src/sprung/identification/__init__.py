@@ -1,7 +1,9 @@
 """From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
 
 from sprung.identification.added_mass import added_mass
+from sprung.identification.contact import fit_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude
+from sprung.identification.inflation import of_colour
 from sprung.identification.joint import Fit, fit_jointly
 from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
@@ -17,8 +19,10 @@ __all__ = [
     "Unidentifiable",
     "added_mass",
     "conclude",
+    "fit_from_contact",
     "fit_jointly",
     "mode_estimates",
+    "of_colour",
     "parameters_from_matrices",
     "structured_least_squares",
 ]

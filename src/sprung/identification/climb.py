@@ -134,9 +134,14 @@ class Climb:
         slopes = self.knowledge.coordinates.slopes(point.u)
         prior = self.knowledge.prior(point.u)
         free = self.knowledge.free(point.u)
-        data = point.evaluation.information * np.outer(slopes, slopes) / inflation
+        data = point.evaluation.information.sum(axis=0) * np.outer(slopes, slopes) / inflation
         gradient = point.evaluation.gradient.sum(axis=0) * slopes / inflation + prior.slopes.T @ prior.residual
         return free.T @ (data + prior.slopes.T @ prior.slopes) @ free, free.T @ gradient, free
+
+    def by_drop(self, point: Point) -> tuple[Real, Real]:
+        """Give each drop's own gradient and information in the free directions."""
+        free = self.knowledge.free(point.u) * self.knowledge.coordinates.slopes(point.u)[:, None]
+        return point.evaluation.gradient @ free, free.T @ point.evaluation.information @ free
 
     def to_the_top(self, u: Real, summit: Point | None = None) -> Point:
         """Climb from a start.

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.estimate import Known
 from sprung.identification.climb import RANK, Climb, Point
-from sprung.identification.colour import inflation
+from sprung.identification.inflation import of_colour, of_disagreement
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.start import catalogue
@@ -50,7 +50,10 @@ class Fit:
     residual
         Residual sums of squares, (m/s²)², shape (drop, channel).
     inflation
-        By how much the colour of the residuals has enlarged the variance of the estimates; 1 for white ones.
+        By how much coloured residuals, or drops that contradict each other, have enlarged the variances; 1 where
+        neither is significant.
+    states
+        {X, Ẋ} of each drop at the start of its decay, SI, shape (drop, 14).
     fitted
         What the model makes of every record, its mean taken off; each of shape (channel, time).
     prior_residual
@@ -74,6 +77,7 @@ class Fit:
     noise: Real
     residual: Real
     inflation: float
+    states: Real
     fitted: tuple[Real, ...]
     prior_residual: Mapping[str, float]
     loglikelihood: float
@@ -144,7 +148,8 @@ def _conclude(climb: Climb, best: Point, decays: Sequence[Decay], agreeing: int,
     knowledge, values = climb.knowledge, climb.knowledge.coordinates.values(best.u)
     fitted = climb.likelihood.fitted(values, best.weights)
     residuals = [d.values - d.values.mean(axis=1, keepdims=True) - f for d, f in zip(decays, fitted, strict=True)]
-    inflated = float(inflation(residuals, [decay.rate for decay in decays]).max())
+    colour = float(of_colour(residuals, [decay.rate for decay in decays]).max())
+    inflated = max(colour, of_disagreement(*climb.by_drop(best)))
 
     information, _, free = climb.system(best, inflated)
     eigenvalues, vectors = np.linalg.eigh(information)
@@ -165,6 +170,7 @@ def _conclude(climb: Climb, best: Point, decays: Sequence[Decay], agreeing: int,
         noise=np.sqrt(climb.variance(best.evaluation.residual, best.evaluation.leverage)),
         residual=best.evaluation.residual,
         inflation=inflated,
+        states=climb.likelihood.states(values, best.weights),
         fitted=tuple(fitted),
         prior_residual=dict(zip(uncertain, knowledge.prior(best.u).residual.tolist(), strict=True)),
         loglikelihood=-0.5 * climb.cost(best),

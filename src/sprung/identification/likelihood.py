@@ -80,7 +80,8 @@ class Evaluation(NamedTuple):
     gradient
         Σ derivative · residual / σ², by parameter and drop; shape (drop, parameter).
     information
-        Fisher information of the parameters, amplitudes and offsets eliminated; shape (parameter, parameter).
+        Fisher information of the parameters from each drop, amplitudes and offsets eliminated; shape (drop, parameter,
+        parameter).
     """
 
     residual: Real
@@ -211,7 +212,7 @@ class Likelihood:
         residual = np.zeros((self.drops, self.channels))
         leverage = np.zeros((self.drops, self.channels))
         gradient = np.zeros((self.drops, parameters))
-        information = np.zeros((parameters, parameters))
+        information = np.zeros((self.drops, parameters, parameters))
         for group in self.groups:
             modes = self._modes(group, values)
             if modes.condition > _DEFECTIVE:
@@ -223,7 +224,7 @@ class Likelihood:
             residual[group.members] = part.residual
             leverage[group.members] = part.leverage
             gradient[group.members] = part.gradient
-            information += part.information
+            information[group.members] = part.information
         return Evaluation(residual, leverage, gradient, information)
 
     def misfit(self, values: Real, weights: Real) -> Real:
@@ -249,6 +250,18 @@ class Likelihood:
                 records[member] = record - record.mean(axis=1, keepdims=True)
         return records
 
+    def states(self, values: Real, weights: Real) -> Real:
+        """Give {X, Ẋ} of each drop at its first sample, SI, shape (drop, 14)."""
+        states = np.zeros((self.drops, 14))
+        for group in self.groups:
+            modes = self._modes(group, values)
+            if modes.condition > _DEFECTIVE:
+                states[group.members] = [one.state for one in self._longhand(group, values, weights)]
+            else:
+                amplitudes = _solve_amplitudes(group, modes, weights).amplitudes
+                states[group.members] = (amplitudes @ modes.right.T).real
+        return states
+
     def _modes(self, group: Group, values: Real) -> ModalSolution:
         return solve_modes(group.model, self.sensors, values)
 
@@ -265,7 +278,7 @@ def _stack(drops: Sequence[Longhand]) -> Evaluation:
         np.array([drop.residual for drop in drops]),
         np.array([drop.leverage for drop in drops]),
         np.array([drop.gradient for drop in drops]),
-        np.sum([drop.information for drop in drops], axis=0),
+        np.array([drop.information for drop in drops]),
     )
 
 
@@ -399,5 +412,5 @@ def _evaluate_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, wei
     products = (J.reshape(drops, -1, 28) @ np.swapaxes(gram, 1, 2)).reshape(J.shape)
     within = weighted @ np.swapaxes(products.reshape(drops, parameters, -1), 1, 2)
     across = ((s.conj() * w[:, :, None])[:, None] * products[..., :14]).sum(axis=2)
-    information = (within - across.conj() @ linear.inverse @ np.swapaxes(across, 1, 2)).real.sum(axis=0)
+    information = (within - across.conj() @ linear.inverse @ np.swapaxes(across, 1, 2)).real
     return Evaluation(linear.residual, leverage, gradient, information)

@@ -30,6 +30,8 @@ class Longhand(NamedTuple):
         Initial states and offsets eliminated; shape (parameter, parameter).
     fitted
         What the model makes of the centred record; shape (channel, time).
+    state
+        {X, Ẋ} at the first sample, SI, shape (14,).
     """
 
     residual: Real
@@ -37,6 +39,7 @@ class Longhand(NamedTuple):
     gradient: Real
     information: Real
     fitted: Real
+    state: Real
 
 
 def evaluate_drop(
@@ -106,4 +109,5 @@ def evaluate_drop(
         gradient=jacobian.T @ left,
         information=jacobian.T @ jacobian,
         fitted=fitted,
+        state=state,
     )

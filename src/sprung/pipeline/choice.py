@@ -27,12 +27,15 @@ class Choice(NamedTuple):
         Everything known beforehand about its parameters, the wheelbase included.
     models
         Equations of motion by load name.
+    open
+        Whether neither the user nor what is known says anything about the tracks, so that the records are to decide.
     """
 
     tracks: Tracks
     extras: tuple[str, ...]
     known: Mapping[str, Known]
     models: Mapping[str, LinearModel]
+    open: bool
 
 
 def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple[str, ...] | None = None) -> Choice:
@@ -94,4 +97,5 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
         known["wheelbase"] = campaign.wheelbase
     elements = seven_degrees_of_freedom(chosen, chosen_extras)
     models = {load.name: LinearModel.of(elements + load.elements(campaign.cg_height), names) for load in campaign.loads}
-    return Choice(chosen, chosen_extras, known, models)
+    undecided = tracks is None and campaign.model.tracks is None and not apart and not together
+    return Choice(chosen, chosen_extras, known, models, undecided)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sprung.errors import Problems
 from sprung.identification import ModeEstimate
@@ -53,11 +54,16 @@ def _modes_of(decays: list[Decay], campaign: Campaign, method: str, order: int |
     rate = Counter(decay.rate for decay in decays).most_common(1)[0][0]
     same = [decay for decay in decays if decay.rate == rate]
     channels = np.logical_and.reduce([decay.usable for decay in same])
-    records = [decay.values[channels] - decay.values[channels].mean(axis=1, keepdims=True) for decay in same]
+    records = [decay.values[channels] - _level(decay)[channels, None] for decay in same]
     sensors = [sensor for sensor, used in zip(campaign.sensors, channels, strict=True) if used]
     a = campaign.known.get("a")
     named = name_by_sensors(identify_modes(records, rate, method, order), sensors, a.value if a is not None else None)
     return tuple(_estimate(mode) for mode in named)
+
+
+def _level(decay: Decay) -> NDArray[np.float64]:
+    """Give the offset of each channel: its reading at rest, or where there was none its mean; shape (channel,)."""
+    return np.where(np.isnan(decay.rest.level), decay.values.mean(axis=1), decay.rest.level)
 
 
 def _estimate(mode: Mode) -> ModeEstimate:

@@ -67,12 +67,14 @@ class FitReport(_Frozen):
         Extras beyond the paper's seven degrees of freedom.
     tracks
         Whether springs and dampers of an axle share their half-distance.
+    why
+        What decided that.
     method
         What estimated it.
     iterations, converged, starts, starts_agreeing
         Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
     inflation
-        By how much the colour of the residuals enlarged every variance; 1 for white residuals.
+        By how much coloured residuals, or drops that contradict each other, enlarged every variance; 1 for neither.
     misfit
         Model error of each channel as a part of its signal; 0 where none is significant.
     """
@@ -82,6 +84,7 @@ class FitReport(_Frozen):
     noise: dict[str, float]
     model: tuple[str, ...]
     tracks: Literal["shared", "separate"]
+    why: str
     method: str
     iterations: int
     converged: bool

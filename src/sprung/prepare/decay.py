@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,9 @@ class Decay:
         Name of the load on the vehicle.
     values
         Shape (channel, time), m/s², positive up; NaN throughout in a channel that is left out.
+    earlier
+        The samples before them, back to the first landing: they belong to the decay if no tyre lifts off again, which
+        the accelerometers alone do not tell for certain. Shape (channel, time); none where the user gave the start.
     rate
         Samples per second.
     start
@@ -39,6 +42,7 @@ class Decay:
     file: str
     load: str
     values: NDArray[np.float64]
+    earlier: NDArray[np.float64]
     rate: float
     start: float
     rest: Rest
@@ -54,6 +58,19 @@ class Decay:
     def samples(self) -> int:
         """Samples in each channel."""
         return int(self.values.shape[1])
+
+    def moved(self, samples: int) -> Decay:
+        """Give the decay with its start moved.
+
+        Parameters
+        ----------
+        samples
+            Later, or where negative earlier, at most as far as `earlier` reaches.
+        """
+        whole = np.concatenate([self.earlier, self.values], axis=1)
+        first = self.earlier.shape[1] + samples
+        start = self.start + samples / self.rate
+        return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start)
 
     @property
     def end(self) -> float:

@@ -13,6 +13,7 @@ wheel's reading up, at once and far more steeply than any spring.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,8 +27,23 @@ Real = NDArray[np.float64]
 _JUMP = 0.015
 """s after the release within which the wheel's reading has jumped, blocks and filters being what they are."""
 
-_ON_THE_GROUND = 0.25
-"""Part of the static tyre force above which a tyre is certainly on the ground."""
+_ON_THE_GROUND = 0.4
+"""Part of the static tyre force above which a tyre is certainly on the ground, for all that is rough in its estimate."""
+
+
+class Landing(NamedTuple):
+    """When free vibration begins.
+
+    Attributes
+    ----------
+    possible
+        First sample after every wheel that fell has landed once: before it nothing is free vibration.
+    certain
+        First sample from which no tyre can have left the ground again.
+    """
+
+    possible: int
+    certain: int
 
 
 def suspension_jump(
@@ -69,8 +85,8 @@ def find_decay(
     suspension: Mapping[Wheel, float],
     dropped: Sequence[Wheel],
     wheelbase: float,
-) -> int | None:
-    """Find the first sample from which every tyre stays on the ground.
+) -> Landing | None:
+    """Find when every tyre has come down, and from when on it stays there.
 
     Parameters
     ----------
@@ -89,7 +105,7 @@ def find_decay(
 
     Returns
     -------
-    int or None
+    Landing or None
         None where no wheel that can be judged ever left the ground and came back.
     """
     reading = values - release.rest.level[:, None] + STANDARD_GRAVITY
@@ -99,7 +115,7 @@ def find_decay(
     places = np.array([sensors[i].position for i in body], dtype=float)
     plane = np.column_stack([np.ones(len(body)), places[:, :2]])
     half_track = float(np.abs(places[:, 1]).mean())
-    last = None
+    first = last = 0
     for channel, sensor in enumerate(sensors):
         if sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
             continue
@@ -110,10 +126,10 @@ def find_decay(
         static = STANDARD_GRAVITY + suspension[sensor.on]
         low = np.flatnonzero(force[release.sample :] < _ON_THE_GROUND * static)
         if low.size:
-            last = max(last or 0, release.sample + int(low[-1]) + 1)
+            last = max(last, release.sample + int(low[-1]) + 1)
         if sensor.on in dropped:
-            last = max(last or 0, _steepest_rise(reading[channel], release.sample))
-    return last
+            first = max(first, _steepest_rise(reading[channel], release.sample))
+    return Landing(first or last, max(first, last)) if first or last else None
 
 
 def _steepest_rise(reading: Real, release: int) -> int:

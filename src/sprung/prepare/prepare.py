@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Fault
 from sprung.prepare.decay import Decay
-from sprung.prepare.landing import find_decay, suspension_jump
+from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
 from sprung.recording import Campaign, Drop, Recording
 from sprung.units import STANDARD_GRAVITY
@@ -70,10 +70,10 @@ def _release(recording: Recording) -> Release | None:
     found = find_release(recording.values[recording.usable], recording.rate)
     if found is None:
         return None
-    spread = np.full((3, len(recording.channels)), np.nan)
-    spread[:, recording.usable] = found.rest[:3]
-    level, variance, neighbour = spread
-    return Release(found.sample, Rest(level, variance, neighbour, found.rest.samples))
+    level = np.full(len(recording.channels), np.nan)
+    noise = np.full((len(recording.channels), found.rest.noise.shape[1]), np.nan)
+    level[recording.usable], noise[recording.usable] = found.rest
+    return Release(found.sample, Rest(level, noise))
 
 
 def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[Wheel, float]:
@@ -97,7 +97,8 @@ def _decay(
     if not recording.usable.any():
         return Fault("missing", where, "no channel of this drop can be used; it is left out", "Record the drop again.")
     faults = list(recording.faults)
-    first = _first_sample(campaign, drop, recording, release, suspension, faults)
+    landing = _landing(campaign, drop, recording, release, suspension, faults)
+    first = landing.certain
     last = recording.values.shape[1] - 1
     if drop.end is not None:
         last = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6)))
@@ -114,6 +115,7 @@ def _decay(
         file=recording.name,
         load=drop.load,
         values=recording.values[:, first : last + 1],
+        earlier=recording.values[:, landing.possible : first],
         rate=recording.rate,
         start=recording.start + first / recording.rate,
         rest=no_rest(len(recording.channels)) if release is None else release.rest,
@@ -121,16 +123,17 @@ def _decay(
     )
 
 
-def _first_sample(
+def _landing(
     campaign: Campaign,
     drop: Drop,
     recording: Recording,
     release: Release | None,
     suspension: dict[Wheel, float],
     faults: list[Fault],
-) -> int:
+) -> Landing:
     if drop.start is not None:
-        return max(0, int(np.ceil((drop.start - recording.start) * recording.rate - 1e-6)))
+        given = max(0, int(np.ceil((drop.start - recording.start) * recording.rate - 1e-6)))
+        return Landing(given, given)
     if release is None:
         faults.append(
             Fault(
@@ -140,13 +143,14 @@ def _first_sample(
                 "Give start = ... for this drop, or let the recording begin before the release.",
             )
         )
-        return 0
+        return Landing(0, 0)
     found = find_decay(recording.values, release, campaign.sensors, suspension, drop.wheels, _wheelbase(campaign))
     if found is not None:
         return found
     # Without a reading at the wheels that fell: the fall itself, and two periods of the slowest usual wheel hop.
     fall = np.sqrt(2 * (drop.height or 0.1) / STANDARD_GRAVITY)
-    return release.sample + int((fall + 0.25) * recording.rate)
+    guessed = release.sample + int((fall + 0.25) * recording.rate)
+    return Landing(guessed, guessed)
 
 
 def _wheelbase(campaign: Campaign) -> float:

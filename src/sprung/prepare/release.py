@@ -29,18 +29,12 @@ class Rest(NamedTuple):
     ----------
     level
         Mean reading of each channel, m/s², shape (channel,); NaN where the recording shows no rest.
-    variance
-        Of each channel about its level and creep, (m/s²)², shape (channel,).
-    neighbour
-        Covariance of neighbouring samples, (m/s²)², shape (channel,): zero for white noise.
-    samples
-        How many samples these are taken from; 0 where the recording shows no rest.
+    noise
+        Readings less level and creep, m/s², shape (channel, time); no samples where the recording shows no rest.
     """
 
     level: Real
-    variance: Real
-    neighbour: Real
-    samples: int
+    noise: Real
 
 
 class Release(NamedTuple):
@@ -60,8 +54,7 @@ class Release(NamedTuple):
 
 def no_rest(channels: int) -> Rest:
     """Give the rest of a recording that shows none."""
-    level, variance, neighbour = np.full((3, channels), np.nan)
-    return Rest(level, variance, neighbour, 0)
+    return Rest(np.full(channels, np.nan), np.empty((channels, 0)))
 
 
 def find_release(values: Real, rate: float) -> Release | None:
@@ -109,7 +102,4 @@ def find_release(values: Real, rate: float) -> Release | None:
     centred = np.arange(rest.shape[1]) - (rest.shape[1] - 1) / 2
     slope = rest @ centred / (centred @ centred)
     mean = rest.mean(axis=1)
-    left = rest - mean[:, None] - slope[:, None] * centred
-    freedom = rest.shape[1] - 2
-    neighbour = (left[:, 1:] * left[:, :-1]).sum(axis=1) / freedom
-    return Release(sample, Rest(mean, (left**2).sum(axis=1) / freedom, neighbour, rest.shape[1]))
+    return Release(sample, Rest(mean, rest - mean[:, None] - slope[:, None] * centred))

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit
+from sprung.identification import Fit, of_colour
 from sprung.prepare import Decay
 
 Real = NDArray[np.float64]
+
+_SHORTEST_REST = 10
+"""Samples below which a rest says nothing about the noise."""
 
 _SIGNIFICANT = 4.0
 """Standard errors by which an excess must be real before it counts."""
@@ -62,44 +66,57 @@ def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     Notes
     -----
     White noise has no covariance from one sample to the next, and what the sensors do at rest is not the model's fault.
-    So model error shows in two ways: as covariance between neighbouring residuals, and as more variance than at rest.
-    Each counts where it exceeds its own sampling error, and the larger of the two is taken.
+    So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
+    variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
     residuals = residual_records(fit, decays)
-    signal = np.array([np.nanvar(np.where(d.usable[:, None], d.values, 0.0), axis=1) for d in decays])
-    samples = np.array([d.usable * d.samples for d in decays], dtype=float)
-    variance = np.array([np.nan_to_num(r).var(axis=1) for r in residuals])
-    neighbour = np.array([np.mean(np.nan_to_num(r[:, 1:] * r[:, :-1]), axis=1) for r in residuals])
+    signals = [decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays]
+    rests = [decay.rest.noise for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST]
+    left, signal = _moments(residuals), _moments(signals)
+    rest = _moments(rests) if rests else _Moments(*np.zeros((3, len(left.variance))))
+    known = rest.samples > 0
 
-    count = np.maximum(samples.sum(axis=0), 1.0)
-    pooled = (samples * variance).sum(axis=0) / count
-    coloured = (samples * neighbour).sum(axis=0) / count
-    rest = np.array([d.rest.variance for d in decays])
-    rest_samples = np.array([np.where(d.usable, d.rest.samples, 0) for d in decays], dtype=float)
-    known_rest = rest_samples.sum(axis=0)
-    rest_variance = _pool(rest, rest_samples)
-    rest_neighbour = _pool(np.array([d.rest.neighbour for d in decays]), rest_samples)
-
-    by_colour = coloured - np.where(known_rest > 0, rest_neighbour, 0.0)
-    colour_error = pooled * np.sqrt(1 / count + np.where(known_rest > 0, 1 / np.maximum(known_rest, 1.0), 0.0))
-    by_variance = np.where(known_rest > 0, pooled - rest_variance, 0.0)
-    variance_error = np.sqrt(2 / count * pooled**2 + 2 / np.maximum(known_rest, 1.0) * rest_variance**2)
-    excess = np.maximum(
-        np.where(by_colour > _SIGNIFICANT * colour_error, by_colour, 0.0),
-        np.where(by_variance > _SIGNIFICANT * variance_error, by_variance, 0.0),
+    # Sensors with a colour of their own have as few independent samples in their short rests as that colour leaves.
+    colour = (
+        of_colour(rests, [decay.rate for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST])
+        if rests
+        else 1.0
     )
+    effective = np.maximum(rest.samples / colour, 1.0)
+    at_rest = np.where(known, rest.variance / np.maximum(1 - 2 * len(rests) / effective, 0.5), 0.0)
+
+    by_colour = left.neighbour - np.where(known, rest.neighbour, 0.0)
+    by_variance = np.where(known, left.variance - at_rest, 0.0)
+    samples = np.maximum(left.samples, 1.0)
+    error = np.sqrt(2) * left.variance * np.sqrt(colour / samples + np.where(known, 1 / effective, 0.0))
+    excess = np.max([np.where(part > _SIGNIFICANT * error, part, 0.0) for part in (by_colour, by_variance)], axis=0)
+
     tiny = np.finfo(float).tiny
-    pooled_signal = (samples * signal).sum(axis=0) / count
-    used = samples > 0
-    drop_excess = np.maximum(np.where(used, variance - (pooled - excess), 0.0).sum(axis=1), 0.0)
+    noise = left.variance - excess
+    by_drop = [
+        np.sqrt(max(float(np.nansum(record.var(axis=1) - noise)), 0.0) / max(float(np.nansum(one.var(axis=1))), tiny))
+        for record, one in zip(residuals, signals, strict=True)
+    ]
     return Misfit(
-        relative=np.sqrt(excess / np.maximum(pooled_signal, tiny)),
-        ratio=np.sqrt(np.where(known_rest > 0, pooled / np.maximum(rest_variance, tiny), np.nan)),
-        by_drop=np.sqrt(drop_excess / np.maximum(np.where(used, signal, 0.0).sum(axis=1), tiny)),
+        relative=np.sqrt(excess / np.maximum(signal.variance, tiny)),
+        ratio=np.sqrt(np.where(known, left.variance / np.maximum(at_rest, tiny), np.nan)),
+        by_drop=np.array(by_drop),
     )
 
 
-def _pool(values: Real, samples: Real) -> Real:
-    total = np.where(samples > 0, samples * np.nan_to_num(values), 0.0).sum(axis=0)
-    pooled: Real = total / np.maximum(samples.sum(axis=0), 1.0)
-    return pooled
+class _Moments(NamedTuple):
+    variance: Real
+    neighbour: Real
+    samples: Real
+
+
+def _moments(records: Sequence[Real]) -> _Moments:
+    """Pool variance and covariance of neighbouring samples over records, by channel; NaN channels count nothing."""
+    variance, neighbour, samples = np.zeros((3, len(records[0])))
+    for record in records:
+        clean = np.nan_to_num(record)
+        variance += np.sum(clean**2, axis=1)
+        neighbour += np.sum(clean[:, 1:] * clean[:, :-1], axis=1)
+        samples += np.sum(~np.isnan(record), axis=1)
+    count = np.maximum(samples, 1.0)
+    return _Moments(variance / count, neighbour / count, samples)

@@ -1,0 +1,92 @@
+"""Contact: which samples the tyres were on the ground for, told by the fitted vehicle.
+
+Before a fit, the accelerometers say roughly when the last tyre has come down for good. A fitted vehicle says it exactly:
+carried backward and forward from its state at the start of a decay, it shows how far each tyre is compressed, and free
+vibration begins where the last one last touched. What lies between is where wheel hop is largest and tells most.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification.joint import Fit
+from sprung.prepare import Decay
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import LinearModel
+
+Real = NDArray[np.float64]
+
+_COMPRESSED = 0.05
+"""Part of its static compression below which a tyre may have left the ground, the fit being what it is."""
+
+_PASSES = 4
+
+_NO_WORSE = 1.1
+"""Noise after moving the starts over noise before, above which the records say that they were not to be moved."""
+
+_MOST = 0.5
+"""Part of a decay that may be given up: a model to which tyres seem to hop for longer is not to be trusted in this."""
+
+
+def fit_from_contact(
+    decays: Sequence[Decay],
+    models: Mapping[str, LinearModel],
+    first: Fit,
+    fit: Callable[[Sequence[Decay], Mapping[str, float]], Fit],
+) -> tuple[tuple[Decay, ...], Fit]:
+    """Let the fitted vehicle say where each decay begins, and fit again, until it stays with what it said.
+
+    Parameters
+    ----------
+    decays
+        With starts that are certain rather than early.
+    models
+        Equations of motion by load name.
+    first
+        The fit of these decays.
+    fit
+        Fits decays from a start.
+
+    Returns
+    -------
+    decays
+        With starts where the last tyre last touched.
+    fit
+        Of these decays.
+    """
+    best, found = tuple(decays), first
+    for _ in range(_PASSES):
+        if not found.converged:
+            break
+        shifts = [
+            _shift(decay, models[decay.load], found, state) for decay, state in zip(best, found.states, strict=True)
+        ]
+        if not any(shifts):
+            break
+        moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
+        again = fit(moved, dict(zip(found.names, found.values.tolist(), strict=True)))
+        if not again.converged or np.any(again.noise > _NO_WORSE * found.noise):
+            break
+        steps = found.iterations + again.iterations
+        best = moved
+        found = replace(again, iterations=steps, starts=found.starts, starts_agreeing=found.starts_agreeing)
+    return best, found
+
+
+def _shift(decay: Decay, model: LinearModel, fit: Fit, state: Real) -> int:
+    """Give by how many samples the start of a decay has to be moved."""
+    matrices = model.matrices(fit.values)
+    weight = matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * STANDARD_GRAVITY
+    static = np.linalg.solve(matrices.K, weight)[3:, None]  # how far the standing vehicle compresses its tyres
+    earlier = decay.earlier.shape[1]
+    poles, shapes = np.linalg.eig(matrices.state)
+    amplitudes = np.linalg.solve(shapes, state)
+    samples = np.arange(-earlier, decay.samples)
+    motion = ((shapes[3:7] * amplitudes) @ np.exp(poles[:, None] * samples / decay.rate)).real
+    loose = np.flatnonzero((static - motion < _COMPRESSED * static).any(axis=0))
+    first = int(loose[-1]) + 1 if loose.size else 0
+    return first - earlier if first - earlier < _MOST * decay.samples else 0

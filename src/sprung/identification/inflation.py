@@ -1,0 +1,91 @@
+"""How much less the records tell than as many independent samples of the right model would.
+
+Two things show it without any other model: residuals that are coloured, and drops that contradict each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+_SPAN = 0.1
+"""s over which residuals are correlated: drift and model error last longer, but then they fill it."""
+
+_SIGNIFICANT = 3.0
+"""Standard errors by which an excess must be real before it counts."""
+
+_SEEN = 1e-9
+"""Information, as a part of the largest, below which one drop says nothing about a direction."""
+
+
+def of_colour(residuals: Sequence[Real], rates: Sequence[float]) -> Real:
+    """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
+
+    Parameters
+    ----------
+    residuals
+        One record for each drop, shape (channel, time), NaN in channels that are left out.
+    rates
+        Samples per second of each.
+
+    Returns
+    -------
+    ndarray
+        For each channel 1 + 2 Σ ρ_k over the lags within 0.1 s, weighted after Bartlett (Newey and West, Econometrica 55
+        (1987) 703), never below 1; 1 where the excess is not significant. Shape (channel,).
+    """
+    channels = len(residuals[0])
+    total, weighted, spread, count = np.zeros((4, channels))
+    for record, rate in zip(residuals, rates, strict=True):
+        lags = min(max(int(_SPAN * rate), 1), record.shape[1] // 4)
+        weights = 1 - np.arange(1, lags + 1) / (lags + 1)
+        clean = np.nan_to_num(record)
+        used = ~np.isnan(record).any(axis=1)
+        samples = record.shape[1]
+        spectrum = np.abs(np.fft.rfft(clean, n=2 * samples, axis=1)) ** 2
+        autocovariance = np.fft.irfft(spectrum, axis=1)[:, : lags + 1]
+        total += autocovariance[:, 0]
+        weighted += 2 * autocovariance[:, 1:] @ weights
+        spread += used * samples * 4 * float(weights @ weights)
+        count += used * samples
+    safe = np.maximum(total, np.finfo(float).tiny)
+    excess = weighted / safe
+    error = np.sqrt(spread) / np.maximum(count, 1)
+    return np.where(excess > _SIGNIFICANT * error, 1 + excess, 1.0)
+
+
+def of_disagreement(scores: Real, informations: Real) -> float:
+    """Estimate by how much the drops differ from each other beyond their noise.
+
+    Parameters
+    ----------
+    scores
+        Gradient of the log-likelihood of each drop at the joint optimum, in free directions; shape (drop, direction).
+    informations
+        Fisher information of each drop in the same directions; shape (drop, direction, direction).
+
+    Returns
+    -------
+    float
+        Birge's ratio, squared: each drop's own correction to the joint estimate, in units of its own uncertainty, squared
+        and averaged (Birge, Phys. Rev. 40 (1932) 207). 1 where the excess is not significant, or with too few drops.
+
+    Notes
+    -----
+    A model error that is the same in every drop goes unseen here; one that depends on how far or which way the vehicle
+    moved, as geometry and friction do, does not.
+    """
+    total, freedom = 0.0, -scores.shape[1]
+    for score, information in zip(scores, informations, strict=True):
+        eigenvalues, vectors = np.linalg.eigh(information)
+        seen = eigenvalues > _SEEN * max(eigenvalues[-1], 0.0)
+        total += float(np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen]))
+        freedom += int(seen.sum())
+    if freedom <= 0:
+        return 1.0
+    ratio = total / freedom
+    return ratio if ratio > 1 + _SIGNIFICANT * np.sqrt(2 / freedom) else 1.0

@@ -1,0 +1,80 @@
+"""The verdict: it accepts what is clean and says no to what is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import sprung
+from sprung.recording import Campaign
+from sprung.vehicle import TABLE_1_CAR
+
+LOAD = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
+
+
+def campaign(noise: float = 0.02, seed: int = 1) -> Campaign:
+    return sprung.simulate(
+        TABLE_1_CAR, loads=[LOAD], noise=noise, seed=seed, known={"total_mass": TABLE_1_CAR.total_mass}
+    )
+
+
+@pytest.mark.parametrize("noise", [0.002, 0.02, 0.2])
+def test_clean_campaigns_are_accepted(noise: float) -> None:
+    assert [sprung.identify(campaign(noise, seed)).verdict.state for seed in range(4)] == ["accept"] * 4
+
+
+def spoil_sign(clean: Campaign) -> Campaign:
+    flipped = np.ones((8, 1))
+    flipped[1] = -1
+    return replace(clean, recordings=tuple(replace(r, values=r.values * flipped) for r in clean.recordings))
+
+
+def spoil_exchange(clean: Campaign) -> Campaign:
+    order = [0, 1, 2, 3, 6, 5, 4, 7]  # front left and rear left wheels
+    return replace(clean, recordings=tuple(replace(r, values=r.values[order]) for r in clean.recordings))
+
+
+def spoil_unit(clean: Campaign) -> Campaign:
+    scale = np.ones((8, 1))
+    scale[2] = 1 / 9.80665
+    return replace(clean, recordings=tuple(replace(r, values=r.values * scale) for r in clean.recordings))
+
+
+def spoil_place(clean: Campaign) -> Campaign:
+    x, y, z = clean.sensors[0].position or (0.0, 0.0, 0.0)
+    moved = clean.sensors[0].model_copy(update={"position": (x - 0.6, y, z)})
+    return replace(clean, sensors=(moved, *clean.sensors[1:]))
+
+
+def spoil_friction(clean: Campaign) -> Campaign:
+    """Add to each channel what depends on the sign of its velocity: a crude picture of something the model lacks."""
+    spoilt = []
+    for recording in clean.recordings:
+        velocity = np.cumsum(recording.values - recording.values[:, :150].mean(axis=1, keepdims=True), axis=1)
+        spoilt.append(replace(recording, values=recording.values - 0.3 * np.tanh(velocity)))
+    return replace(clean, recordings=tuple(spoilt))
+
+
+@pytest.mark.parametrize("spoil", [spoil_sign, spoil_exchange, spoil_unit, spoil_place, spoil_friction])
+def test_what_the_model_does_not_explain_is_not_accepted(spoil: object) -> None:
+    assert callable(spoil)
+    verdict = sprung.identify(spoil(campaign())).verdict
+    assert verdict.state != "accept"
+    assert "does not explain" in verdict.reasons[0] or "not converge" in verdict.reasons[0]
+
+
+def test_coloured_noise_is_not_taken_for_model_error() -> None:
+    """The sensors do the same at rest, so it is their noise; but the error bars must grow."""
+    random = np.random.default_rng(5)
+    clean = campaign(0.0)
+    coloured = []
+    for recording in clean.recordings:
+        noise = random.standard_normal(recording.values.shape)
+        for k in range(1, noise.shape[1]):
+            noise[:, k] = 0.9 * noise[:, k - 1] + np.sqrt(1 - 0.81) * noise[:, k]
+        coloured.append(replace(recording, values=recording.values + 0.02 * noise))
+    result = sprung.identify(replace(clean, recordings=tuple(coloured)))
+    assert result.verdict.state == "accept"
+    assert result.fit.inflation > 4
