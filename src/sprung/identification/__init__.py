@@ -1,25 +1,30 @@
 """From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
 
 from sprung.identification.added_mass import added_mass
-from sprung.identification.contact import fit_from_contact
+from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude
 from sprung.identification.inflation import of_colour
-from sprung.identification.joint import Fit, fit_jointly
+from sprung.identification.joint import Fit, describe, fit_jointly
 from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.structured import StructuredFit, structured_least_squares
+from sprung.identification.summit import NEAR, Summit, ascend
 
 __all__ = [
+    "NEAR",
     "Correlation",
     "Estimates",
     "Fit",
     "ModeEstimate",
     "Scale",
     "StructuredFit",
+    "Summit",
     "Unidentifiable",
     "added_mass",
+    "ascend",
+    "ascend_from_contact",
     "conclude",
-    "fit_from_contact",
+    "describe",
     "fit_jointly",
     "mode_estimates",
     "of_colour",

@@ -23,12 +23,45 @@ NOISE_FLOOR = 1e-6
 RANK = 1e-12
 """Information, as a part of the largest, that is nothing but rounding."""
 
-_CONVERGED = 1e-8  # expected gain in log-likelihood: the parameters are within 1e-4 of a standard error
+NO_INFORMATION = 1.0
+"""Fisher information of a logarithm below which its value cannot be told from e times it."""
+
+CONVERGED = 1e-8
+"""Expected gain in log-likelihood at which a climb has ended: the parameters are within 1e-4 of a standard error."""
+
+FAR, CLOSE_BY = 1e-3, 1e-9
+"""Damping of the first step, as a part of each parameter's own information."""
+
 _SETTLED = 1e-3  # relative change of the noise levels
 _SAME = 0.01  # distance in standard errors, squared, within which a climb will end where another one has
 _ITERATIONS = 100
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
+
+
+def told_directions(information: Real) -> Real:
+    """Give the directions of which the records and what is known say anything.
+
+    Parameters
+    ----------
+    information
+        Fisher information in logarithms of the parameters, shape (direction, direction).
+
+    Returns
+    -------
+    ndarray
+        Orthonormal columns, shape (direction, told).
+    """
+    eigenvalues, vectors = np.linalg.eigh(information)
+    return vectors[:, eigenvalues >= least_information(eigenvalues)]
+
+
+def least_information(eigenvalues: Real) -> float:
+    """Give the information below which a direction is not determined.
+
+    That is one, where a value cannot be told from e times it, or rounding beside the largest information there is.
+    """
+    return max(NO_INFORMATION, RANK * float(eigenvalues.max(initial=0.0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +176,9 @@ class Climb:
         free = self.knowledge.free(point.u) * self.knowledge.coordinates.slopes(point.u)[:, None]
         return point.evaluation.gradient @ free, free.T @ point.evaluation.information @ free
 
-    def to_the_top(self, u: Real, summit: Point | None = None) -> Point:
+    def to_the_top(
+        self, u: Real, summit: Point | None = None, enough: float = CONVERGED, damping: float = FAR
+    ) -> Point:
         """Climb from a start.
 
         Parameters
@@ -152,6 +187,10 @@ class Climb:
             Coordinates to start from, exact knowledge fulfilled.
         summit
             Where another climb has ended: coming within a tenth of a standard error of it, this one ends there too.
+        enough
+            Expected gain in log-likelihood at which to stop.
+        damping
+            At the first step: `FAR` from a start that is only a guess, `CLOSE_BY` from one that is nearly there.
 
         Returns
         -------
@@ -160,7 +199,6 @@ class Climb:
         weights = self._observations / self._energy
         residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), weights)
         point = self._evaluate(u, 1 / self.variance(residual, np.zeros_like(residual)), 0)
-        damping = 1e-3
         while point.steps < _ITERATIONS:
             information, gradient, free = self.system(point)
             if not gradient.size:
@@ -174,7 +212,7 @@ class Climb:
                 return replace(point, converged=gain < 1e-3)
             settled = np.abs(np.log(moved.weights / point.weights)).max() < _SETTLED
             point = moved
-            if gain < _CONVERGED and settled:
+            if gain < enough and (settled or enough > CONVERGED):
                 return replace(point, converged=True)
         return point
 
@@ -184,22 +222,28 @@ class Climb:
     def _step(
         self, point: Point, information: Real, gradient: Real, free: Real, damping: float
     ) -> tuple[Point | None, float, float]:
-        """Take one damped step that does not lose; give None where there is none left to take."""
+        """Take one damped step that does not lose; give None where there is none left to take.
+
+        Directions of which the records say nothing yet are left alone: they would only wander.
+        """
         now = self._weighted(point.u, point.evaluation.residual, point.weights)
-        diagonal = np.diag(information)
-        diagonal = np.maximum(diagonal, RANK * diagonal.max())
-        gain = np.inf
+        told = told_directions(information)
+        system, slope = told.T @ information @ told, told.T @ gradient
+        scale = told.T @ (np.diag(information)[:, None] * told)
+        gain = 0.0
         while damping < _MOST_DAMPING:
-            step = np.linalg.solve(information + np.diag(damping * diagonal), gradient)
-            gain = float(gradient @ step)
-            move = free @ step
+            step = np.linalg.solve(system + damping * scale, slope)
+            gain = float(slope @ step)
+            move = free @ (told @ step)
             move *= min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300))
             u = self.knowledge.bind(point.u + move)
             residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), point.weights)
-            if self._weighted(u, residual, point.weights) <= now + 1e-10 * abs(now):
+            won = now - self._weighted(u, residual, point.weights)
+            if won >= -1e-10 * abs(now):
                 weights = 1 / self.variance(residual, point.evaluation.leverage)
-                return self._evaluate(u, weights, point.steps + 1), max(damping / 10, _LEAST_DAMPING), gain
-            damping = max(damping, 1e-8) * 8
+                damping = max(damping / 10, _LEAST_DAMPING) if won > 0.25 * gain else 8 * damping
+                return self._evaluate(u, weights, point.steps + 1), damping, gain
+            damping = max(damping, 1e-6) * 8
         return None, damping, gain
 
     def _weighted(self, u: Real, residual: Real, weights: Real) -> float:

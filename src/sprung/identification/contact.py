@@ -8,12 +8,12 @@ vibration begins where the last one last touched. What lies between is where whe
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification.joint import Fit
+from sprung.identification.climb import CONVERGED
+from sprung.identification.summit import NEAR, Summit
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import LinearModel
@@ -32,12 +32,12 @@ _MOST = 0.5
 """Part of a decay that may be given up: a model to which tyres seem to hop for longer is not to be trusted in this."""
 
 
-def fit_from_contact(
+def ascend_from_contact(
     decays: Sequence[Decay],
     models: Mapping[str, LinearModel],
-    first: Fit,
-    fit: Callable[[Sequence[Decay], Mapping[str, float]], Fit],
-) -> tuple[tuple[Decay, ...], Fit]:
+    first: Summit,
+    again: Callable[[Sequence[Decay], Mapping[str, float], float], Summit],
+) -> tuple[tuple[Decay, ...], Summit]:
     """Let the fitted vehicle say where each decay begins, and fit again, until it stays with what it said.
 
     Parameters
@@ -47,39 +47,33 @@ def fit_from_contact(
     models
         Equations of motion by load name.
     first
-        The fit of these decays.
-    fit
-        Fits decays from a start.
+        Where the fit of these decays ended.
+    again
+        Fits decays from parameter values, to an expected gain in log-likelihood that is enough.
 
     Returns
     -------
     decays
         With starts where the last tyre last touched.
-    fit
-        Of these decays.
+    summit
+        Where the fit of these decays ends.
     """
     best, found = tuple(decays), first
     for _ in range(_PASSES):
-        if not found.converged:
-            break
-        shifts = [
-            _shift(decay, models[decay.load], found, state) for decay, state in zip(best, found.states, strict=True)
-        ]
-        if not any(shifts):
+        shifts = [_shift(d, models[d.load], found.values, state) for d, state in zip(best, found.states, strict=True)]
+        if not found.converged or not any(shifts):
             break
         moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
-        again = fit(moved, dict(zip(found.names, found.values.tolist(), strict=True)))
-        if not again.converged or np.any(again.noise > _NO_WORSE * found.noise):
+        next_one = again(moved, found.parameters, NEAR).after(found)
+        if not next_one.converged or np.any(next_one.noise > _NO_WORSE * found.noise):
             break
-        steps = found.iterations + again.iterations
-        best = moved
-        found = replace(again, iterations=steps, starts=found.starts, starts_agreeing=found.starts_agreeing)
-    return best, found
+        best, found = moved, next_one
+    return best, again(best, found.parameters, CONVERGED).after(found)
 
 
-def _shift(decay: Decay, model: LinearModel, fit: Fit, state: Real) -> int:
+def _shift(decay: Decay, model: LinearModel, values: Real, state: Real) -> int:
     """Give by how many samples the start of a decay has to be moved."""
-    matrices = model.matrices(fit.values)
+    matrices = model.matrices(values)
     weight = matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * STANDARD_GRAVITY
     static = np.linalg.solve(matrices.K, weight)[3:, None]  # how far the standing vehicle compresses its tyres
     earlier = decay.earlier.shape[1]

@@ -35,27 +35,24 @@ def of_colour(residuals: Sequence[Real], rates: Sequence[float]) -> Real:
     Returns
     -------
     ndarray
-        For each channel 1 + 2 Σ ρ_k over the lags within 0.1 s, weighted after Bartlett (Newey and West, Econometrica 55
-        (1987) 703), never below 1; 1 where the excess is not significant. Shape (channel,).
+        For each channel the variance of means over 0.1 s, times the samples in them, over the variance of single samples
+        (batch means: Law and Kelton, Simulation Modeling and Analysis, section 9.5.3). Never below 1; 1 where the excess
+        is not significant. Shape (channel,).
     """
     channels = len(residuals[0])
-    total, weighted, spread, count = np.zeros((4, channels))
+    total, means, samples, batches = np.zeros((4, channels))
     for record, rate in zip(residuals, rates, strict=True):
-        lags = min(max(int(_SPAN * rate), 1), record.shape[1] // 4)
-        weights = 1 - np.arange(1, lags + 1) / (lags + 1)
-        clean = np.nan_to_num(record)
+        length = min(max(int(_SPAN * rate), 1), record.shape[1])
+        count = record.shape[1] // length
+        batch = np.nan_to_num(record[:, : count * length]).reshape(channels, count, length)
         used = ~np.isnan(record).any(axis=1)
-        samples = record.shape[1]
-        spectrum = np.abs(np.fft.rfft(clean, n=2 * samples, axis=1)) ** 2
-        autocovariance = np.fft.irfft(spectrum, axis=1)[:, : lags + 1]
-        total += autocovariance[:, 0]
-        weighted += 2 * autocovariance[:, 1:] @ weights
-        spread += used * samples * 4 * float(weights @ weights)
-        count += used * samples
-    safe = np.maximum(total, np.finfo(float).tiny)
-    excess = weighted / safe
-    error = np.sqrt(spread) / np.maximum(count, 1)
-    return np.where(excess > _SIGNIFICANT * error, 1 + excess, 1.0)
+        total += np.sum(batch**2, axis=(1, 2))
+        means += length * np.sum(batch.mean(axis=2) ** 2, axis=1)
+        samples += used * count * length
+        batches += used * count
+    variance = np.maximum(total / np.maximum(samples, 1.0), np.finfo(float).tiny)
+    ratio = means / np.maximum(batches, 1.0) / variance
+    return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
 
 
 def of_disagreement(scores: Real, informations: Real) -> float:

@@ -245,8 +245,11 @@ class Likelihood:
                 continue
             amplitudes = _solve_amplitudes(group, modes, weights).amplitudes
             for member, q, samples in zip(group.members, amplitudes, group.samples, strict=True):
-                powers = np.exp(modes.poles[:, None] * (np.arange(samples) / group.rate))
-                record = ((modes.shapes * q) @ powers).real
+                # A pole and its conjugate add the same real part twice.
+                upper = modes.poles.imag >= 0
+                twice = np.where(modes.poles.imag > 0, 2.0, 1.0)[upper]
+                powers = np.exp(modes.poles[upper, None] * (np.arange(samples) / group.rate))
+                record = ((modes.shapes * q)[:, upper] * twice @ powers).real
                 records[member] = record - record.mean(axis=1, keepdims=True)
         return records
 

@@ -10,13 +10,13 @@ import numpy as np
 from sprung.estimate import Known
 from sprung.vehicle import Sensor
 
-BODY_FREQUENCIES = (0.9, 1.25, 1.75, 2.5, 3.5)
+BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 """Hz: from a limousine to an empty lorry."""
 
-HOP_FREQUENCIES = (8.0, 11.0, 15.0, 21.0)
+HOP_FREQUENCIES = (8.5, 12.0, 18.0)
 """Hz."""
 
-DAMPING_RATIOS = (0.1, 0.25, 0.6)
+DAMPING_RATIOS = (0.12, 0.35, 0.8)
 
 _GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
 _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06

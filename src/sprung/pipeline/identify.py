@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 from importlib.metadata import version
 
 import numpy as np
 
 from sprung.errors import Problems
-from sprung.identification import Fit, conclude, fit_from_contact, fit_jointly, mode_estimates
+from sprung.identification import (
+    NEAR,
+    Fit,
+    Summit,
+    ascend,
+    ascend_from_contact,
+    conclude,
+    describe,
+    mode_estimates,
+)
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
@@ -64,50 +72,51 @@ def identify(
     progress("finding the decays")
     prepared = prepare(campaign)
     _need_decays(campaign, prepared)
-    first = _fit(campaign, choice, prepared.decays, None, progress)
+    first = _ascend(campaign, choice, prepared.decays, None, NEAR, progress)
     choice, first, why = _choose_tracks(campaign, choice, prepared.decays, first, progress)
-    decays, fit = fit_from_contact(
+    decays, summit = ascend_from_contact(
         prepared.decays,
         choice.models,
         first,
-        lambda decays, start: _fit(campaign, choice, decays, start, progress),
+        lambda decays, start, enough: _ascend(campaign, choice, decays, start, enough, progress),
     )
     progress("judging the fit")
-    return _result(campaign, choice, why, prepared._replace(decays=decays), fit)
+    return _result(campaign, choice, why, prepared._replace(decays=decays), describe(summit, decays))
 
 
-def _fit(
+def _ascend(
     campaign: Campaign,
     choice: Choice,
     decays: Sequence[Decay],
     start: Mapping[str, float] | None,
+    enough: float,
     progress: Callable[[str], None],
-) -> Fit:
-    return fit_jointly(decays, choice.models, campaign.sensors, choice.known, start=start, progress=progress)
+) -> Summit:
+    models, sensors, known = choice.models, campaign.sensors, choice.known
+    return ascend(decays, models, sensors, known, start=start, enough=enough, progress=progress)
 
 
 def _choose_tracks(
-    campaign: Campaign, shared: Choice, decays: Sequence[Decay], fit: Fit, progress: Callable[[str], None]
-) -> tuple[Choice, Fit, str]:
+    campaign: Campaign, shared: Choice, decays: Sequence[Decay], found: Summit, progress: Callable[[str], None]
+) -> tuple[Choice, Summit, str]:
     """Let the records say whether springs and dampers share their half-distances, where nobody else does.
 
     Two more parameters have to gain more than the Bayesian information criterion asks for them (Schwarz, Ann. Stat. 6
-    (1978) 461), in units of what the residuals are worth.
+    (1978) 461), the drops' disagreement allowed for.
     """
     if not shared.open:
-        return shared, fit, f"half-distances {shared.tracks}, as the campaign says or what is known implies"
+        return shared, found, f"half-distances {shared.tracks}, as the campaign says or what is known implies"
     separate = choose_model(campaign, "separate", shared.extras)
-    start = dict(zip(fit.names, fit.values.tolist(), strict=True))
+    start = found.parameters
     start |= {f"t_{axle}{which}": start[f"t_{axle}"] for axle in "fr" for which in "12"}
     progress("springs and dampers apart")
-    other = _fit(campaign, separate, decays, start, progress)
-    gain = 2 * (other.loglikelihood - fit.loglikelihood) / other.inflation
+    other = _ascend(campaign, separate, decays, start, NEAR, progress).after(found)
+    gain = 2 * (other.loglikelihood - found.loglikelihood) / other.disagreement
     asked = 2 * np.log(sum(decay.usable.sum() * decay.samples for decay in decays))
     numbers = f"gains {max(gain, 0.0):.0f} in 2 ln(likelihood) where {asked:.0f} is asked of two more parameters"
     if gain > asked and other.converged:
-        other = replace(other, starts=fit.starts, starts_agreeing=fit.starts_agreeing)
         return separate, other, f"half-distances of springs and dampers apart: it {numbers}"
-    return shared, fit, f"springs and dampers share their half-distances: parting them {numbers}"
+    return shared, found, f"springs and dampers share their half-distances: parting them {numbers}"
 
 
 def _need_decays(campaign: Campaign, prepared: Prepared) -> None:

@@ -1,0 +1,158 @@
+"""The summit of the likelihood: where the joint fit ends, from starts of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimate import Known
+from sprung.identification.climb import CLOSE_BY, CONVERGED, FAR, Climb, Point
+from sprung.identification.inflation import of_disagreement
+from sprung.identification.knowledge import Coordinates, Knowledge
+from sprung.identification.likelihood import Likelihood
+from sprung.identification.start import catalogue
+from sprung.prepare import Decay
+from sprung.vehicle import PARAMETERS, LinearModel, Rows, Sensor
+
+Real = NDArray[np.float64]
+
+NEAR = 0.01
+"""Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
+
+_STARTS = 3
+"""How many of the catalogue's vehicles are refined: those that explain the records best as they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Summit:
+    """Where the fit of some decays ends.
+
+    Attributes
+    ----------
+    climb
+        The likelihood and what is known.
+    point
+        The place.
+    steps
+        Steps taken from the winning start.
+    starts, starts_agreeing
+        How many starts were refined, and how many of them ended here.
+    """
+
+    climb: Climb
+    point: Point
+    steps: int
+    starts: int
+    starts_agreeing: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return self.climb.knowledge.coordinates.names
+
+    @cached_property
+    def values(self) -> Real:
+        """Parameter values, SI, shape (parameter,)."""
+        return self.climb.knowledge.coordinates.values(self.point.u)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameter values, SI, by name."""
+        return dict(zip(self.names, self.values.tolist(), strict=True))
+
+    @property
+    def converged(self) -> bool:
+        """Whether the last step promised no further gain."""
+        return self.point.converged
+
+    @property
+    def noise(self) -> Real:
+        """Noise level of each channel, m/s², shape (channel,)."""
+        evaluation = self.point.evaluation
+        noise: Real = np.sqrt(self.climb.variance(evaluation.residual, evaluation.leverage))
+        return noise
+
+    @property
+    def loglikelihood(self) -> float:
+        """Up to a constant."""
+        return -0.5 * self.climb.cost(self.point)
+
+    @cached_property
+    def disagreement(self) -> float:
+        """By how much the drops contradict each other, as a factor on every variance; 1 where not significantly."""
+        return of_disagreement(*self.climb.by_drop(self.point))
+
+    @property
+    def states(self) -> Real:
+        """{X, Ẋ} of each drop at the start of its decay, SI, shape (drop, 14)."""
+        return self.climb.likelihood.states(self.values, self.point.weights)
+
+    def after(self, before: Summit) -> Summit:
+        """Give this summit with the history of the one from which it was reached."""
+        steps = before.steps + self.steps
+        return replace(self, steps=steps, starts=before.starts, starts_agreeing=before.starts_agreeing)
+
+
+def ascend(
+    decays: Sequence[Decay],
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, Known],
+    *,
+    start: Mapping[str, float] | None = None,
+    enough: float = CONVERGED,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Summit:
+    """Maximise the likelihood of all decays.
+
+    Parameters
+    ----------
+    decays
+        The decays, their channels in the order of `sensors`.
+    models
+        Equations of motion by load name, all over the same parameters.
+    sensors
+        The sensors.
+    known
+        Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
+    start
+        Parameter values, SI, to start from; the catalogue of usual vehicles is tried where it is left out.
+    enough
+        Expected gain in log-likelihood at which to stop.
+    progress
+        Told what is being done.
+
+    Returns
+    -------
+    Summit
+    """
+    names = next(iter(models.values())).names
+    likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
+    candidates = list(catalogue(known, sensors)) if start is None else [dict(start)]
+    references = np.array([_reference(name, candidates[0]) for name in names])
+    coordinates = Coordinates(names, references)
+    knowledge = Knowledge(coordinates, known)
+    climb = Climb(likelihood, knowledge)
+
+    tried = [knowledge.bind(coordinates.of(np.array([values[name] for name in names]))) for values in candidates]
+    if start is None:
+        progress(f"trying {len(tried)} usual vehicles")
+        tried = sorted(tried, key=climb.first_cost)[:_STARTS]
+    ends: list[Point] = []
+    for number, u in enumerate(tried, start=1):
+        progress(f"fitting from start {number} of {len(tried)}")
+        summit = min(ends, key=climb.cost, default=None)
+        ends.append(climb.to_the_top(u, summit, enough, FAR if start is None else CLOSE_BY))
+    best = min(ends, key=climb.cost)
+    agreeing = sum(climb.cost(end) - climb.cost(best) < max(1e-3, 4 * enough) for end in ends)
+    return Summit(climb, best, best.steps, len(ends), agreeing)
+
+
+def _reference(name: str, typical: Mapping[str, float]) -> float:
+    if PARAMETERS[name].positive:
+        return 1.0
+    return typical["c_sf"] if name.startswith("c") else typical["k_sf"]
