@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sprung.identification.likelihood import Likelihood, differentiate_modes, solve_modes
+from sprung.identification.likelihood import Likelihood
 from sprung.identification.longhand import evaluate_drop
+from sprung.identification.solution import differentiate_modes, solve_modes
 from sprung.prepare import prepare
 from sprung.simulation import free_decays
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.joint import Fit
-from sprung.identification.likelihood import differentiate_modes, solve_modes
+from sprung.identification.solution import differentiate_modes, solve_modes
 from sprung.modal import Mode, name_modes
 from sprung.vehicle import LinearModel, Rows, Sensor
 
