@@ -126,8 +126,8 @@ def _equations() -> Iterator[Misprint]:
         "eqs. (8) and (10)",
         "Φ̄ is an error matrix",
         "Φ̃ is an error matrix",
-        "Eq. (8) adds Φ̃; Φ̄ is the matrix of later states, eq. (9). With Φ̄ the errors that least squares leaves, Φ̄Φᵀ is zero and "
-        "so is A₁ by eq. (10).",
+        "Eq. (8) adds Φ̃; Φ̄ is the matrix of later states, eq. (9). With Φ̄ the errors that least squares leaves, Φ̄Φᵀ "
+        "is zero and so is A₁ by eq. (10).",
     )
     yield Misprint(
         "eqs. (9), (11) and (14)",
