@@ -14,3 +14,14 @@ def shared() -> Path:
     if not folder.is_dir():
         pytest.skip("needs ../shared")
     return folder
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Displays that tests compare with are written anew with ``pytest tests/report --regenerate``."""
+    parser.addoption("--regenerate", action="store_true", help="write the displays in tests/report anew")
+
+
+@pytest.fixture
+def regenerate(request: pytest.FixtureRequest) -> bool:
+    """Whether displays are to be written anew."""
+    return bool(request.config.getoption("--regenerate"))

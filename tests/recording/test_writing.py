@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 positive = st.floats(1e-3, 1e4)
+lengths = st.floats(1e-3, 100)
 numbers = st.floats(-1e4, 1e4)
 names = st.text("abcXYZ_ ,;\"'()µ°0123456789.-", min_size=1, max_size=8).filter(lambda text: text == text.strip())
 
@@ -78,14 +79,14 @@ def campaigns(draw: st.DrawFn) -> Campaign:
         channels = tuple(sensor.channel for sensor in where)
         recordings.append(Recording(file, channels, values, start, rate))
         drops.append(Drop(file=file, load=draw(st.sampled_from(["empty", load.name])), wheels=("rr", "fl"), start=None))
-    tall = st.none() | positive
+    tall = st.none() | lengths
     return Campaign(
         name=draw(st.text(st.characters(codec="utf-8"), min_size=1, max_size=9)),
         sensors=where,
         drops=tuple(drops),
         recordings=tuple(recordings),
         loads=(EMPTY, load),
-        wheelbase=draw(st.none() | st.builds(Known, positive, positive)),
+        wheelbase=draw(st.none() | st.builds(Known, lengths, lengths)),
         cg_height=draw(tall),
         wheel_height=draw(tall),
         roll_axis_height=draw(tall),

@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import sys
+import traceback
 
 from sprung.cli.commands import app
+from sprung.cli.output import BAD_INPUT, DEFECT, complain
 from sprung.errors import SprungError
-
-BAD_INPUT = 2
-DEFECT = 1
 
 
 def main() -> None:
-    """Run the command line; exit status 0, 1, 2 or 3 as the contract has it."""
+    """Run the command line; exit status 0, 1, 2 or 3 as the contract has it, 130 when it is interrupted."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal that knows no ² must still get the numbers
     try:
-        app()
+        app(prog_name="sprung")
     except SprungError as error:
-        sys.stderr.write(f"{_headline(error)}\n{error}\n")
+        complain(f"{_headline(error)}\n{error}")
         raise SystemExit(BAD_INPUT) from None
+    except Exception as error:
+        complain(f"{traceback.format_exc()}\n{_report(error)}")
+        raise SystemExit(DEFECT) from error
 
 
 def _headline(error: SprungError) -> str:
@@ -26,4 +31,11 @@ def _headline(error: SprungError) -> str:
         "sprung cannot use this input:"
         if len(problems) < 2
         else f"sprung cannot use this input, {len(problems)} faults:"
+    )
+
+
+def _report(error: Exception) -> str:
+    return (
+        f"This is a defect of sprung, not of your input ({type(error).__name__}). Please report it to the developers with "
+        "the lines above, the command you gave and, if you may share it, the campaign."
     )

@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-import json
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import shlex
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, Optional
 
 import typer
-from rich.console import Console
+from typer.core import TyperGroup
 
 import sprung
+from sprung.cli.output import INTERRUPTED, REJECTED, complain, say, say_json, working
+from sprung.errors import InputError, Problem
 
-REJECTED = 3
-NOTHING_USABLE = 2
+
+class Commands(TyperGroup):
+    """The commands; Ctrl-C ends any of them with the shell's own status and without a traceback."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command that was asked for."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt:
+            complain("sprung was interrupted.")
+            raise SystemExit(INTERRUPTED) from None
+
 
 app = typer.Typer(
+    cls=Commands,
     help="Find the physical parameters of a two-axle road vehicle from drop tests.",
     no_args_is_help=True,
     add_completion=False,
@@ -29,24 +39,6 @@ app = typer.Typer(
 
 CampaignFile = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.")]
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
-
-
-@contextmanager
-def working(first: str) -> Iterator[Callable[[str], None]]:
-    """Show what is being done while somebody watches; standard output stays clean."""
-    console = Console(stderr=True)
-    with console.status(first) as status:
-        yield status.update
-
-
-def print_json(document: Any) -> None:
-    """Print one JSON document."""
-    sys.stdout.write(json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n")
-
-
-def show(view: Any) -> None:
-    """Print what the report makes of a result."""
-    sprung.report.show(view)
 
 
 @app.command(epilog="Example: [bold]sprung identify campaign.toml -o results[/bold]")
@@ -70,10 +62,10 @@ def identify(
 def conclude(result: Any, folder: Path, as_json: bool) -> None:
     """Print a result and leave with the status that belongs to its verdict."""
     if as_json:
-        sys.stdout.write(result.to_json())
+        say_json(result.to_json())
     else:
-        show(sprung.report.result_view(result, Console().width))
-        sys.stdout.write(f"\nWritten: {folder / 'results.json'}, {folder / 'series.npz'}\n")
+        say(sprung.report.text_of(sprung.report.result_view(result)))
+        say(f"\nWritten: {folder / 'results.json'}, {folder / 'series.npz'}\n")
     if result.verdict.state == "reject":
         raise typer.Exit(REJECTED)
 
@@ -83,12 +75,14 @@ def check(campaign: CampaignFile, as_json: Json = False) -> None:
     """Read and judge the recordings, identify nothing."""
     with working("reading the recordings"):
         found = sprung.check(sprung.read(campaign))
-    if as_json:
-        print_json(asdict(found))
-    else:
-        show(sprung.report.check_view(found))
     if not found.usable:
-        raise typer.Exit(NOTHING_USABLE)
+        raise InputError(
+            Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
+        )
+    if as_json:
+        say_json(asdict(found))
+    else:
+        say(sprung.report.text_of(sprung.report.check_view(found)))
 
 
 @app.command(epilog="Example: [bold]sprung modal campaign.toml --method svm[/bold]")
@@ -99,20 +93,27 @@ def modal(
 ) -> None:
     """Find natural frequencies and damping ratios per load; no vehicle model."""
     with working("reading the recordings"):
-        found = sprung.modes(sprung.read(campaign), method=method)
+        read = sprung.read(campaign)
+        found = sprung.modes(read, method=method)
+        faults = sprung.check(read).faults
     if as_json:
-        print_json({load: [asdict(mode) for mode in modes] for load, modes in found.items()})
+        say_json({load: [asdict(mode) for mode in modes] for load, modes in found.items()})
     else:
-        show(sprung.report.modes_view(found))
+        say(sprung.report.text_of(sprung.report.modes_view(found, faults)))
 
 
 @app.command(epilog="Example: [bold]sprung simulate vehicle.toml -o campaign --noise 0.05[/bold]")
 def simulate(
-    vehicle: Annotated[Path, typer.Argument(metavar="VEHICLE.toml", help="[vehicle], [parameters], [[sensor]], ...")],
+    vehicle: Annotated[
+        Path,
+        typer.Argument(
+            metavar="VEHICLE.toml", help="Its parameters; sensors, loads and drops where not the usual ones."
+        ),
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The campaign folder to write.")],
-    rate: Annotated[float, typer.Option(help="Samples per second.")] = 500.0,
-    noise: Annotated[float, typer.Option(help="Sensor noise, m/s² root-mean-square.")] = 0.02,
-    seed: Annotated[int, typer.Option(help="Of the noise.")] = 1,
+    rate: Annotated[float, typer.Option(max=1e5, help="Samples per second.")] = 500.0,
+    noise: Annotated[float, typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square.")] = 0.02,
+    seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 1,
     as_json: Json = False,
 ) -> None:
     """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
@@ -120,9 +121,10 @@ def simulate(
         campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed)
         written = sprung.write(campaign, output)
     if as_json:
-        print_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
+        say_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
     else:
-        sys.stdout.write(f"Written: {written}, {len(campaign.drops)} recordings\nNext:    sprung identify {written}\n")
+        recordings = f"{len(campaign.drops)} recording{'s' * (len(campaign.drops) > 1)}"
+        say(f"Written: {written}, {recordings}\nNext:    sprung identify {shlex.quote(str(written))}\n")
 
 
 @app.command(epilog="Example: [bold]sprung demo[/bold]")
@@ -137,10 +139,10 @@ def demo(
         results = result.save(folder / "results")
     conclude(result, results, as_json)
     if not as_json:
-        sys.stdout.write(
+        say(
             f"\nThe recordings and what was known beforehand: {written}\n"
             f"Everything that was found, for other programs:  {results / 'results.json'}\n"
-            f"Change something there and run again:           sprung identify {written}\n"
+            f"Change something there and run again:           sprung identify {shlex.quote(str(written))}\n"
         )
 
 
@@ -150,14 +152,14 @@ def paper(as_json: Json = False) -> None:
     with working("reproducing the paper") as progress:
         reproduction = sprung.study.reproduce(progress=progress)
     if as_json:
-        print_json(reproduction.document())
+        say_json(reproduction.document())
     else:
-        show(sprung.report.paper_view(reproduction))
+        say(sprung.report.text_of(sprung.report.paper_view(reproduction)))
 
 
 def _version(wanted: bool) -> None:
     if wanted:
-        sys.stdout.write(f"sprung {sprung.__version__}\n")
+        say(f"sprung {sprung.__version__}\n")
         raise typer.Exit
 
 

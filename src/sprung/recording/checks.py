@@ -10,7 +10,8 @@ import numpy as np
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
-from sprung.recording.schema import EXTRAS, KNOWABLE, CampaignFile
+from sprung.recording.schema import EXTRAS, KNOWABLE, CampaignFile, VehicleFileSchema
+from sprung.recording.sizes import SMALLEST, check_sizes, too_large
 from sprung.units import acceleration_factor
 from sprung.vehicle import LINEAR_EXTRAS, PARAMETERS, Sensor
 
@@ -40,6 +41,7 @@ def check(draft: Draft[CampaignFile], problems: Problems) -> None:
     _check_units(draft, problems)
     _check_body_sensors(draft, problems)
     _check_loads(draft, problems)
+    check_sizes(draft, problems)
     _check_model(draft, problems)
     _check_drops(draft, problems)
     known = _check_known(draft, problems)
@@ -88,11 +90,13 @@ def _check_units(draft: Draft[CampaignFile], problems: Problems) -> None:
 
 def _check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
     """Bounce, pitch and roll are three unknowns: three sensors not on one line tell them apart."""
-    if not draft.complete("sensor"):
+    if not draft.complete("sensor") or _left_to_defaults(draft, "sensor"):
         return
     placed = [
         sensor.position[:2] for sensor in draft.file.sensor if sensor.on == "body" and sensor.position is not None
     ]
+    if any(too_large(length, "m") for position in placed for length in position):
+        return  # said already, and what they span is not worth saying
     if len(placed) < 3:
         found, do = f"{len(placed)} sensors on the body", 'Add [[sensor]] entries with on = "body".'
         problems.add(draft.where("sensor"), found, "at least 3, to tell bounce, pitch and roll apart", do)
@@ -104,8 +108,13 @@ def _check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
         problems.add(draft.where("sensor"), found, "at least 3 that span an area", do)
 
 
+def _left_to_defaults(draft: Draft[CampaignFile], section: str) -> bool:
+    """Say whether a vehicle file leaves its sensors or drops to the simulation."""
+    return isinstance(draft.file, VehicleFileSchema) and section not in draft.document
+
+
 def _check_drops(draft: Draft[CampaignFile], problems: Problems) -> None:
-    if not draft.file.drop and draft.complete("drop"):
+    if not draft.file.drop and draft.complete("drop") and not _left_to_defaults(draft, "drop"):
         problems.add(draft.where("drop"), "no drops", "at least one [[drop]]", "Add a [[drop]] for each recording.")
 
 
@@ -152,17 +161,23 @@ def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, Kn
         unit, meaning, positive = "kg", name.replace("_", " "), True
         if name in PARAMETERS:
             unit, meaning, positive = PARAMETERS[name].unit, PARAMETERS[name].meaning, PARAMETERS[name].positive
-        if measured.value > 0 or (measured.value == 0 and not positive):
-            known[name] = measured.known
-        else:
+        expected = too_large(measured.value, unit)
+        if measured.value < 0 or (measured.value < SMALLEST and positive):
             sign = "positive" if positive else "not negative"
             problems.add(where, f"{measured.value:g}", f"a {sign} number: the {meaning} in {unit}", "Correct it.")
+        elif expected is not None:
+            problems.add(where, f"{measured.value:g}", f"{expected}: the {meaning}", f"Write it in {unit}.")
+        else:
+            known[name] = measured.known
     wheelbase = draft.file.vehicle.wheelbase
-    if wheelbase is not None and wheelbase.value > 0:
+    if wheelbase is not None and wheelbase.value >= SMALLEST and too_large(wheelbase.value, "m") is None:
         known["wheelbase"] = wheelbase.known
     elif wheelbase is not None:
         where = draft.where("vehicle", "wheelbase")
-        problems.add(where, f"{wheelbase.value:g}", "a positive number: front axle to rear axle in m", "Correct it.")
+        expected = too_large(wheelbase.value, "m") or "a positive number: front axle to rear axle in m"
+        problems.add(
+            where, f"{wheelbase.value:g}", expected, "Write it in m." if wheelbase.value > 0 else "Correct it."
+        )
     return known
 
 

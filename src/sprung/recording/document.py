@@ -24,8 +24,13 @@ def toml_document(path: Path) -> dict[str, Any]:
         text = path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
         beside = [other.name for other in path.parent.glob("*.toml")]
-        do = did_you_mean(path.name, beside) if beside else "Correct the path, or write that file."
+        do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
+        if not beside:
+            do = "Correct the path, or write that file: `sprung demo` writes an example to copy."
         raise InputError([Problem(str(path), "no such file", "a campaign file or vehicle file", do)]) from None
+    except IsADirectoryError:
+        do = "Name the file in it." if path.suffix != ".toml" else "Rename the folder, and put the file in its place."
+        raise InputError([Problem(str(path), "a folder", "a campaign file or vehicle file", do)]) from None
     except OSError as error:
         found = f"a file that cannot be read ({error.strerror})"
         raise InputError([Problem(str(path), found, "a readable file", "See to its permissions.")]) from error

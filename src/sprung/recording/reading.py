@@ -11,7 +11,7 @@ import numpy as np
 from sprung.errors import InputError, Problem, Problems, did_you_mean
 from sprung.recording.campaign import Campaign, Drop, ModelChoice
 from sprung.recording.checks import check, refused_unit
-from sprung.recording.formats import Table, read_table
+from sprung.recording.formats import Table, read_table, split_unit
 from sprung.recording.schema import CampaignFile, VehicleFileSchema
 from sprung.recording.signals import column_of, recording_of
 from sprung.recording.understanding import Draft, understand
@@ -88,7 +88,7 @@ def read(path: str | os.PathLike[str]) -> Campaign:
     _refuse_unusable(recordings)
     vehicle = draft.file.vehicle
     return Campaign(
-        name=vehicle.name or path.absolute().parent.name,
+        name=vehicle.name or _printable(path.absolute().parent.name),
         sensors=draft.file.sensor,
         drops=draft.file.drop,
         recordings=recordings,
@@ -178,9 +178,10 @@ def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, str]:
 def _tables(files: Mapping[int, str], folder: Path, problems: Problems) -> dict[int, Table]:
     """Read every recording that can be read."""
     tables: dict[int, Table] = {}
+    others = {Path(file).name for file in files.values()}
     for index, file in files.items():
         try:
-            tables[index] = read_table(folder / file)
+            tables[index] = read_table(folder / file, others)
         except InputError as error:
             for problem in error.problems:
                 where = problem.where.replace(Path(file).name, file, 1)
@@ -191,7 +192,9 @@ def _tables(files: Mapping[int, str], folder: Path, problems: Problems) -> dict[
 def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Table], problems: Problems) -> None:
     """Every sensor must be in some recording; in which it is missing, the recording itself will say."""
     columns = sorted({name for table in tables.values() for name in table.channels})
-    for index, sensor in zip(draft.numbered("sensor"), draft.file.sensor, strict=True):
+    sensors = tuple(zip(draft.numbered("sensor"), draft.file.sensor, strict=True))
+    unclaimed = set(columns) - {split_unit(sensor.channel)[0] for _, sensor in sensors}
+    for index, sensor in sensors:
         if tables and not any(column_of(table, sensor.channel) for table in tables.values()):
             where = draft.where("sensor", index, "channel")
             expected = "the name of a column of the recordings"
@@ -199,7 +202,7 @@ def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Table], pro
                 where,
                 f"'{sensor.channel}', which no recording has",
                 expected,
-                did_you_mean(sensor.channel, columns).replace("Allowed:", "They have:"),
+                did_you_mean(sensor.channel, unclaimed or columns).replace("Allowed:", "They have:"),
             )
 
 
@@ -222,6 +225,11 @@ def _check_starts_and_ends(draft: Draft[CampaignFile], tables: Mapping[int, Tabl
                 expected = f"a time within the recording, {time.min():.6g} to {time.max():.6g} s on its own clock"
                 do = f"Correct {key}, or leave it out."
                 problems.add(draft.where("drop", index, key), f"{value:g} s", expected, do)
+
+
+def _printable(name: str) -> str:
+    """Replace what a file system allows in names and UTF-8 does not."""
+    return name.encode("utf-8", errors="replace").decode()
 
 
 def _refuse_unusable(recordings: tuple[Recording, ...]) -> None:

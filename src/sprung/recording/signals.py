@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 SLOWEST = 64.0
 """Samples per second below which wheel hop, up to some 20 Hz, is lost."""
 
+LARGEST = 1e6
+"""m/s²: no accelerometer reads more; loggers write such numbers where they have none."""
+
 UNEVEN = 0.2
 """By how much, relative to the usual step, a step of an even clock may differ."""
 
@@ -89,7 +92,7 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     values = np.full((len(sensors), table.values.shape[1]), np.nan)
     for sensor, row in zip(sensors, values, strict=True):
         with problems.collecting():
-            found = _channel(table, sensor, name)
+            found = _channel(table, sensor, sensors, name)
             if isinstance(found, Fault):
                 faults.append(found)
             else:
@@ -118,14 +121,16 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     return Recording(name, channels, values, float(time[0]), rate, history, tuple(faults))
 
 
-def _channel(table: Table, sensor: Sensor, file: str) -> tuple[NDArray[np.float64], str] | Fault:
+def _channel(
+    table: Table, sensor: Sensor, sensors: Sequence[Sensor], file: str
+) -> tuple[NDArray[np.float64], str] | Fault:
     """Give one sensor's samples and what was done to them, or why it is left out."""
     where, columns = f"{file}: {sensor.channel}", column_of(table, sensor.channel)
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
-        return Fault(
-            "missing", where, what, f"Check the logger's channel names. {did_you_mean(sensor.channel, table.channels)}"
-        )
+        unclaimed = set(table.channels) - {split_unit(other.channel)[0] for other in sensors}
+        meant = f" {did_you_mean(sensor.channel, unclaimed)}".replace("Allowed:", "It also has:") if unclaimed else ""
+        return Fault("missing", where, what, f"Check the sensor's cable and the logger's channel names.{meant}")
     if len(columns) > 1:
         found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."
         raise InputError([Problem(where, found, "one column per channel", do)])
@@ -133,17 +138,22 @@ def _channel(table: Table, sensor: Sensor, file: str) -> tuple[NDArray[np.float6
     if table.channels[column] in table.spoilt:
         raise InputError([table.spoilt[table.channels[column]]])
     raw, unit = table.values[column], own_unit(sensor, table.units[column])
+    again = "Check the sensor's cable and the logger, or export the recording again."
     gaps = ~np.isfinite(raw)
     if gaps.any():
         some = "every sample is" if gaps.all() else f"{gaps.sum()} of {gaps.size} samples are"
         first = "" if gaps.all() else f", the first in {table.place(int(gaps.argmax()))}"
-        what = f"{some} missing{first}; the channel is left out of this drop"
-        return Fault("missing", where, what, "Check the sensor's cable and the logger, or export the recording again.")
+        return Fault("missing", where, f"{some} missing{first}; the channel is left out of this drop", again)
     try:
         factor = acceleration_factor(unit)
     except ValueError:
         do = 'Give the sensor a unit in the campaign file, such as unit = "g", if that is what the numbers are.'
         raise InputError([Problem(where, f"the unit '{unit}'", "a unit of acceleration", do)]) from None
+    beyond = np.abs(raw) > LARGEST / factor
+    if beyond.any():
+        first = f"{raw[beyond.argmax()]:.4g} {unit} in {table.place(int(beyond.argmax()))}"
+        what = f"{beyond.sum()} of {beyond.size} samples read more than any accelerometer can, the first {first}"
+        return Fault("missing", where, f"{what}; the channel is left out of this drop", again)
     source = (
         ""
         if sensor.unit
@@ -159,7 +169,7 @@ def _channel(table: Table, sensor: Sensor, file: str) -> tuple[NDArray[np.float6
 def _refuse_backward(table: Table, file: str) -> None:
     time = table.time
     if len(time) < 2:
-        found, do = f"{len(time)} samples", "Export it again."
+        found, do = "a single sample" if len(time) else "no samples", "Export it again."
         raise InputError([Problem(file, found, "the samples of a whole drop", do)])
     backward = np.flatnonzero(~(np.diff(time) > 0)) + 1
     if backward.size:

@@ -103,13 +103,6 @@ def _missing(folder: Path) -> list[Path]:
     return [path for path in (folder, *folder.parents) if not path.exists()]
 
 
-def _write_through(path: Path, content: bytes) -> None:
-    with path.open("xb") as file:
-        file.write(content)
-        file.flush()
-        os.fsync(file.fileno())  # a name must never stand for content that a power cut would lose
-
-
 def _problem(folder: Path, error: OSError) -> Problem:
     found = f"a place that cannot be written to ({error.strerror or error})"
     if any(path.is_file() for path in (folder, *folder.parents)):

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.report.terminal import table
+from sprung.report.layout import hanging, table
 from sprung.study import Misprint, ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow
 
 
@@ -26,7 +26,7 @@ def paper_view(reproduction: PaperReproduction) -> RenderableType:
         _misprints(reproduction.misprints),
         _noise(reproduction.noise),
     )
-    return Group(*(piece for part in parts for piece in (part, Text())))
+    return Group(*[piece for part in parts for piece in (part, Text())][:-1])
 
 
 def _parameters(title: str, rows: Sequence[ParameterRow], paper: str | None) -> RenderableType:
@@ -35,7 +35,7 @@ def _parameters(title: str, rows: Sequence[ParameterRow], paper: str | None) -> 
     for row in rows:
         printed = [f"{row.paper:g}", f"{100 * (row.paper / row.known - 1):+.3f}"] if paper else []
         error = "given" if row.given else f"{row.error_percent:+.1e}"
-        cells.append([row.name, f"{row.known:g}", *printed, f"{row.identified:.10g}", error])
+        cells.append([row.name, f"{row.known:.8g}", *printed, f"{row.identified:.8g}", error])
     return table(title, headers, cells, headers[1:])
 
 
@@ -56,16 +56,16 @@ def _misprints(misprints: Sequence[Misprint]) -> RenderableType:
     lines: list[RenderableType] = [Text("Misprints", style="bold")]
     for misprint in misprints:
         lines.append(Text.assemble((misprint.where, "bold"), f": {misprint.printed}"))
-        lines.append(Text(f"  should be: {misprint.should_be}"))
-        lines.append(Text(f"  because:   {misprint.reason}"))
+        lines.append(hanging("  should be: ", misprint.should_be))
+        lines.append(hanging("  because:   ", misprint.reason))
     return Group(*lines)
 
 
 def _noise(points: Sequence[NoisePoint]) -> RenderableType:
-    cells = [
-        [f"{point.noise:g}", f"{point.paper_method:.2g}", "-" if point.joint_fit is None else f"{point.joint_fit:.2g}"]
-        for point in points
-    ]
+    def two_figures(percent: float | None) -> str:
+        return "-" if percent is None else f"{float(f'{percent:.2g}'):g}"
+
+    cells = [[f"{point.noise:g}", two_figures(point.paper_method), two_figures(point.joint_fit)] for point in points]
     headers = ["noise m/s²", "paper's method %", "joint fit %"]
     return table(
         "Where the method breaks: worst error of any parameter, five bumps, ΔM = 0.1 M", headers, cells, headers

@@ -94,6 +94,9 @@ def _dialect(lines: list[str], file: str) -> Dialect:
     # The names tell the delimiter; where a name holds another one, the first sample decides.
     delimiter = max(widths, key=lambda d: (widths[d][0] > 1, widths[d][0] == widths[d][1], widths[d][0]))
     names = _cells(lines[header], delimiter)
+    if any(not character.isprintable() for name in names for character in name):
+        found, do = "characters that nobody can read", "Export the recording as text; this file may be of another kind."
+        raise _refuse(f"{file}: line {header + 1}", found, "the names of the columns", do)
     if len(names) < 2:
         expected = "the time and at least one channel, separated by comma, semicolon or tab"
         raise _refuse(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 from sprung.errors import InputError, Problem, did_you_mean
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from sprung.recording.formats.table import Table
@@ -47,13 +48,15 @@ def formats() -> dict[str, Format]:
     return {name: entry.load()() for name, entry in found.items()}
 
 
-def read_table(path: Path) -> Table:
+def read_table(path: Path, others: Collection[str] = ()) -> Table:
     """Read a file in whatever known format it is.
 
     Parameters
     ----------
     path
         The file.
+    others
+        Names of files beside it that are wanted elsewhere: a file that is missing was hardly meant to be one of them.
 
     Returns
     -------
@@ -69,10 +72,13 @@ def read_table(path: Path) -> Table:
             head = file.read(HEAD)
     except FileNotFoundError:
         beside = [other.name for other in path.parent.glob("*") if other.suffix != ".toml" and other.is_file()]
+        beside = [name for name in beside if name not in others]
         do = "Put the recordings there, or correct the path."
         if beside:
             do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
         raise InputError([Problem(path.name, f"no such file in {path.parent}", "a recording", do)]) from None
+    except IsADirectoryError:
+        raise InputError([Problem(path.name, "a folder", "a recording", "Name the file in it.")]) from None
     except OSError as error:
         reason = f"a file that cannot be read ({error.strerror})"
         raise InputError([Problem(path.name, reason, "a recording", "See to its permissions.")]) from error

@@ -1,0 +1,106 @@
+"""What is wrong with some recordings, and is told, not refused: the rest is identified."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from command_line import DROPS, Folder, Run, copy_sedan, run
+
+
+def identify(folder: Folder) -> tuple[Run, Run]:
+    """Identify, as JSON; and check, as text."""
+    return run("identify", folder.path, "--json"), run("check", folder.path)
+
+
+@pytest.mark.parametrize("cell", ["NaN", "", "-Infinity", "1e300"])
+def test_a_channel_with_gaps_is_left_out_of_its_drop(folder: Folder, cell: str) -> None:
+    folder.column("wheel_fl", lambda sample, number: cell if sample == 500 else number)
+    said, text = identify(folder)
+    assert (said.status, text.status, said.err) == (0, 0, "")
+    [fault] = said.json["faults"]
+    assert (fault["code"], fault["where"]) == ("missing", "empty_bounce.csv: wheel_fl")
+    assert "line 502" in fault["what"]
+    assert [drop["faults"] for drop in said.json["drops"]] == [["missing"], [], [], []]
+    assert "empty_bounce.csv: wheel_fl: missing: 1 of 1800 samples" in " ".join(text.out.split())
+    with np.load(folder.path / "results" / "series.npz") as series:
+        place = series["empty_bounce/channels"].tolist().index("wheel_fl")
+        assert np.isnan(series["empty_bounce/measured"][place]).all()
+        assert np.isfinite(series["loaded_bounce/measured"]).all()
+    assert abs(said.json["parameters"]["k_sf"]["value"] / 17000 - 1) < 0.02  # the other drops still tell
+
+
+def test_a_channel_that_one_recording_lacks(folder: Folder) -> None:
+    folder.lines(lambda lines: [line.rpartition(",")[0] for line in lines])
+    said, text = identify(folder)
+    assert (said.status, text.status) == (0, 0)
+    [fault] = said.json["faults"]
+    assert (fault["code"], fault["where"]) == ("missing", "empty_bounce.csv: wheel_rr")
+    assert "Did you mean" not in fault["do"]  # every other column is some other sensor's
+    assert "wheel_rr: missing" in text.out
+    for command in ("check", "modal"):
+        assert "wheel_rr: missing" in run(command, folder.path).out
+
+
+def test_a_misnamed_channel_in_one_recording(folder: Folder) -> None:
+    folder.edit("wheel_rr", "wheel_r", "empty_bounce.csv")
+    said = run("check", folder.path, "--json")
+    assert "Did you mean 'wheel_r'?" in said.json["faults"][0]["do"]
+
+
+def test_a_channel_that_nobody_declares_is_nobodys_business(folder: Folder) -> None:
+    plain = run("identify", folder.path, "--json")
+    folder.lines(lambda lines: [f"{lines[0]},note", *(f"{line},hello" for line in lines[1:])])
+    assert run("identify", folder.path, "--json") == plain
+
+
+def test_a_drop_that_ends_too_soon_is_left_out(folder: Folder) -> None:
+    folder.lines(lambda lines: lines[:11])
+    said, text = identify(folder)
+    assert (said.status, text.status) == (0, 0)
+    drop = said.json["drops"][0]
+    assert (drop["start"], drop["end"], drop["faults"]) == (None, None, ["no-decay"])
+    assert "no-decay" in text.out
+    assert "left out" in text.out
+
+
+def test_a_recording_without_a_release(tmp_path: Path) -> None:
+    folder = copy_sedan(tmp_path / "rest", DROPS[:1])
+    random = np.random.default_rng(1)
+
+    def rest(lines: list[str]) -> list[str]:
+        rows = np.column_stack([np.arange(1500) / 500, 9.81 + random.normal(0, 0.02, (1500, 8))])
+        return [lines[0], *(",".join(f"{number:.5f}" for number in row) for row in rows)]
+
+    folder.lines(rest)
+    said, _ = identify(folder)
+    assert said.json["verdict"]["state"] != "accept"
+    assert {fault["code"] for fault in said.json["faults"]} >= {"no-release"}
+    # Three seconds of rest tell nothing.
+    assert {found["status"] for found in said.json["parameters"].values()} == {"unidentifiable"}
+
+
+def test_front_drops_alone(tmp_path: Path) -> None:
+    folder = copy_sedan(tmp_path / "front", ("empty_pitch_front", "loaded_pitch_front"))
+    said = run("identify", folder.path, "--json")
+    assert said.status == 0
+    assert said.json["verdict"]["state"] == "doubtful"
+    silent = {name for name, found in said.json["parameters"].items() if found["status"] == "unidentifiable"}
+    assert {"I_xx", "t_f", "t_r"} <= silent  # they do not roll
+
+
+def test_start_and_end_of_a_drop_are_used_as_given(folder: Folder) -> None:
+    folder.edit('file = "empty_bounce.csv"\n', 'file = "empty_bounce.csv"\nstart = 0.6\nend = 2.0\n')
+    drop = run("check", folder.path, "--json").json["drops"][0]
+    assert (drop["start"], drop["end"]) == pytest.approx((0.6, 2.0))
+
+
+def test_without_wheel_sensors_nothing_breaks(folder: Folder) -> None:
+    for station in ("fl", "fr", "rl", "rr"):
+        folder.edit(f'[[sensor]]\nchannel = "wheel_{station}"\non = "{station}"\n', "")
+    said = run("identify", folder.path, "--json")
+    assert said.status in {0, 3}
+    assert "Traceback" not in said.err
+    assert said.json["fit"]["noise"].keys() == {"body_fl", "body_fr", "body_rl", "body_rr"}

@@ -1,0 +1,133 @@
+"""The command line called in this process, and campaign folders to spoil."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sprung.cli import main
+
+SEDAN = Path(__file__).resolve().parent / "data" / "sedan"
+LEAFBUS = SEDAN.with_name("leafbus")
+DROPS = ("empty_bounce", "empty_pitch_front", "empty_roll_left", "loaded_bounce")
+
+CAR = """[vehicle]
+name = "car"
+[parameters]
+m_s = 1380
+I_yy = 2440
+I_xx = 380
+m_uf = 40.5
+m_ur = 45.4
+k_sf = 17000
+k_sr = 22000
+k_tf = 192000
+k_tr = 192000
+c_sf = 1500
+c_sr = 1500
+a = 1.25
+b = 1.51
+t_f = 0.74
+t_r = 0.74
+"""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one call of the command line left."""
+
+    status: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> Any:
+        """Standard output, which must be exactly one JSON document, without the NaN and Infinity of Python's own."""
+        return json.loads(self.out, parse_constant=lambda name: pytest.fail(f"{name} is no JSON"))
+
+
+def run(*arguments: str | Path, columns: int = 80, **environment: str) -> Run:
+    """Call the command line in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        patch.setattr(sys, "argv", ["sprung", *map(str, arguments)])
+        for name in ("NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE"):
+            patch.delenv(name, raising=False)
+        for name, value in {"COLUMNS": str(columns), **environment}.items():
+            patch.setenv(name, value)
+        try:
+            main()
+        except SystemExit as leaving:
+            return Run(int(leaving.code or 0), out.getvalue(), err.getvalue())
+    return Run(0, out.getvalue(), err.getvalue())
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A campaign folder to spoil."""
+
+    path: Path
+
+    def edit(self, old: str, new: str, file: str = "campaign.toml") -> Folder:
+        """Replace the first occurrence of a text, which must be there."""
+        text = (self.path / file).read_text(encoding="utf-8")
+        assert old in text, f"the test replaces {old!r}, which is not there"
+        (self.path / file).write_text(text.replace(old, new, 1), encoding="utf-8")
+        return self
+
+    def lines(self, change: Callable[[list[str]], list[str]], file: str = "empty_bounce.csv") -> Folder:
+        """Change the lines of a recording."""
+        lines = (self.path / file).read_text().splitlines()
+        (self.path / file).write_text("\n".join((*change(lines), "")))
+        return self
+
+    def column(self, name: str, change: Callable[[int, str], str], file: str = "empty_bounce.csv") -> Folder:
+        """Change the cells of one column, by the number of the sample."""
+
+        def changed(lines: list[str]) -> list[str]:
+            place = lines[0].split(",").index(name)
+            rows = [line.split(",") for line in lines[1:]]
+            for sample, row in enumerate(rows):
+                row[place] = change(sample, row[place])
+            return [lines[0], *(",".join(row) for row in rows)]
+
+        return self.lines(changed, file)
+
+    def listing(self) -> list[str]:
+        """Everything in the folder."""
+        return sorted(str(path.relative_to(self.path)) for path in self.path.rglob("*"))
+
+
+def copy_sedan(folder: Path, drops: tuple[str, ...] = DROPS) -> Folder:
+    """Copy some drops of the sedan into a folder of their own."""
+    folder.mkdir(parents=True)
+    head, *entries = (SEDAN / "campaign.toml").read_text().split("[[drop]]")
+    kept = [entry for entry in entries if any(f'"{drop}.csv"' in entry for drop in drops)]
+    (folder / "campaign.toml").write_text("[[drop]]".join((head, *kept)))
+    for drop in drops:
+        shutil.copy(SEDAN / f"{drop}.csv", folder)
+    return Folder(folder)
+
+
+@dataclass(frozen=True)
+class Identified:
+    """A campaign, what identifying it printed, as text and as JSON, and the results folder."""
+
+    text: Run
+    json: Run
+    results: Path
+
+
+def identified(campaign: Path, results: Path) -> Identified:
+    return Identified(
+        run("identify", campaign, "-o", results), run("identify", campaign, "--json", "-o", results / "again"), results
+    )

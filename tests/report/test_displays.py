@@ -1,0 +1,104 @@
+"""What people see, whole and line by line; `pytest tests/report --regenerate` writes it anew, to be read before it is kept.
+
+The results shown are real ones, kept as JSON beside their displays, so that a display changes only when its layout does.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+import sprung
+from sprung.errors import Fault
+from sprung.pipeline import Check, DropReport, Result
+from sprung.recording import Campaign
+from sprung.report import check_view, modes_view, result_view, text_of
+from sprung.vehicle import TABLE_1_CAR
+
+HERE = Path(__file__).parent
+DATA = HERE.parent / "data"
+CONSOLE = Console(width=80, highlight=False, color_system=None)
+
+
+def sedan() -> Campaign:
+    return sprung.read(DATA / "sedan")
+
+
+def leafbus() -> Campaign:
+    return sprung.read(DATA / "leafbus")
+
+
+def drops_without_load() -> Campaign:
+    """Two drops of the empty car; in the first one a wheel's cable was loose."""
+    whole = sedan()
+    fault = Fault(
+        "missing",
+        "empty_bounce.csv: wheel_fl",
+        "1 of 1800 samples are missing, the first in line 502; the channel is left out of this drop",
+        "Check the sensor's cable and the logger, or export the recording again.",
+    )
+    values = whole.recordings[0].values.copy()
+    values[list(whole.recordings[0].channels).index("wheel_fl")] = float("nan")
+    recording = dataclasses.replace(whole.recordings[0], values=values, faults=(fault,))
+    return dataclasses.replace(whole, drops=whole.drops[:2], recordings=(recording, whole.recordings[1]))
+
+
+RESULTS: dict[str, Callable[[], Campaign]] = {
+    "accept": sedan,
+    "reject": leafbus,
+    "unidentifiable": drops_without_load,
+}
+
+
+def compare(name: str, shown: str, regenerate: bool) -> None:
+    path = HERE / f"{name}.txt"
+    if regenerate:
+        path.write_text(shown, encoding="utf-8")
+    assert shown == path.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_result(name: str, regenerate: bool) -> None:
+    path = HERE / f"{name}.json"
+    if regenerate:
+        path.write_text(sprung.identify(RESULTS[name]()).to_json(), encoding="utf-8")
+    result = Result.model_validate(json.loads(path.read_text(encoding="utf-8")))
+    compare(name, text_of(result_view(result), CONSOLE), regenerate)
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_the_displays_show_what_their_names_say(name: str) -> None:
+    text = (HERE / f"{name}.txt").read_text(encoding="utf-8")
+    words = {
+        "accept": ("Verdict: accept", "k_sf"),
+        "reject": ("Verdict: reject", "does not explain"),
+        "unidentifiable": ("Not determined", "unidentifiable", "Divided by the empty vehicle's total mass", "missing"),
+    }
+    assert all(word in text for word in words[name])
+    assert all(len(line) <= 80 and line == line.rstrip() for line in text.splitlines())
+
+
+def test_a_check(regenerate: bool) -> None:
+    late = Fault(
+        "no-decay", "loaded_bounce.csv", "0.10 s of free vibration, at least 0.5 s are needed", "Record longer."
+    )
+    gap = Fault(
+        "missing", "empty_roll.csv: wheel_rr", "every sample is missing; the channel is left out", "Check its cable."
+    )
+    drops = (
+        DropReport("empty_bounce.csv", "empty", 0.438, 3.598, ()),
+        DropReport("empty_roll.csv", "empty", 12.4425, 15.598, ("missing",)),
+        DropReport("loaded_bounce.csv", "ballast", None, None, ("no-decay",)),
+    )
+    compare("check", text_of(check_view(Check(drops, (gap, late))), CONSOLE), regenerate)
+
+
+def test_modes_without_uncertainty(regenerate: bool) -> None:
+    # Four drops without noise have the modes of the Table 1 car to all digits shown.
+    campaign = sprung.simulate(TABLE_1_CAR, noise=0.0)
+    compare("modes", text_of(modes_view(sprung.modes(campaign)), CONSOLE), regenerate)
