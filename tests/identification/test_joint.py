@@ -211,3 +211,61 @@ def test_errors_match_their_bars_over_seeds() -> None:
         scores.append(error[free] @ precision @ error[free] / len(free))
     # χ² with 14 degrees of freedom over 14 has the variance 2/14.
     assert abs(np.mean(scores) - 1) < 4 * np.sqrt(2 / 14 / len(scores))
+
+
+def test_body_sensors_alone_are_enough_for_the_body() -> None:
+    """Without sensors at the wheels: what the body does not show is not claimed, the rest is within its error bars."""
+    campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=11)
+    body = [i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body"]
+    blind = replace(
+        campaign,
+        sensors=tuple(campaign.sensors[i] for i in body),
+        recordings=tuple(
+            replace(r, values=r.values[body], channels=tuple(r.channels[i] for i in body)) for r in campaign.recordings
+        ),
+    )
+    found, estimates = fit(blind, TABLE_1_CAR)
+    assert found.converged
+    for name, one in estimates.parameters.items():
+        if one.value is not None and one.std is not None:
+            assert abs(one.value - TABLE_1_CAR.parameters[name]) < 4 * one.std
+    assert estimates.parameters["m_s"].status == "estimated"
+
+
+def test_noise_feigns_no_knowledge_of_motions_nobody_excited() -> None:
+    """Bounce drops only: the roll modes have amplitudes fitted to noise, and no information must come of them."""
+    drops = [{"wheels": ["fl", "fr", "rl", "rr"], "file": f"bounce_{i}.csv"} for i in range(5)]
+    wrong = 0
+    for seed in range(6):
+        campaign = simulate(
+            TABLE_1_CAR, drops=drops, noise=0.02, seed=seed, known={"total_mass": TABLE_1_CAR.total_mass}
+        )
+        _, estimates = fit(campaign, TABLE_1_CAR)
+        for name in ("I_xx", "t_f", "t_r"):
+            one = estimates.parameters[name]
+            if one.value is not None and one.std is not None:
+                wrong += abs(one.value - TABLE_1_CAR.parameters[name]) > 3 * one.std
+    assert wrong <= 1  # of 18
+
+
+def test_everything_known_leaves_nothing_to_fit() -> None:
+    campaign = simulate(TABLE_1_CAR, noise=0.02, seed=12, known=dict(TABLE_1_CAR.parameters))
+    found, estimates = fit(campaign, TABLE_1_CAR)
+    assert found.converged
+    assert {one.status for one in estimates.parameters.values()} == {"known"}
+
+
+@pytest.mark.parametrize("std", [1e-300, 1e-6, 1e-3])
+def test_a_very_small_uncertainty_is_no_trouble(std: float) -> None:
+    known = {"total_mass": Known(TABLE_1_CAR.total_mass, std)}
+    campaign = simulate(TABLE_1_CAR, noise=0.02, seed=13, known=known)
+    found, estimates = fit(campaign, TABLE_1_CAR)
+    assert found.converged
+    assert all(one.status == "estimated" for one in estimates.parameters.values())
+
+
+def test_an_exact_quantity_that_cannot_be_is_named() -> None:
+    known = {"total_mass": Known(0.8 * TABLE_1_CAR.total_mass)}
+    campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=14, known=known)
+    found, _ = fit(campaign, TABLE_1_CAR)
+    assert found.contradictions["total_mass"] > 10

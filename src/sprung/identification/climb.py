@@ -34,6 +34,7 @@ FAR, CLOSE_BY = 1e-3, 1e-9
 
 _SETTLED = 1e-3  # relative change of the noise levels
 _SAME = 0.01  # distance in standard errors, squared, within which a climb will end where another one has
+_EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have before anybody is told
 _ITERATIONS = 100
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
@@ -134,8 +135,9 @@ class Climb:
             (m/s²)², shape (channel,).
         """
         freedom = np.maximum(self._observations - self._constants - leverage.sum(axis=0), 1.0)
-        variance: Real = residual.sum(axis=0) / freedom + NOISE_FLOOR**2 * self._energy / self._observations
-        return variance
+        variance = residual.sum(axis=0) / freedom + NOISE_FLOOR**2 * self._energy / self._observations
+        # A channel that no drop has weighs nothing, whatever its noise.
+        return np.where(self._constants > 0, variance, 1.0)
 
     def cost(self, point: Point) -> float:
         """Give minus twice the log-likelihood, up to a constant."""
@@ -175,6 +177,33 @@ class Climb:
         """Give each drop's own gradient and information in the free directions."""
         free = self.knowledge.free(point.u) * self.knowledge.coordinates.slopes(point.u)[:, None]
         return point.evaluation.gradient @ free, free.T @ point.evaluation.information @ free
+
+    def contradictions(self, point: Point, inflation: float) -> dict[str, float]:
+        """Hold each known quantity against everything else.
+
+        Parameters
+        ----------
+        point
+            The summit.
+        inflation
+            By how much the records tell less than they would with white residuals.
+
+        Returns
+        -------
+        dict
+            By name: the root of what the likelihood would gain without that statement, to second order; for an uncertain
+            one this is its distance from what the rest says, in standard uncertainties of the difference.
+        """
+        found = {}
+        for name, known in self.knowledge.statements.items():
+            information, gradient, free = replace(self, knowledge=self.knowledge.without(name)).system(point, inflation)
+            told = told_directions(information)
+            slope = told.T @ gradient
+            step = np.linalg.solve(told.T @ information @ told, slope)
+            away = self.knowledge.change(name, point.u, free @ told @ step) / known.value
+            if not known.exact or abs(away) > _EXACT_ENOUGH:
+                found[name] = max(float(slope @ step), 0.0) ** 0.5
+        return found
 
     def to_the_top(
         self, u: Real, summit: Point | None = None, enough: float = CONVERGED, damping: float = FAR

@@ -14,8 +14,15 @@ from sprung.vehicle import PARAMETERS, quantity
 
 Real = NDArray[np.float64]
 
-_TOUCHED = 1e-3
-"""Share of a parameter in an undetermined direction, a unit vector of logarithms, above which it is undetermined too."""
+_SCALE = (
+    "multiplying every mass, inertia and rate by one number changes no acceleration: only their ratios are determined; add "
+    "drops with a known load, weigh the vehicle (total_mass, front_axle_mass, rear_axle_mass), or give one mass or rate that "
+    "is known"
+)
+_HARDLY = (
+    "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
+    "would determine it"
+)
 
 _PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s"}
 
@@ -84,21 +91,21 @@ def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:
     -------
     Estimates
     """
-    touched = np.abs(fit.undetermined).max(axis=1, initial=0.0) > _TOUCHED
-    parameters = {}
-    for i, name in enumerate(fit.names):
-        value, std = float(fit.values[i]), float(np.sqrt(fit.covariance[i, i]))
-        unit = PARAMETERS[name].unit
-        if name in known and known[name].exact:
-            exact = known[name].value
-            parameters[name] = Estimate(exact, 0.0, (exact, exact), unit, "known")
-        elif touched[i]:
-            parameters[name] = Estimate(None, None, None, unit, "unidentifiable")
-        elif std <= 1e-12 * abs(value):
-            parameters[name] = Estimate(value, 0.0, (value, value), unit, "known")
-        else:
-            parameters[name] = Estimate(value, std, _interval(name, value, std), unit, "estimated")
-    return Estimates(parameters, _scale(fit), _combinations(fit), _correlation(fit, parameters))
+    parameters = {name: _estimate(fit, known, i, name) for i, name in enumerate(fit.names)}
+    return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
+
+
+def _estimate(fit: Fit, known: Mapping[str, Known], position: int, name: str) -> Estimate:
+    value, unit = float(fit.values[position]), PARAMETERS[name].unit
+    if name in known and known[name].exact:
+        exact = known[name].value
+        return Estimate(exact, 0.0, (exact, exact), unit, "known")
+    std = fit.spread(fit.slopes[position] * np.eye(len(fit.names))[position], value)
+    if std is None:
+        return Estimate(None, None, None, unit, "unidentifiable")
+    if std <= 1e-12 * abs(value):
+        return Estimate(value, 0.0, (value, value), unit, "known")
+    return Estimate(value, std, _interval(name, value, std), unit, "estimated")
 
 
 def _interval(name: str, value: float, std: float) -> tuple[float, float]:
@@ -109,60 +116,46 @@ def _interval(name: str, value: float, std: float) -> tuple[float, float]:
 
 
 def _scale(fit: Fit) -> Scale:
-    slopes = fit.slopes
     total, gradient = quantity("total_mass", fit.names, fit.values)
-    mass_direction = gradient * slopes / total
-    known = not _touches(mass_direction, fit.undetermined)
+    mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
-        if not PARAMETERS[name].scales:
-            continue
-        ratio = float(fit.values[i]) / total
-        direction = (slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
-        if not _touches(direction / max(abs(ratio), 1e-300), fit.undetermined):
-            std = float(np.sqrt(max(direction @ fit.relative_covariance @ direction, 0.0)))
-            per_total_mass[name] = Ratio(ratio, std, _PER_MASS[PARAMETERS[name].unit])
-    return Scale(known, per_total_mass)
+        if PARAMETERS[name].scales:
+            ratio = float(fit.values[i]) / total
+            direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
+            std = fit.spread(direction, ratio)
+            if std is not None:
+                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[PARAMETERS[name].unit])
+    return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)
 
 
-def _touches(direction: Real, undetermined: Real) -> bool:
-    return bool(np.abs(direction @ undetermined).max(initial=0.0) > _TOUCHED)
-
-
-def _combinations(fit: Fit) -> tuple[Unidentifiable, ...]:
+def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
     scales = np.array([PARAMETERS[name].scales for name in fit.names])
     scaling = np.where(scales, fit.values / fit.slopes, 0.0)
     found = []
     directions = fit.undetermined
     if directions.shape[1] and np.linalg.norm(directions.T @ scaling) > 0.999 * np.linalg.norm(scaling):
-        names = tuple(name for name in fit.names if PARAMETERS[name].scales)
-        found.append(
-            Unidentifiable(
-                names,
-                "multiplying every mass, inertia and rate by one number changes no acceleration: only their ratios are "
-                "determined; add drops with a known load, weigh the vehicle (total_mass, front_axle_mass, "
-                "rear_axle_mass), or give one mass or rate that is known",
-            )
-        )
+        found.append(Unidentifiable(tuple(name for name in fit.names if PARAMETERS[name].scales), _SCALE))
         unit = scaling / np.linalg.norm(scaling)
         left, size, _ = np.linalg.svd(directions - np.outer(unit, unit @ directions), full_matrices=False)
         directions = left[:, size > 0.5]
-    for direction in directions.T:
-        share = np.abs(direction)
-        names = tuple(name for name, part in zip(fit.names, share, strict=True) if part > 0.1 * share.max())
-        signs = [
-            f"{name} {'up' if part * direction[np.argmax(share)] > 0 else 'down'}"
-            for name, part in zip(fit.names, direction, strict=True)
-            if name in names
+    shares = np.abs(directions)
+    together = shares > 0.1 * shares.max(axis=0, initial=1e-300)
+    # Whatever is undetermined belongs to the direction that moves it most, if to no other.
+    named = {name for one in found for name in one.parameters}
+    for i, name in enumerate(fit.names):
+        if parameters[name].status == "unidentifiable" and not together[i].any() and name not in named and shares.size:
+            together[i, np.argmax(shares[i])] = True
+    for direction, moved in zip(directions.T, together.T, strict=True):
+        names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
+        leading = direction[np.argmax(np.abs(direction))]
+        ways = [
+            f"{name} {'up' if part * leading > 0 else 'down'}"
+            for name, part, moves in zip(fit.names, direction, moved, strict=True)
+            if moves
         ]
-        what = f"{names[0]} alone" if len(names) == 1 else f"moving {', '.join(signs)} together"
-        found.append(
-            Unidentifiable(
-                names,
-                f"{what} hardly changes these recordings; drops that excite other motions, more channels, or knowing one of "
-                "them beforehand would determine it",
-            )
-        )
+        what = f"{names[0]} alone" if len(names) == 1 else f"moving {', '.join(ways)} together"
+        found.append(Unidentifiable(names, f"{what} {_HARDLY}"))
     return tuple(found)
 
 

@@ -79,7 +79,7 @@ def of_disagreement(scores: Real, informations: Real) -> float:
     total, freedom = 0.0, -scores.shape[1]
     for score, information in zip(scores, informations, strict=True):
         eigenvalues, vectors = np.linalg.eigh(information)
-        seen = eigenvalues > _SEEN * max(eigenvalues[-1], 0.0)
+        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
         total += float(np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen]))
         freedom += int(seen.sum())
     if freedom <= 0:

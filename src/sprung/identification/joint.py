@@ -9,13 +9,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimate import Known
-from sprung.identification.climb import RANK, least_information
+from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.inflation import of_colour
 from sprung.identification.summit import Summit, ascend
 from sprung.prepare import Decay
-from sprung.vehicle import LinearModel, Sensor
+from sprung.vehicle import PARAMETERS, LinearModel, Sensor
 
 Real = NDArray[np.float64]
+
+
+_BEYOND_DOUBT = 1e4
+"""Information that noise never feigns: one percent of uncertainty."""
+
+_FEIGNED = 4.0
+"""How many times what noise feigns on average is taken off: more than that it feigns hardly ever."""
+
+_LEAST = 0.01
+"""Information that a direction without any is given, so that it hides behind no other: ten powers of e of uncertainty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +42,9 @@ class Fit:
         Derivative of each value by the coordinate it is fitted in: the value itself for those that must be positive,
         which are fitted by their logarithms; shape (parameter,).
     relative_covariance
-        Covariance of the fit's coordinates.
+        Covariance of the fit's coordinates; directions without information have a very large variance in it.
     covariance
-        Of the values, SI, shape (parameter, parameter); directions without information are left out of it.
+        Of the values, SI, shape (parameter, parameter).
     undetermined
         Directions of the coordinates that neither data nor knowledge determine, shape (parameter, direction).
     noise
@@ -46,8 +56,9 @@ class Fit:
         neither is significant.
     fitted
         What the model makes of every record, its mean taken off; each of shape (channel, time).
-    prior_residual
-        For each uncertain known quantity (known - estimated) / std.
+    contradictions
+        For each known quantity by how many standard uncertainties the recordings and everything else that is known would
+        rather have another value; not for quantities of which they say nothing.
     loglikelihood
         Up to a constant.
     iterations
@@ -68,12 +79,37 @@ class Fit:
     residual: Real
     inflation: float
     fitted: tuple[Real, ...]
-    prior_residual: Mapping[str, float]
+    contradictions: Mapping[str, float]
     loglikelihood: float
     iterations: int
     converged: bool
     starts_agreeing: int
     starts: int
+
+    def moved(self, step: Real) -> Real:
+        """Give parameter values, SI, a step of the coordinates away, shape (parameter,)."""
+        logarithmic = np.array([PARAMETERS[name].positive for name in self.names])
+        return np.where(
+            logarithmic, self.values * np.exp(np.where(logarithmic, step, 0.0)), self.values + self.slopes * step
+        )
+
+    def spread(self, direction: Real, value: float) -> float | None:
+        """Give the standard uncertainty of a function of the coordinates.
+
+        Parameters
+        ----------
+        direction
+            Its gradient by the coordinates, shape (parameter,).
+        value
+            Its value.
+
+        Returns
+        -------
+        float or None
+            None where it is undetermined: where its uncertainty is as large as itself.
+        """
+        std = float(np.sqrt(max(float(direction @ self.relative_covariance @ direction), 0.0)))
+        return None if std > abs(value) else std
 
 
 def fit_jointly(
@@ -118,30 +154,40 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
     colour = float(of_colour(residuals, [decay.rate for decay in decays]).max())
     inflated = max(colour, summit.disagreement)
 
-    information, _, free = climb.system(best, inflated)
-    eigenvalues, vectors = np.linalg.eigh(information)
-    directions = free @ vectors
-    rounding = RANK * eigenvalues.max(initial=0.0)
-    resolved = eigenvalues > rounding
-    variances = np.where(resolved, 1.0 / np.where(resolved, eigenvalues, 1.0), 0.0)
-    relative = directions @ (variances[:, None] * directions.T)
+    eigenvalues, directions = _directions(summit, inflated)
+    relative = directions @ (directions / np.maximum(eigenvalues, _LEAST)).T
     slopes = knowledge.coordinates.slopes(best.u)
-    uncertain = [name for name, known in knowledge.statements.items() if not known.exact]
     return Fit(
         names=summit.names,
         values=summit.values,
         slopes=slopes,
         relative_covariance=relative,
         covariance=relative * np.outer(slopes, slopes),
-        undetermined=directions[:, eigenvalues < least_information(eigenvalues)],
+        undetermined=directions[:, eigenvalues < NO_INFORMATION],
         noise=summit.noise,
         residual=best.evaluation.residual,
         inflation=inflated,
         fitted=tuple(fitted),
-        prior_residual=dict(zip(uncertain, knowledge.prior(best.u).residual.tolist(), strict=True)),
+        contradictions=climb.contradictions(best, inflated),
         loglikelihood=summit.loglikelihood,
         iterations=summit.steps,
         converged=summit.converged,
         starts_agreeing=summit.starts_agreeing,
         starts=summit.starts,
     )
+
+
+def _directions(summit: Summit, inflated: float) -> tuple[Real, Real]:
+    """Give the information that is there, and its directions in the coordinates; shapes (direction,), (parameter, direction).
+
+    What noise feigns is taken off, and what is only rounding beside the largest information counts as none.
+    """
+    climb, point = summit.climb, summit.point
+    information, _, free = climb.system(point, inflated)
+    eigenvalues, vectors = np.linalg.eigh(information)
+    rounding = RANK * eigenvalues.max(initial=0.0)
+    if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
+        seen = climb.knowledge.coordinates.slopes(point.u)[:, None] * free
+        feigned = seen.T @ climb.likelihood.feigned(summit.values, point.weights) @ seen
+        eigenvalues, vectors = np.linalg.eigh(information - _FEIGNED * feigned)
+    return np.where(eigenvalues < rounding, 0.0, eigenvalues), free @ vectors

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +13,10 @@ from sprung.estimate import Known
 from sprung.vehicle import PARAMETERS, quantity
 
 Real = NDArray[np.float64]
+
+
+_FINEST = 1e-6
+"""Smallest relative uncertainty that a statement is taken to have: beside a finer one, rounding would hide the records."""
 
 
 class Prior(NamedTuple):
@@ -84,7 +88,7 @@ class Knowledge:
         chosen = [(name, known) for name, known in self.statements.items() if known.exact == exact]
         values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
         residual, rows = np.zeros(len(chosen)), np.zeros((len(chosen), len(u)))
-        scale = np.array([known.value if exact else known.std for _, known in chosen])
+        scale = np.array([known.value if exact else max(known.std, _FINEST * abs(known.value)) for _, known in chosen])
         for i, (name, known) in enumerate(chosen):
             value, gradient = quantity(name, self.coordinates.names, values)
             residual[i] = known.value - value
@@ -95,6 +99,15 @@ class Knowledge:
         """Give the uncertain statements as observations in units of their own standard uncertainty."""
         residual, rows, std = self._at(u, exact=False)
         return Prior(residual / std, rows / std[:, None])
+
+    def without(self, name: str) -> Knowledge:
+        """Give the knowledge without one statement."""
+        return replace(self, statements={one: known for one, known in self.statements.items() if one != name})
+
+    def change(self, name: str, u: Real, step: Real) -> float:
+        """Give by how much a quantity changes with a step of the coordinates, to first order, SI."""
+        _, gradient = quantity(name, self.coordinates.names, self.coordinates.values(u))
+        return float(gradient * self.coordinates.slopes(u) @ step)
 
     def bind(self, u: Real) -> Real:
         """Move coordinates, by the shortest way, to where every exact statement holds."""

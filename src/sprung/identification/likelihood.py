@@ -3,7 +3,8 @@
 In modal coordinates a channel of a decay is Σ_j s_cj q_j e^{λ_j t} plus an offset, and its derivative by a parameter
 is Σ_j (σ_cj + τ_cj t) q_j e^{λ_j t}. The amplitudes q (the unknown initial state) and the offsets are linear: they are
 solved for in closed form, and their directions are projected off the derivatives (variable projection after Golub and
-Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, in Kaufman's form). Every sum over samples is one of `sums`, so an
+Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, in Kaufman's form). All that is assumed of an initial state is that it is one
+a vehicle can be in, so that a motion which no sensor sees is taken to be none. Every sum over samples is one of `sums`, so an
 evaluation touches the records in one matrix product and everything else is small.
 """
 
@@ -16,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification.longhand import Longhand, evaluate_drop
+from sprung.identification.longhand import REACH, Longhand, evaluate_drop
 from sprung.identification.solution import ModalSlopes, ModalSolution, differentiate_modes, solve_modes
 from sprung.identification.sums import blocks, correlate, moments
 from sprung.prepare import Decay
@@ -30,9 +31,6 @@ _DEFECTIVE = 100.0
 
 _SECOND = np.repeat([0, 1], 14)
 """Which half of the 28 functions (e^{λt}, t e^{λt}) each belongs to."""
-
-_RIDGE = 1e-13
-"""Relative ridge on the amplitudes' normal equations: keeps a mode that no channel sees from dividing by zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,14 +169,25 @@ class Likelihood:
             if modes.condition > _DEFECTIVE:
                 part = _stack(self._longhand(group, values, weights))
             else:
-                span = float(group.samples.max()) / group.rate
-                slopes = differentiate_modes(group.model, self.sensors, values, modes, span)
-                part = _evaluate_group(group, modes, slopes, weights)
+                part = _evaluate_group(group, modes, self._slopes(group, values, modes), weights)
             residual[group.members] = part.residual
             leverage[group.members] = part.leverage
             gradient[group.members] = part.gradient
             information[group.members] = part.information
         return Evaluation(residual, leverage, gradient, information)
+
+    def feigned(self, values: Real, weights: Real) -> Real:
+        """Give the information that noise alone feigns.
+
+        A motion that no drop excites has amplitudes too: those that noise fits. The information is quadratic in the
+        amplitudes, so on average it is too large by what their covariance puts in their place. Shape (parameter, parameter).
+        """
+        total = np.zeros((len(values), len(values)))
+        for group in self.groups:
+            modes = self._modes(group, values)
+            if modes.condition <= _DEFECTIVE:  # else modes of their own cannot be told apart
+                total += _feigned_group(group, modes, self._slopes(group, values, modes), weights)
+        return total
 
     def misfit(self, values: Real, weights: Real) -> Real:
         """Give the residual sums of squares alone, at a fraction of the price; shape (drop, channel)."""
@@ -221,6 +230,10 @@ class Likelihood:
     def _modes(self, group: Group, values: Real) -> ModalSolution:
         return solve_modes(group.model, self.sensors, values)
 
+    def _slopes(self, group: Group, values: Real, modes: ModalSolution) -> ModalSlopes:
+        span = float(group.samples.max()) / group.rate
+        return differentiate_modes(group.model, self.sensors, values, modes, span)
+
     def _longhand(self, group: Group, values: Real, weights: Real) -> list[Longhand]:
         records = group.blocked.reshape(*group.energy.shape, -1)
         return [
@@ -255,7 +268,8 @@ class _Amplitudes(NamedTuple):
     gram: Complex  # of (e^{λt}, t e^{λt}), (drop, 28, 28)
     data: Complex  # inner products of (e^{λt}, t e^{λt}) with the records, (drop, channel, 28)
     smoothed: Complex  # the same with the fitted records
-    inverse: Complex  # of the amplitudes' normal equations, (drop, 14, 14)
+    normal: Complex  # normal equations of the amplitudes, from the records alone, (drop, 14, 14)
+    inverse: Complex  # of the same with their reach added
     weights: Real  # 1/σ², zero for channels left out, (drop, channel)
     amplitudes: Complex  # q, (drop, 14)
     residual: Real  # (drop, channel)
@@ -284,16 +298,17 @@ def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real) -> _Amp
 
     s = modes.shapes
     weighted = s.conj() * w[:, :, None]
+    within_reach = (modes.right.conj().T / REACH**2) @ modes.right
     normal = (np.swapaxes(weighted, 1, 2) @ s) * gram[:, :14, :14]
-    size = np.sqrt(np.maximum(np.einsum("djj->dj", normal).real, np.finfo(float).tiny))
+    size = np.sqrt(np.einsum("djj->dj", normal + within_reach).real)
     scale = size[:, :, None] * size[:, None, :]
-    inverse: Complex = np.linalg.inv(normal / scale + _RIDGE * np.eye(14)) / scale
+    inverse: Complex = np.linalg.inv((normal + within_reach) / scale) / scale
     q = (inverse @ (weighted * data[:, :, :14]).sum(axis=1)[:, :, None])[:, :, 0]
     fitted = s * q[:, None, :]
     smoothed = fitted @ np.swapaxes(gram[:, :, :14], 1, 2)
     explained = np.sum(fitted.conj() * (2 * data[:, :, :14] - smoothed[:, :, :14]), axis=2).real
     residual = np.maximum(group.energy - group.present * explained, 0.0)
-    return _Amplitudes(gram, data, smoothed, inverse, w, q, residual)
+    return _Amplitudes(gram, data, smoothed, normal, inverse, w, q, residual)
 
 
 def _evaluate_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, weights: Real) -> Evaluation:
@@ -303,13 +318,34 @@ def _evaluate_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, wei
     hat = gram[:, :14, :14] * np.swapaxes(linear.inverse, 1, 2)
     leverage = w * ((s.conj() @ hat) * s).sum(axis=2).real
 
-    # Derivatives of the fitted records: coefficients of (e^{λt}, t e^{λt}) for every parameter, channel and drop.
-    J = np.concatenate([slopes.shapes, slopes.secular], axis=2) * np.tile(linear.amplitudes, 2)[:, None, None, :]
-    weighted = J.conj() * w[:, None, :, None]
-    weighted = weighted.reshape(drops, parameters, -1)
+    J = _derivatives(slopes, linear.amplitudes)
+    weighted = (J.conj() * w[:, None, :, None]).reshape(drops, parameters, -1)
     gradient = (weighted @ (linear.data - linear.smoothed).reshape(drops, -1, 1))[:, :, 0].real
-    products = (J.reshape(drops, -1, 28) @ np.swapaxes(gram, 1, 2)).reshape(J.shape)
-    within = weighted @ np.swapaxes(products.reshape(drops, parameters, -1), 1, 2)
-    across = ((s.conj() * w[:, :, None])[:, None] * products[..., :14]).sum(axis=2)
-    information = (within - across.conj() @ linear.inverse @ np.swapaxes(across, 1, 2)).real
-    return Evaluation(linear.residual, leverage, gradient, information)
+    return Evaluation(linear.residual, leverage, gradient, _information(J, modes, linear))
+
+
+def _derivatives(slopes: ModalSlopes, amplitudes: NDArray[np.complexfloating]) -> Complex:
+    """Give the derivatives of the fitted records, as coefficients of (e^{λt}, t e^{λt}); (drop, parameter, channel, 28)."""
+    J: Complex = np.concatenate([slopes.shapes, slopes.secular], axis=2) * np.tile(amplitudes, 2)[:, None, None, :]
+    return J
+
+
+def _information(J: Complex, modes: ModalSolution, linear: _Amplitudes) -> Real:
+    """Give the products of derivatives with what amplitudes and offsets can take up projected off."""
+    drops, parameters = J.shape[:2]
+    w = linear.weights[:, None, :, None]
+    products = (J.reshape(drops, -1, 28) @ np.swapaxes(linear.gram, 1, 2)).reshape(J.shape)
+    within = (J.conj() * w).reshape(drops, parameters, -1) @ np.swapaxes(products.reshape(drops, parameters, -1), 1, 2)
+    across = (modes.shapes.conj() * w * products[..., :14]).sum(axis=2)
+    information: Real = (within - across.conj() @ linear.inverse @ np.swapaxes(across, 1, 2)).real
+    return information
+
+
+def _feigned_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, weights: Real) -> Real:
+    linear = _solve_amplitudes(group, modes, weights)
+    # What noise puts into the amplitudes: their inverse normal equations, less what their reach holds back.
+    eigenvalues, vectors = np.linalg.eigh(linear.normal)
+    roots = linear.inverse @ (vectors * np.sqrt(np.maximum(eigenvalues, 0.0))[:, None, :])
+    each = [_information(_derivatives(slopes, roots[:, :, j]), modes, linear) for j in range(14)]
+    total: Real = np.sum(each, axis=(0, 1))
+    return total

@@ -17,6 +17,10 @@ from sprung.vehicle import LinearModel, Rows, affine_response
 Real = NDArray[np.float64]
 
 
+REACH = np.repeat([1.0, 10.0], 7)
+"""How far from rest a decay may begin, in standard deviations: a metre or radian, and ten of them in a second."""
+
+
 class Longhand(NamedTuple):
     """One drop, evaluated the long way.
 
@@ -85,9 +89,10 @@ def evaluate_drop(
         readings = np.concatenate([readings, readings @ propagator])
         propagator = propagator @ propagator
     basis = weighted(readings[:samples].transpose(2, 1, 0)).T
-    size = np.linalg.norm(basis, axis=0)
-    orthonormal, triangle = np.linalg.qr(basis / size)
-    target = weighted(record)
+    within_reach = np.vstack([basis, np.diag(1 / REACH)])
+    size = np.linalg.norm(within_reach, axis=0)
+    orthonormal, triangle = np.linalg.qr(within_reach / size)
+    target = np.append(weighted(record), np.zeros(14))
     state = np.linalg.solve(triangle, orthonormal.T @ target) / size
     left = target - orthonormal @ (orthonormal.T @ target)
 
@@ -98,14 +103,14 @@ def evaluate_drop(
         both = np.block([[A, np.zeros((14, 14))], [dA, A]])
         motion = affine_response(both, np.zeros(28), np.append(state, np.zeros(14)), 1 / rate, samples)
         changes.append((dS @ lower + S @ dlower) @ motion[:14] + S @ lower @ motion[14:])
-    jacobian = weighted(np.array(changes)).T
+    jacobian = np.vstack([weighted(np.array(changes)).T, np.zeros((14, len(changes)))])
     jacobian = jacobian - orthonormal @ (orthonormal.T @ jacobian)
 
     fitted = np.swapaxes(readings[:samples] @ state, 0, 1)
     fitted = (fitted - fitted.mean(axis=1, keepdims=True)) * (weights > 0)[:, None]
     return Longhand(
         residual=np.sum((record - fitted) ** 2, axis=1),
-        leverage=np.sum(orthonormal.reshape(channels, samples, -1) ** 2, axis=(1, 2)),
+        leverage=np.sum(orthonormal[:-14].reshape(channels, samples, -1) ** 2, axis=(1, 2)),
         gradient=jacobian.T @ left,
         information=jacobian.T @ jacobian,
         fitted=fitted,

@@ -15,9 +15,6 @@ from sprung.vehicle import LinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
 
-_TOUCHED = 1e-3
-"""Relative change of a pole along an undetermined direction above which the pole is undetermined too."""
-
 
 @dataclass(frozen=True)
 class ModeEstimate:
@@ -66,6 +63,12 @@ def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> t
     rows = Rows.of([sensor.row for sensor in sensors], fit.names)
     modes = solve_modes(model, rows, fit.values)
     slopes = differentiate_modes(model, rows, fit.values, modes, 1.0).poles * fit.slopes[:, None]
+    # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
+    away = [
+        np.linalg.eigvals(model.matrices(fit.moved(way * direction)).state).astype(np.complex128)
+        for direction in fit.undetermined.T
+        for way in (-1, 1)
+    ]
     upper = np.flatnonzero(modes.poles.imag >= 0)
     named = name_modes([Mode(complex(modes.poles[j]), modes.right[:7, j]) for j in upper])
     left = set(upper.tolist())
@@ -73,27 +76,27 @@ def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> t
     for mode in named:
         nearest = min(left, key=lambda j: abs(modes.poles[j] - mode.pole))
         left.remove(nearest)
-        estimates.append(_estimate(mode, slopes[:, nearest], fit))
+        estimates.append(_estimate(mode, slopes[:, nearest], away, fit))
     return tuple(estimates)
 
 
-def _estimate(mode: Mode, slope: NDArray[np.complex128], fit: Fit) -> ModeEstimate:
+def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.complex128]], fit: Fit) -> ModeEstimate:
     pole, size = mode.pole, abs(mode.pole)
     of_size = (np.conj(pole) * slope).real / size
-    real = pole.imag == 0
-    of_damping = np.zeros_like(of_size) if real else -slope.real / size + pole.real * of_size / size**2
-    undetermined = np.abs(slope @ fit.undetermined).max(initial=0.0) > _TOUCHED * size
+    of_damping = np.zeros_like(of_size) if pole.imag == 0 else -slope.real / size + pole.real * of_size / size**2
+    followed = np.array([poles[np.argmin(np.abs(poles - pole))] for poles in away], dtype=complex)
 
-    def std(direction: Real) -> float | None:
-        variance = float(direction @ fit.relative_covariance @ direction)
-        return None if undetermined else max(variance, 0.0) ** 0.5
+    def std(direction: Real, value: float, values: Real) -> float | None:
+        near = fit.spread(direction, value)
+        far = float(np.abs(values - value).max(initial=0.0))
+        return None if near is None or far > abs(value) else max(near, far)
 
     return ModeEstimate(
         name=mode.name or "unnamed",
         pole=(float(pole.real), float(pole.imag)),
         frequency=mode.frequency,
-        frequency_std=std(of_size / (2 * np.pi)),
+        frequency_std=std(of_size / (2 * np.pi), mode.frequency, np.abs(followed) / (2 * np.pi)),
         damped_frequency=mode.damped_frequency,
         damping_ratio=mode.damping_ratio,
-        damping_ratio_std=std(of_damping),
+        damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
     )

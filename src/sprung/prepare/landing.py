@@ -27,7 +27,7 @@ Real = NDArray[np.float64]
 _JUMP = 0.015
 """s after the release within which the wheel's reading has jumped, blocks and filters being what they are."""
 
-_ON_THE_GROUND = 0.4
+_ON_THE_GROUND = 0.5
 """Part of the static tyre force above which a tyre is certainly on the ground, for all that is rough in its estimate."""
 
 

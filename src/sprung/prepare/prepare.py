@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +54,7 @@ def prepare(campaign: Campaign) -> Prepared:
     -------
     Prepared
     """
+    campaign = replace(campaign, recordings=_alive(campaign.recordings))
     releases = [_release(recording) for recording in campaign.recordings]
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
@@ -62,6 +65,37 @@ def prepare(campaign: Campaign) -> Prepared:
         else:
             left_out.append((drop, recording, (*recording.faults, decay)))
     return Prepared(tuple(decays), tuple(left_out))
+
+
+def _alive(recordings: Sequence[Recording]) -> tuple[Recording, ...]:
+    """Leave out channels that never move, and recordings that are copies of an earlier one."""
+    seen: dict[bytes, str] = {}
+    alive = []
+    for recording in recordings:
+        flat = recording.usable & (np.ptp(recording.values, axis=1) == 0)
+        original = seen.setdefault(recording.values.tobytes(), recording.name)
+        faults = [
+            Fault(
+                "flat",
+                f"{recording.name}: {recording.channels[channel]}",
+                "the channel shows one value throughout; it is left out of this drop",
+                "Check the sensor and its cable.",
+            )
+            for channel in np.flatnonzero(flat)
+        ]
+        if original != recording.name and recording.usable.any():
+            flat = np.ones_like(flat)
+            faults = [
+                Fault(
+                    "copy",
+                    recording.name,
+                    f"the same samples as {original}; the drop is left out, since it tells nothing new",
+                    "Name the right file for this drop, or remove it from the campaign.",
+                )
+            ]
+        values = np.where(flat[:, None], np.nan, recording.values)
+        alive.append(replace(recording, values=values, faults=(*recording.faults, *faults)))
+    return tuple(alive)
 
 
 def _release(recording: Recording) -> Release | None:
