@@ -28,6 +28,9 @@ _PASSES = 4
 _NO_WORSE = 1.1
 """Noise after moving the starts over noise before, above which the records say that they were not to be moved."""
 
+_BACKWARD = 30.0
+"""Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
+
 _MOST = 0.5
 """Part of a decay that may be given up: a model to which tyres seem to hop for longer is not to be trusted in this."""
 
@@ -80,7 +83,9 @@ def _shift(decay: Decay, model: LinearModel, values: Real, state: Real) -> int:
     poles, shapes = np.linalg.eig(matrices.state)
     amplitudes = np.linalg.solve(shapes, state)
     samples = np.arange(-earlier, decay.samples)
-    motion = ((shapes[3:7] * amplitudes) @ np.exp(poles[:, None] * samples / decay.rate)).real
+    exponent = poles[:, None] * samples / decay.rate
+    powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
+    motion = ((shapes[3:7] * amplitudes) @ powers).real
     loose = np.flatnonzero((static - motion < _COMPRESSED * static).any(axis=0))
     first = int(loose[-1]) + 1 if loose.size else 0
     return first - earlier if first - earlier < _MOST * decay.samples else 0

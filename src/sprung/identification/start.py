@@ -37,10 +37,10 @@ def catalogue(known: Mapping[str, Known], sensors: Sequence[Sensor]) -> Iterator
     dict
         Values, SI, of every parameter of every linear model; the known ones hold.
     """
-    places = np.array([sensor.position for sensor in sensors if sensor.position is not None])
+    places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
     wheelbase, front_share = _length(known, places)
     total = _mass(known, wheelbase)
-    half_track = float(np.mean(np.abs(places[:, 1]))) or 0.27 * wheelbase
+    half_track = float(np.abs(places[:, 1]).sum()) / max(len(places), 1) or 0.27 * wheelbase
     a, b = (1 - front_share) * wheelbase, front_share * wheelbase
     for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
         wheel = _WHEEL_SHARE * total
@@ -70,7 +70,7 @@ def _length(
     if wheelbase is None and "a" in value and "b" in value:
         wheelbase = value["a"] + value["b"]
     if wheelbase is None:
-        wheelbase = float(np.ptp(places[:, 0]))
+        wheelbase = float(np.ptp(places[:, 0])) if len(places) else 2.7
     if "b" in value:
         share = value["b"] / wheelbase
     elif "a" in value:

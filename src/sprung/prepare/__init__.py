@@ -2,6 +2,6 @@
 
 from sprung.prepare.decay import Decay
 from sprung.prepare.prepare import Prepared, prepare
-from sprung.prepare.release import Rest, no_rest
+from sprung.prepare.release import Rest, no_rest, resolution
 
-__all__ = ["Decay", "Prepared", "Rest", "no_rest", "prepare"]
+__all__ = ["Decay", "Prepared", "Rest", "no_rest", "prepare", "resolution"]

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
 from sprung.prepare.release import Release
 from sprung.units import STANDARD_GRAVITY
@@ -26,6 +27,15 @@ Real = NDArray[np.float64]
 
 _JUMP = 0.015
 """s after the release within which the wheel's reading has jumped, blocks and filters being what they are."""
+
+_IMPACT = 0.5
+"""s after the release within which every wheel has met the ground: a fall from 0.3 m, and the tyre's compression."""
+
+_SPIKE = 0.02
+"""s: what is shorter is taken for a spike, not for a wheel that has left the ground again."""
+
+_LONGEST = 2.0
+"""s after the release for which wheels may hop; what looks like it later is something else."""
 
 _ON_THE_GROUND = 0.5
 """Part of the static tyre force above which a tyre is certainly on the ground, for all that is rough in its estimate."""
@@ -80,6 +90,7 @@ def suspension_jump(
 
 def find_decay(
     values: Real,
+    rate: float,
     release: Release,
     sensors: Sequence[Sensor],
     suspension: Mapping[Wheel, float],
@@ -92,6 +103,8 @@ def find_decay(
     ----------
     values
         Shape (channel, time), m/s²; channels that are left out NaN.
+    rate
+        Samples per second.
     release
         The release.
     sensors
@@ -116,6 +129,7 @@ def find_decay(
     plane = np.column_stack([np.ones(len(body)), places[:, :2]])
     half_track = float(np.abs(places[:, 1]).mean())
     first = last = 0
+    longest, impact, spike = int(_LONGEST * rate), int(_IMPACT * rate), 2 * int(_SPIKE * rate / 2) + 1
     for channel, sensor in enumerate(sensors):
         if sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
             continue
@@ -124,11 +138,12 @@ def find_decay(
         above = np.array([1.0, x, y]) @ np.linalg.pinv(plane) @ reading[body]
         force = reading[channel] + suspension[sensor.on] * above / STANDARD_GRAVITY
         static = STANDARD_GRAVITY + suspension[sensor.on]
-        low = np.flatnonzero(force[release.sample :] < _ON_THE_GROUND * static)
+        force = median_filter(force[release.sample : release.sample + longest], size=spike)
+        low = np.flatnonzero(force < _ON_THE_GROUND * static)
         if low.size:
             last = max(last, release.sample + int(low[-1]) + 1)
         if sensor.on in dropped:
-            first = max(first, _steepest_rise(reading[channel], release.sample))
+            first = max(first, _steepest_rise(reading[channel, : release.sample + impact], release.sample))
     return Landing(first or last, max(first, last)) if first or last else None
 
 

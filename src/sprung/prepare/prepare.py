@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.prepare.clipping import clipped_samples
+from sprung.prepare.coupling import direct_coupled
 from sprung.prepare.decay import Decay
 from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
@@ -22,6 +24,15 @@ Real = NDArray[np.float64]
 
 SHORTEST = 0.5
 """s: a decay shorter than this holds less than half a period of a body mode, and is left out."""
+
+_TYPICAL_WHEELBASE = 2.7
+"""m, where neither tape nor sensors tell."""
+
+_LOW_BLOCKS, _HOPPING = 0.1, 0.25
+"""Height of blocks that nobody measured, m; and two periods of the slowest usual wheel hop, s."""
+
+_CLIPPED = 0.6
+"""s after the release up to which clipping only delays the decay; a channel that clips for longer is left out."""
 
 _TYPICAL_SUSPENSION = 70.0
 """Static suspension force over unsprung mass, m/s², for a wheel that no release has weighed: between car and bus."""
@@ -56,6 +67,11 @@ def prepare(campaign: Campaign) -> Prepared:
     """
     campaign = replace(campaign, recordings=_alive(campaign.recordings))
     releases = [_release(recording) for recording in campaign.recordings]
+    recordings = [
+        recording if release is None else direct_coupled(recording, release, campaign.sensors)
+        for recording, release in zip(campaign.recordings, releases, strict=True)
+    ]
+    campaign = replace(campaign, recordings=tuple(recordings))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
     for drop, recording, release in zip(campaign.drops, campaign.recordings, releases, strict=True):
@@ -131,8 +147,10 @@ def _decay(
     if not recording.usable.any():
         return Fault("missing", where, "no channel of this drop can be used; it is left out", "Record the drop again.")
     faults = list(recording.faults)
-    landing = _landing(campaign, drop, recording, release, suspension, faults)
+    clipped = clipped_samples(recording.values, campaign.sensors)
+    landing = _landing(campaign, drop, recording, release, suspension, clipped, faults)
     first = landing.certain
+    recording = _without_clipped(recording, clipped, landing.possible, faults)
     last = recording.values.shape[1] - 1
     if drop.end is not None:
         last = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6)))
@@ -157,12 +175,29 @@ def _decay(
     )
 
 
+def _without_clipped(recording: Recording, clipped: NDArray[np.bool_], start: int, faults: list[Fault]) -> Recording:
+    """Leave out the channels that clip within the decay, and tell of those that clipped before it."""
+    spoilt = np.asarray(clipped[:, start:].any(axis=1))
+    for channel in np.flatnonzero(np.asarray(clipped.any(axis=1))):
+        consequence = "it is left out of this drop" if spoilt[channel] else "the decay is used from after them"
+        faults.append(
+            Fault(
+                "clipped",
+                f"{recording.name}: {recording.channels[channel]}",
+                f"{int(clipped[channel].sum())} samples are at the sensor's full scale; {consequence}",
+                "Use a sensor with more range, or lower blocks.",
+            )
+        )
+    return replace(recording, values=np.where(spoilt[:, None], np.nan, recording.values)) if spoilt.any() else recording
+
+
 def _landing(
     campaign: Campaign,
     drop: Drop,
     recording: Recording,
     release: Release | None,
     suspension: dict[Wheel, float],
+    clipped: NDArray[np.bool_],
     faults: list[Fault],
 ) -> Landing:
     if drop.start is not None:
@@ -178,17 +213,23 @@ def _landing(
             )
         )
         return Landing(0, 0)
-    found = find_decay(recording.values, release, campaign.sensors, suspension, drop.wheels, _wheelbase(campaign))
-    if found is not None:
-        return found
-    # Without a reading at the wheels that fell: the fall itself, and two periods of the slowest usual wheel hop.
-    fall = np.sqrt(2 * (drop.height or 0.1) / STANDARD_GRAVITY)
-    guessed = release.sample + int((fall + 0.25) * recording.rate)
-    return Landing(guessed, guessed)
+    fall = np.sqrt(2 * (drop.height or _LOW_BLOCKS) / STANDARD_GRAVITY)
+    possible = release.sample + int(fall * recording.rate)
+    guessed = release.sample + int((fall + _HOPPING) * recording.rate)
+    wheelbase = _wheelbase(campaign)
+    found = find_decay(
+        recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
+    ) or Landing(possible, guessed)
+    judged = {sensor.on for sensor, used in zip(campaign.sensors, recording.usable, strict=True) if used}
+    if not judged.issuperset(drop.wheels):  # a wheel fell that nobody watched
+        found = Landing(max(found.possible, possible), max(found.certain, guessed))
+    at_landing = np.asarray(clipped[:, : release.sample + int(_CLIPPED * recording.rate)].any(axis=0))
+    after = int(np.flatnonzero(at_landing)[-1]) + 1 if at_landing.any() else 0
+    return Landing(max(found.possible, after), max(found.certain, after))
 
 
 def _wheelbase(campaign: Campaign) -> float:
     if campaign.wheelbase is not None:
         return campaign.wheelbase.value
     x = [sensor.position[0] for sensor in campaign.sensors if sensor.position is not None]
-    return max(x) - min(x)
+    return max(x) - min(x) if x else _TYPICAL_WHEELBASE

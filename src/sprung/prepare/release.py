@@ -18,6 +18,9 @@ _SMALL = 0.03
 _STANDS_OUT = 30.0
 """Peak over the spread of the first samples in the clearest channel, below which the recording does not begin at rest."""
 
+_FEW = 20
+"""Samples that a first look at the noise needs at least."""
+
 _REST = 0.3
 """s before the release from which rest level and noise are taken."""
 
@@ -74,20 +77,27 @@ def find_release(values: Real, rate: float) -> Release | None:
 
     Notes
     -----
-    The landing is the largest event of a recording. Going back from it, the release is where the last stretch ends in
-    which every channel stays within its own noise.
+    The landing is the largest event of a recording, all channels taken together. Going back from it, the release is where
+    the last stretch ends in which every channel stays within its own noise.
     """
     width = max(round(_QUIET * rate), 3)
     if values.shape[1] < 4 * width:
         return None
-    level = np.median(values[:, :width], axis=1, keepdims=True)
-    spread = 1.4826 * np.median(np.abs(values[:, :width] - level), axis=1, keepdims=True)
+    first = values[:, : max(width, _FEW)]
+    level = np.median(first, axis=1, keepdims=True)
+    # A coarse sensor at rest may show one step, or none at all: its noise is then no less than its resolution's.
+    spread = np.max(
+        [1.4826 * np.median(np.abs(first - level), axis=1), 0.6 * first.std(axis=1), resolution(values) / np.sqrt(12)],
+        axis=0,
+    )[:, None]
     deviation = np.abs(values - level)
-    peak = deviation.max(axis=1, keepdims=True)
+    peak = np.maximum(deviation.max(axis=1, keepdims=True), 1e-300)
     moving = (deviation > np.maximum(8 * spread, _SMALL * peak)).any(axis=0)
-    if np.max(peak / np.maximum(spread, 1e-300)) < _STANDS_OUT:
+    clear = peak > _STANDS_OUT * spread
+    if not clear.any():
         return None
-    landing = int(np.argmax((deviation / np.maximum(peak.max(), 1e-300)).max(axis=0)))
+    # A landing shows in every channel that shows anything, a spike in one.
+    landing = int(np.argmax((deviation / peak * clear).sum(axis=0)))
     if landing < width:
         return None
     run = np.convolve(moving[:landing], np.ones(width), mode="valid")
@@ -103,3 +113,10 @@ def find_release(values: Real, rate: float) -> Release | None:
     slope = rest @ centred / (centred @ centred)
     mean = rest.mean(axis=1)
     return Release(sample, Rest(mean, rest - mean[:, None] - slope[:, None] * centred))
+
+
+def resolution(values: Real) -> Real:
+    """Give the smallest step that each channel ever takes, m/s²: its resolution, if that is coarse; shape (channel,)."""
+    steps = np.abs(np.diff(values, axis=1))
+    smallest = np.where(steps > 0, steps, np.inf).min(axis=1, initial=np.inf)
+    return np.where(np.isfinite(smallest), smallest, 0.0)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification import Fit, of_colour
-from sprung.prepare import Decay
+from sprung.prepare import Decay, resolution
 
 Real = NDArray[np.float64]
 
@@ -85,8 +85,11 @@ def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     effective = np.maximum(rest.samples / colour, 1.0)
     at_rest = np.where(known, rest.variance / np.maximum(1 - 2 * len(rests) / effective, 0.5), 0.0)
 
-    by_colour = left.neighbour - np.where(known, rest.neighbour, 0.0)
-    by_variance = np.where(known, left.variance - at_rest, 0.0)
+    # A sensor whose noise is below its resolution may show none at rest; in motion its steps make an error that is coloured
+    # where the motion is slow, and of which no model is to blame.
+    steps = _of_steps(decays)
+    by_colour = left.neighbour - np.where(known, rest.neighbour, 0.0) - steps
+    by_variance = np.where(known, left.variance - at_rest - steps, 0.0)
     samples = np.maximum(left.samples, 1.0)
     error = np.sqrt(2) * left.variance * np.sqrt(colour / samples + np.where(known, 1 / effective, 0.0))
     excess = np.max([np.where(part > _SIGNIFICANT * error, part, 0.0) for part in (by_colour, by_variance)], axis=0)
@@ -99,9 +102,19 @@ def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     ]
     return Misfit(
         relative=np.sqrt(excess / np.maximum(signal.variance, tiny)),
-        ratio=np.sqrt(np.where(known, left.variance / np.maximum(at_rest, tiny), np.nan)),
+        ratio=np.sqrt(np.where(known, left.variance / np.maximum(at_rest + steps, tiny), np.nan)),
         by_drop=np.array(by_drop),
     )
+
+
+def _of_steps(decays: Sequence[Decay]) -> Real:
+    """Give the mean square of rounding to each channel's resolution at its worst, (m/s²)², shape (channel,).
+
+    Where a slow signal stays between two steps, the error is not spread evenly over a step but nearer to its ends.
+    """
+    steps = [np.where(decay.usable, resolution(np.nan_to_num(decay.values)), np.inf) for decay in decays]
+    smallest = np.min(steps, axis=0)
+    return np.where(np.isfinite(smallest), smallest, 0.0) ** 2 / 6
 
 
 class _Moments(NamedTuple):
