@@ -228,10 +228,12 @@ def test_modal(folder: Folder, method: str) -> None:
     before = folder.listing()
     said = run("modal", folder.path, "--method", method, "--json")
     assert said.status == 0
-    assert list(said.json) == ["empty", "ballast"]
-    for mode in said.json["empty"]:
+    assert list(said.json) == ["modes"]  # keyed as in results.json
+    modes = said.json["modes"]
+    assert list(modes) == ["empty", "ballast"]
+    for mode in modes["empty"]:
         check_mode(mode)
-    bounce = next(mode for mode in said.json["empty"] if mode["name"] == "body bounce")
+    bounce = next(mode for mode in modes["empty"] if mode["name"] == "body bounce")
     assert bounce["frequency"] == pytest.approx(1.052, abs=0.1)  # of the Table 1 car, from its matrices
     assert "Modes, ballast" in run("modal", folder.path, "--method", method).out
     assert folder.listing() == before

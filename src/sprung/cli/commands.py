@@ -97,7 +97,7 @@ def modal(
         found = sprung.modes(read, method=method)
         faults = sprung.check(read).faults
     if as_json:
-        say_json({load: [asdict(mode) for mode in modes] for load, modes in found.items()})
+        say_json({"modes": {load: [asdict(mode) for mode in modes] for load, modes in found.items()}})
     else:
         say(sprung.report.text_of(sprung.report.modes_view(found, faults)))
 
