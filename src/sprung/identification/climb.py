@@ -33,7 +33,7 @@ FAR, CLOSE_BY = 1e-3, 1e-9
 """Damping of the first step, as a part of each parameter's own information."""
 
 _SETTLED = 1e-3  # relative change of the noise levels
-_SAME = 0.01  # distance in standard errors, squared, within which a climb will end where another one has
+_SAME = 100.0  # distance in standard errors, squared, within which a climb will end where another one has
 _EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have before anybody is told
 _ITERATIONS = 100
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
@@ -215,7 +215,7 @@ class Climb:
         u
             Coordinates to start from, exact knowledge fulfilled.
         summit
-            Where another climb has ended: coming within a tenth of a standard error of it, this one ends there too.
+            Where another climb has ended: coming within ten standard errors of it, this one ends there too.
         enough
             Expected gain in log-likelihood at which to stop.
         damping

@@ -31,6 +31,9 @@ _NO_WORSE = 1.1
 _BACKWARD = 30.0
 """Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
 
+_LONGEST = 2.0
+"""s after the start of a decay for which wheels may still hop."""
+
 _MOST = 0.5
 """Part of a decay that may be given up: a model to which tyres seem to hop for longer is not to be trusted in this."""
 
@@ -82,7 +85,7 @@ def _shift(decay: Decay, model: LinearModel, values: Real, state: Real) -> int:
     earlier = decay.earlier.shape[1]
     poles, shapes = np.linalg.eig(matrices.state)
     amplitudes = np.linalg.solve(shapes, state)
-    samples = np.arange(-earlier, decay.samples)
+    samples = np.arange(-earlier, min(decay.samples, int(_LONGEST * decay.rate)))
     exponent = poles[:, None] * samples / decay.rate
     powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
     motion = ((shapes[3:7] * amplitudes) @ powers).real

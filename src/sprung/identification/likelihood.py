@@ -29,9 +29,6 @@ Complex = NDArray[np.complex128]
 _DEFECTIVE = 100.0
 """Condition number of a pole from which two modes have all but met in one shape, and the long way is taken."""
 
-_SECOND = np.repeat([0, 1], 14)
-"""Which half of the 28 functions (e^{λt}, t e^{λt}) each belongs to."""
-
 
 @dataclass(frozen=True, eq=False)
 class Group:
@@ -193,7 +190,7 @@ class Likelihood:
         """Give the residual sums of squares alone, at a fraction of the price; shape (drop, channel)."""
         residual = np.zeros((self.drops, self.channels))
         for group in self.groups:
-            residual[group.members] = _solve_amplitudes(group, self._modes(group, values), weights).residual
+            residual[group.members] = _solve_amplitudes(group, self._modes(group, values), weights, False).residual
         return residual
 
     def fitted(self, values: Real, weights: Real) -> list[Real]:
@@ -275,26 +272,20 @@ class _Amplitudes(NamedTuple):
     residual: Real  # (drop, channel)
 
 
-def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real) -> _Amplitudes:
+def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real, secular: bool = True) -> _Amplitudes:
+    """Solve for the amplitudes; what t e^{λt} has to do with the records only derivatives need."""
     step = 1.0 / group.rate
     exponent = modes.poles * step
     N = group.samples[:, None]
     w = group.present * weights
 
-    # Everything is centred over the record, because every channel of every drop has an offset of its own.
-    pair = moments(np.conj(exponent)[:, None] + exponent, N[:, :, None])
-    mean = moments(exponent, N)
-    means = np.concatenate([mean.zeroth, mean.first * step], axis=1) / N
-    lagged = pair.first * step
-    whole = np.block([[pair.zeroth, lagged], [lagged, pair.second * step**2]])
-    gram = np.asarray(whole - N[:, :, None] * np.conj(means)[:, :, None] * means[:, None, :], dtype=np.complex128)
+    gram = _gram(exponent, N, step, secular)
     # Poles come in conjugate pairs, one beside the other: one of each pair is enough for real records.
     upper = exponent.imag >= 0
-    zeroth, first = correlate(group.blocked, exponent[upper])
-    data = np.concatenate([zeroth, first * step], axis=2)[
-        :, :, np.tile(np.cumsum(upper) - 1, 2) + _SECOND * upper.sum()
-    ]
-    data = np.where(np.tile(upper, 2), data, data.conj())
+    of_pair = np.cumsum(upper) - 1
+    parts = correlate(group.blocked, exponent[upper], secular)
+    halves = [np.where(upper, part[:, :, of_pair], part[:, :, of_pair].conj()) for part in parts]
+    data = np.concatenate([half * step**power for power, half in enumerate(halves)], axis=2)
 
     s = modes.shapes
     weighted = s.conj() * w[:, :, None]
@@ -309,6 +300,23 @@ def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real) -> _Amp
     explained = np.sum(fitted.conj() * (2 * data[:, :, :14] - smoothed[:, :, :14]), axis=2).real
     residual = np.maximum(group.energy - group.present * explained, 0.0)
     return _Amplitudes(gram, data, smoothed, normal, inverse, w, q, residual)
+
+
+def _gram(exponent: Complex, samples: NDArray[np.int64], step: float, secular: bool) -> Complex:
+    """Give the products of (e^{λt}, t e^{λt}) with each other over records of so many samples; (drop, 28 or 14, ...).
+
+    Everything is centred over the record, because every channel of every drop has an offset of its own.
+    """
+    pair = moments(np.conj(exponent)[:, None] + exponent, samples[:, :, None])
+    mean = moments(exponent, samples)
+    whole, sums = pair.zeroth, mean.zeroth
+    if secular:
+        lagged = pair.first * step
+        above, below = np.concatenate([whole, lagged], axis=2), np.concatenate([lagged, pair.second * step**2], axis=2)
+        whole, sums = np.concatenate([above, below], axis=1), np.concatenate([sums, mean.first * step], axis=1)
+    means = sums / samples
+    gram = whole - samples[:, :, None] * np.conj(means)[:, :, None] * means[:, None, :]
+    return np.asarray(gram, dtype=np.complex128)
 
 
 def _evaluate_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, weights: Real) -> Evaluation:

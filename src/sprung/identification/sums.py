@@ -86,7 +86,7 @@ def blocks(values: Real) -> Real:
     return padded.reshape(*values.shape[:-1], count, BLOCK)
 
 
-def correlate(blocked: Real, exponent: Complex) -> tuple[Complex, Complex]:
+def correlate(blocked: Real, exponent: Complex, weighted: bool = True) -> tuple[Complex, ...]:
     """Give the inner products of records with exponentials.
 
     Parameters
@@ -95,20 +95,25 @@ def correlate(blocked: Real, exponent: Complex) -> tuple[Complex, Complex]:
         Records cut by `blocks`, shape (..., block, BLOCK).
     exponent
         λ times the sampling interval, shape (mode,).
+    weighted
+        Whether the second of the results is wanted.
 
     Returns
     -------
-    zeroth, first
-        Σ conj(z^k) y_k and Σ k conj(z^k) y_k, each of shape (..., mode).
+    tuple of ndarray
+        Σ conj(z^k) y_k and, if wanted, Σ k conj(z^k) y_k, each of shape (..., mode).
     """
     inside = np.arange(BLOCK)
     across = BLOCK * np.arange(blocked.shape[-2])
     fine = np.exp(np.conj(exponent) * inside[:, None])
     coarse = np.exp(np.conj(exponent) * across[:, None])
-    table = np.hstack([fine.real, fine.imag, inside[:, None] * fine.real, inside[:, None] * fine.imag])
-    products = (blocked @ table).reshape(*blocked.shape[:-1], 4, exponent.size)
+    columns = [fine.real, fine.imag]
+    if weighted:
+        columns += [inside[:, None] * fine.real, inside[:, None] * fine.imag]
+    products = (blocked @ np.hstack(columns)).reshape(*blocked.shape[:-1], len(columns), exponent.size)
     plain = products[..., 0, :] + 1j * products[..., 1, :]
-    weighted = products[..., 2, :] + 1j * products[..., 3, :]
     zeroth = (coarse * plain).sum(axis=-2)
-    first = (coarse * (weighted + across[:, None] * plain)).sum(axis=-2)
-    return zeroth, first
+    if not weighted:
+        return (zeroth,)
+    lagged = products[..., 2, :] + 1j * products[..., 3, :]
+    return zeroth, (coarse * (lagged + across[:, None] * plain)).sum(axis=-2)
