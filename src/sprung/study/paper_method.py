@@ -12,8 +12,9 @@ from sprung.identification import added_mass, parameters_from_matrices
 from sprung.modal import state_variable_method
 from sprung.prepare import prepare
 from sprung.recording import Campaign
-from sprung.simulation import half_sine_bumps
-from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel
+from sprung.simulation import DEFAULT_HEIGHT, half_sine_bumps, simulate
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel, drop_from_blocks
 
 Real = NDArray[np.float64]
 
@@ -24,7 +25,10 @@ LAG = 10
 """Samples between the states of eq. (6), 20 ms: about a fifth of a period of wheel hop. One sample loses a digit."""
 
 DECAY = 2.0
-"""s of free vibration after the bump."""
+"""s of free vibration after the bump or the landing."""
+
+REST = 0.4
+"""s on the blocks before a drop."""
 
 BUMP_HEIGHT, BUMP_PASSAGE = 0.09, 0.2
 """Eq. (19): m and s."""
@@ -84,6 +88,29 @@ def bump_campaign(
             drops.append(drop.model_copy(update={"file": name}))
             recordings.append(replace(recording, name=name))
     return replace(runs[0], drops=tuple(drops), recordings=tuple(recordings))
+
+
+def drop_campaign(vehicle: Vehicle, load: Load) -> Campaign:
+    """Simulate the experiment's drops off blocks, empty and loaded, without noise.
+
+    Parameters
+    ----------
+    vehicle, load
+        What falls.
+
+    Returns
+    -------
+    Campaign
+        Gravity taken off, and the free vibration marked: it starts when the last tyre has landed for good.
+    """
+    campaign = simulate(vehicle, loads=[load], rate=RATE, noise=0.0, rest=REST, duration=DECAY + 1.0)
+    drops = []
+    for drop in campaign.drops:
+        height = DEFAULT_HEIGHT if drop.height is None else drop.height
+        fall = drop_from_blocks(vehicle, campaign.load(drop.load), drop.wheels, height)
+        drops.append(drop.model_copy(update={"start": REST + fall.decay_start}))
+    recordings = tuple(replace(r, values=r.values - STANDARD_GRAVITY) for r in campaign.recordings)
+    return replace(campaign, drops=tuple(drops), recordings=recordings)
 
 
 def state_matrices(campaign: Campaign, a: float) -> dict[str, Real]:
