@@ -37,8 +37,7 @@ def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[Likelihood, Rea
 
 def basis(likelihood: Likelihood, values: Real, load: str, samples: int, rate: float = 200) -> Real:
     """Give every column that a free initial state and the offsets can make, channel after channel, from matrix exponentials."""
-    group = next(g for g in likelihood.groups if g.model is models_by_load(likelihood)[load])
-    matrices = group.model.matrices(values)
+    matrices = likelihood.models[likelihood.records.loads.index(load)].matrices(values)
     sensors = likelihood.sensors.at(values)
     columns = []
     for state in np.eye(14):
@@ -46,11 +45,6 @@ def basis(likelihood: Likelihood, values: Real, load: str, samples: int, rate: f
         columns.append((sensors @ (matrices.state @ states)[7:]).ravel())
     offsets = np.kron(np.eye(len(sensors)), np.ones(samples)).reshape(len(sensors), -1)
     return np.column_stack([*columns, *offsets])
-
-
-def models_by_load(likelihood: Likelihood) -> dict[str, object]:
-    empty, loaded = sorted((g.model for g in likelihood.groups), key=lambda m: float(m.mass.coefficients[:, 0].sum()))
-    return {"empty": empty, "bags": loaded}
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS])
@@ -179,20 +173,22 @@ def test_modes_that_meet_in_one_shape() -> None:
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS])
 def test_both_ways_agree(vehicle: Vehicle) -> None:
     """The modal way, in closed form, against matrix exponentials sample by sample."""
-    likelihood, values, records, _ = likelihood_of(vehicle)
+    likelihood, values, records, loads = likelihood_of(vehicle)
     values, weights = values * np.linspace(0.97, 1.04, len(values)), np.linspace(0.5, 1.0, 8) * HEAVY
     found = likelihood.evaluate(values, weights)
     information = np.zeros_like(found.information[0])
     fitted = likelihood.fitted(values, weights)
-    for group in likelihood.groups:
-        for drop in group.members:
-            record = records[drop] - records[drop].mean(axis=1, keepdims=True)
-            one = evaluate_drop(group.model, likelihood.sensors, values, record, group.rate, weights)
-            np.testing.assert_allclose(found.residual[drop], one.residual, rtol=1e-9)
-            np.testing.assert_allclose(found.leverage[drop], one.leverage, rtol=1e-6)
-            np.testing.assert_allclose(found.gradient[drop] * values, one.gradient * values, rtol=1e-7, atol=1e-3)
-            np.testing.assert_allclose(fitted[drop], one.fitted, atol=1e-9)
-            information += one.information
+    states = likelihood.states(values, weights)
+    for drop, (whole, load) in enumerate(zip(records, loads, strict=True)):
+        record = whole - whole.mean(axis=1, keepdims=True)
+        model = likelihood.models[likelihood.records.loads.index(load)]
+        one = evaluate_drop(model, likelihood.sensors, values, record, 200.0, weights)
+        np.testing.assert_allclose(found.residual[drop], one.residual, rtol=1e-9)
+        np.testing.assert_allclose(found.leverage[drop], one.leverage, rtol=1e-6)
+        np.testing.assert_allclose(found.gradient[drop] * values, one.gradient * values, rtol=1e-7, atol=1e-3)
+        np.testing.assert_allclose(fitted[drop], one.fitted, atol=1e-9)
+        np.testing.assert_allclose(states[drop], one.state, atol=1e-9)
+        information += one.information
     scale = np.sqrt(np.diag(information))
     np.testing.assert_allclose(
         found.information.sum(axis=0) / np.outer(scale, scale), information / np.outer(scale, scale), atol=1e-9

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.longhand import REACH, Longhand, evaluate_drop
-from sprung.identification.solution import ModalSlopes, ModalSolution, differentiate_modes, solve_modes
-from sprung.identification.sums import blocks, correlate, moments
+from sprung.identification.records import Records
+from sprung.identification.solution import ModalSolution, differentiate_modes, solve_modes
+from sprung.identification.sums import moments
 from sprung.prepare import Decay
 from sprung.vehicle import LinearModel, Rows
 
@@ -28,37 +29,6 @@ Complex = NDArray[np.complex128]
 
 _DEFECTIVE = 100.0
 """Condition number of a pole from which two modes have all but met in one shape, and the long way is taken."""
-
-
-@dataclass(frozen=True, eq=False)
-class Group:
-    """Decays of one load and one sampling rate: they share poles and shapes.
-
-    Attributes
-    ----------
-    members
-        Positions of the group's decays in the fit's list; shape (drop,).
-    model
-        Equations of motion with the load, over the fit's parameters.
-    blocked
-        Centred records cut into blocks, channels that are left out zero; shape (drop, channel, block, BLOCK).
-    energy
-        Sum of squares of the centred records; shape (drop, channel).
-    present
-        1 for a channel that is used, 0 for one that is left out; shape (drop, channel).
-    samples
-        Shape (drop,).
-    rate
-        Samples per second.
-    """
-
-    members: NDArray[np.int64]
-    model: LinearModel
-    blocked: Real
-    energy: Real
-    present: Real
-    samples: NDArray[np.int64]
-    rate: float
 
 
 class Evaluation(NamedTuple):
@@ -89,18 +59,20 @@ class Likelihood:
 
     Attributes
     ----------
-    groups
-        Decays by load and rate.
+    records
+        The decays.
+    models
+        Equations of motion by the position of the load in the records.
     sensors
         The sensors' rows over the fit's parameters.
-    drops, channels
-        How many there are.
+    drops
+        How many decays the fit's list has; those that are not in the records count as perfectly fitted.
     """
 
-    groups: tuple[Group, ...]
+    records: Records
+    models: tuple[LinearModel, ...]
     sensors: Rows
     drops: int
-    channels: int
 
     @classmethod
     def of(cls, decays: Sequence[Decay], models: Mapping[str, LinearModel], sensors: Rows) -> Likelihood:
@@ -115,32 +87,31 @@ class Likelihood:
         sensors
             The sensors' rows, in the order of the decays' channels.
         """
-        keys = sorted({(decay.load, decay.rate) for decay in decays})
-        groups = []
-        for load, rate in keys:
-            members = [i for i, decay in enumerate(decays) if (decay.load, decay.rate) == (load, rate)]
-            groups.append(_group([decays[i] for i in members], np.array(members), models[load], rate))
-        return cls(tuple(groups), sensors, len(decays), len(sensors.affine))
+        records = Records.of(decays)
+        return cls(records, tuple(models[load] for load in records.loads), sensors, len(decays))
+
+    @property
+    def channels(self) -> int:
+        """How many channels there are."""
+        return len(self.sensors.affine)
 
     @property
     def observations(self) -> Real:
         """Samples by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
-        counts = np.zeros((self.drops, self.channels))
-        for group in self.groups:
-            counts[group.members] = group.present * group.samples[:, None]
-        return counts
+        return self._in_order(self.records.present * self.records.samples[:, None])
 
     @property
     def energy(self) -> Real:
         """Sum of squares of all centred records of each channel, (m/s²)², shape (channel,)."""
-        energy: Real = np.sum([group.energy.sum(axis=0) for group in self.groups], axis=0)
+        energy: Real = self.records.energy.sum(axis=0)
         return energy
 
     @property
     def largest(self) -> Likelihood:
         """The part of it with most drops that share one load and one rate; the other drops count as perfectly fitted."""
-        group = max(self.groups, key=lambda group: len(group.members))
-        return replace(self, groups=(group,))
+        records = self.records.largest
+        models = tuple(self.models[self.records.loads.index(load)] for load in records.loads)
+        return replace(self, records=records, models=models)
 
     def evaluate(self, values: Real, weights: Real) -> Evaluation:
         """Evaluate fit and derivatives.
@@ -156,22 +127,12 @@ class Likelihood:
         -------
         Evaluation
         """
-        parameters = len(values)
-        residual = np.zeros((self.drops, self.channels))
-        leverage = np.zeros((self.drops, self.channels))
-        gradient = np.zeros((self.drops, parameters))
-        information = np.zeros((self.drops, parameters, parameters))
-        for group in self.groups:
-            modes = self._modes(group, values)
-            if modes.condition > _DEFECTIVE:
-                part = _stack(self._longhand(group, values, weights))
-            else:
-                part = _evaluate_group(group, modes, self._slopes(group, values, modes), weights)
-            residual[group.members] = part.residual
-            leverage[group.members] = part.leverage
-            gradient[group.members] = part.gradient
-            information[group.members] = part.information
-        return Evaluation(residual, leverage, gradient, information)
+        modes = self._modes(values)
+        if _defective(modes):
+            part = _stack(self._longhand(values, weights))
+        else:
+            part = _evaluate(self.records, modes, self._slopes(values, modes), weights)
+        return Evaluation(*(self._in_order(each) for each in part))
 
     def feigned(self, values: Real, weights: Real) -> Real:
         """Give the information that noise alone feigns.
@@ -179,64 +140,80 @@ class Likelihood:
         A motion that no drop excites has amplitudes too: those that noise fits. The information is quadratic in the
         amplitudes, so on average it is too large by what their covariance puts in their place. Shape (parameter, parameter).
         """
-        total = np.zeros((len(values), len(values)))
-        for group in self.groups:
-            modes = self._modes(group, values)
-            if modes.condition <= _DEFECTIVE:  # else modes of their own cannot be told apart
-                total += _feigned_group(group, modes, self._slopes(group, values, modes), weights)
-        return total
+        modes = self._modes(values)
+        if _defective(modes):  # modes of their own cannot be told apart
+            return np.zeros((len(values), len(values)))
+        return _feigned(self.records, modes, self._slopes(values, modes), weights)
 
     def misfit(self, values: Real, weights: Real) -> Real:
         """Give the residual sums of squares alone, at a fraction of the price; shape (drop, channel)."""
-        residual = np.zeros((self.drops, self.channels))
-        for group in self.groups:
-            residual[group.members] = _solve_amplitudes(group, self._modes(group, values), weights, False).residual
-        return residual
+        return self._in_order(_solve_amplitudes(self.records, self._modes(values), weights, False).residual)
 
     def fitted(self, values: Real, weights: Real) -> list[Real]:
         """Give what the model makes of every record, its mean taken off; each of shape (channel, time)."""
-        records: list[Real] = [np.zeros((self.channels, 0))] * self.drops
-        for group in self.groups:
-            modes = self._modes(group, values)
-            if modes.condition > _DEFECTIVE:
-                for member, one in zip(group.members, self._longhand(group, values, weights), strict=True):
-                    records[member] = one.fitted
-                continue
-            amplitudes = _solve_amplitudes(group, modes, weights).amplitudes
-            for member, q, samples in zip(group.members, amplitudes, group.samples, strict=True):
-                # A pole and its conjugate add the same real part twice.
-                upper = modes.poles.imag >= 0
-                twice = np.where(modes.poles.imag > 0, 2.0, 1.0)[upper]
-                powers = np.exp(modes.poles[upper, None] * (np.arange(samples) / group.rate))
-                record = ((modes.shapes * q)[:, upper] * twice @ powers).real
-                records[member] = record - record.mean(axis=1, keepdims=True)
-        return records
+        modes = self._modes(values)
+        if _defective(modes):
+            found = [one.fitted for one in self._longhand(values, weights)]
+        else:
+            amplitudes = _solve_amplitudes(self.records, modes, weights).amplitudes
+            load, step, samples = self.records.load, self.records.step, self.records.samples
+            found = [_record(modes[load[d]], q, step[d], int(samples[d])) for d, q in enumerate(amplitudes)]
+        return [found[position] for position in np.argsort(self.records.order)]
 
     def states(self, values: Real, weights: Real) -> Real:
         """Give {X, Ẋ} of each drop at its first sample, SI, shape (drop, 14)."""
-        states = np.zeros((self.drops, 14))
-        for group in self.groups:
-            modes = self._modes(group, values)
-            if modes.condition > _DEFECTIVE:
-                states[group.members] = [one.state for one in self._longhand(group, values, weights)]
-            else:
-                amplitudes = _solve_amplitudes(group, modes, weights).amplitudes
-                states[group.members] = (amplitudes @ modes.right.T).real
-        return states
+        modes = self._modes(values)
+        if _defective(modes):
+            return self._in_order(np.array([one.state for one in self._longhand(values, weights)]))
+        amplitudes = _solve_amplitudes(self.records, modes, weights).amplitudes
+        right = np.array([one.right for one in modes])[self.records.load]
+        return self._in_order((right @ amplitudes[:, :, None])[:, :, 0].real)
 
-    def _modes(self, group: Group, values: Real) -> ModalSolution:
-        return solve_modes(group.model, self.sensors, values)
+    def _modes(self, values: Real) -> list[ModalSolution]:
+        return [solve_modes(model, self.sensors, values) for model in self.models]
 
-    def _slopes(self, group: Group, values: Real, modes: ModalSolution) -> ModalSlopes:
-        span = float(group.samples.max()) / group.rate
-        return differentiate_modes(group.model, self.sensors, values, modes, span)
-
-    def _longhand(self, group: Group, values: Real, weights: Real) -> list[Longhand]:
-        records = group.blocked.reshape(*group.energy.shape, -1)
-        return [
-            evaluate_drop(group.model, self.sensors, values, record[:, :samples], group.rate, present * weights)
-            for record, samples, present in zip(records, group.samples, group.present, strict=True)
+    def _slopes(self, values: Real, modes: Sequence[ModalSolution]) -> Complex:
+        """Give σ and τ of every load side by side; shape (load, parameter, channel, 28)."""
+        span = float(np.max(self.records.samples * self.records.step))
+        found = [
+            differentiate_modes(model, self.sensors, values, one, span)
+            for model, one in zip(self.models, modes, strict=True)
         ]
+        return np.array([np.concatenate([slopes.shapes, slopes.secular], axis=2) for slopes in found])
+
+    def _longhand(self, values: Real, weights: Real) -> list[Longhand]:
+        records = self.records
+        return [
+            evaluate_drop(
+                self.models[records.load[drop]],
+                self.sensors,
+                values,
+                records.record(drop),
+                1.0 / records.step[drop],
+                records.present[drop] * weights,
+            )
+            for drop in range(len(records.load))
+        ]
+
+    def _in_order(self, by_record: Real) -> Real:
+        """Put what belongs to records where the fit's list of decays has them."""
+        ordered = np.zeros((self.drops, *by_record.shape[1:]))
+        ordered[self.records.order] = by_record
+        return ordered
+
+
+def _defective(modes: Sequence[ModalSolution]) -> bool:
+    return max(one.condition for one in modes) > _DEFECTIVE
+
+
+def _record(modes: ModalSolution, amplitudes: Complex, step: float, samples: int) -> Real:
+    # A pole and its conjugate add the same real part twice.
+    upper = modes.poles.imag >= 0
+    twice = np.where(modes.poles.imag > 0, 2.0, 1.0)[upper]
+    powers = np.exp(modes.poles[upper, None] * (np.arange(samples) * step))
+    record: Real = ((modes.shapes * amplitudes)[:, upper] * twice @ powers).real
+    record -= record.mean(axis=1, keepdims=True)
+    return record
 
 
 def _stack(drops: Sequence[Longhand]) -> Evaluation:
@@ -248,20 +225,10 @@ def _stack(drops: Sequence[Longhand]) -> Evaluation:
     )
 
 
-def _group(decays: Sequence[Decay], members: NDArray[np.int64], model: LinearModel, rate: float) -> Group:
-    samples = np.array([decay.samples for decay in decays])
-    present = np.array([decay.usable for decay in decays], dtype=float)
-    records = np.zeros((len(decays), len(decays[0].values), int(samples.max())))
-    for record, decay in zip(records, decays, strict=True):
-        usable = decay.values[decay.usable]
-        record[decay.usable, : decay.samples] = usable - usable.mean(axis=1, keepdims=True)
-    energy = np.einsum("dct,dct->dc", records, records)
-    return Group(members, model, blocks(records), energy, present, samples, rate)
-
-
 class _Amplitudes(NamedTuple):
     """The linear half of an evaluation: what the free initial states make of given poles and shapes."""
 
+    shapes: Complex  # s, (drop, channel, 14)
     gram: Complex  # of (e^{λt}, t e^{λt}), (drop, 28, 28)
     data: Complex  # inner products of (e^{λt}, t e^{λt}) with the records, (drop, channel, 28)
     smoothed: Complex  # the same with the fitted records
@@ -272,88 +239,82 @@ class _Amplitudes(NamedTuple):
     residual: Real  # (drop, channel)
 
 
-def _solve_amplitudes(group: Group, modes: ModalSolution, weights: Real, secular: bool = True) -> _Amplitudes:
+def _solve_amplitudes(
+    records: Records, modes: Sequence[ModalSolution], weights: Real, secular: bool = True
+) -> _Amplitudes:
     """Solve for the amplitudes; what t e^{λt} has to do with the records only derivatives need."""
-    step = 1.0 / group.rate
-    exponent = modes.poles * step
-    N = group.samples[:, None]
-    w = group.present * weights
+    exponent = np.array([one.poles for one in modes], dtype=np.complex128)[records.load] * records.step[:, None]
+    w = records.present * weights
+    gram = _gram(exponent, records.samples[:, None], records.step[:, None, None], secular)
+    data = records.correlate(exponent, secular)
 
-    gram = _gram(exponent, N, step, secular)
-    # Poles come in conjugate pairs, one beside the other: one of each pair is enough for real records.
-    upper = exponent.imag >= 0
-    of_pair = np.cumsum(upper) - 1
-    parts = correlate(group.blocked, exponent[upper], secular)
-    halves = [np.where(upper, part[:, :, of_pair], part[:, :, of_pair].conj()) for part in parts]
-    data = np.concatenate([half * step**power for power, half in enumerate(halves)], axis=2)
-
-    s = modes.shapes
+    s = np.array([one.shapes for one in modes])[records.load]
     weighted = s.conj() * w[:, :, None]
-    within_reach = (modes.right.conj().T / REACH**2) @ modes.right
+    reach = np.array([(one.right.conj().T / REACH**2) @ one.right for one in modes])[records.load]
     normal = (np.swapaxes(weighted, 1, 2) @ s) * gram[:, :14, :14]
-    size = np.sqrt(np.einsum("djj->dj", normal + within_reach).real)
+    size = np.sqrt(np.einsum("djj->dj", normal + reach).real)
     scale = size[:, :, None] * size[:, None, :]
-    inverse: Complex = np.linalg.inv((normal + within_reach) / scale) / scale
+    inverse: Complex = np.linalg.inv((normal + reach) / scale) / scale
     q = (inverse @ (weighted * data[:, :, :14]).sum(axis=1)[:, :, None])[:, :, 0]
     fitted = s * q[:, None, :]
     smoothed = fitted @ np.swapaxes(gram[:, :, :14], 1, 2)
     explained = np.sum(fitted.conj() * (2 * data[:, :, :14] - smoothed[:, :, :14]), axis=2).real
-    residual = np.maximum(group.energy - group.present * explained, 0.0)
-    return _Amplitudes(gram, data, smoothed, normal, inverse, w, q, residual)
+    residual = np.maximum(records.energy - records.present * explained, 0.0)
+    return _Amplitudes(s, gram, data, smoothed, normal, inverse, w, q, residual)
 
 
-def _gram(exponent: Complex, samples: NDArray[np.int64], step: float, secular: bool) -> Complex:
+def _gram(exponent: Complex, samples: NDArray[np.int64], step: Real, secular: bool) -> Complex:
     """Give the products of (e^{λt}, t e^{λt}) with each other over records of so many samples; (drop, 28 or 14, ...).
 
     Everything is centred over the record, because every channel of every drop has an offset of its own.
     """
-    pair = moments(np.conj(exponent)[:, None] + exponent, samples[:, :, None])
+    pair = moments(np.conj(exponent)[:, :, None] + exponent[:, None, :], samples[:, :, None])
     mean = moments(exponent, samples)
     whole, sums = pair.zeroth, mean.zeroth
     if secular:
         lagged = pair.first * step
         above, below = np.concatenate([whole, lagged], axis=2), np.concatenate([lagged, pair.second * step**2], axis=2)
-        whole, sums = np.concatenate([above, below], axis=1), np.concatenate([sums, mean.first * step], axis=1)
+        whole, sums = np.concatenate([above, below], axis=1), np.concatenate([sums, mean.first * step[:, 0]], axis=1)
     means = sums / samples
     gram = whole - samples[:, :, None] * np.conj(means)[:, :, None] * means[:, None, :]
     return np.asarray(gram, dtype=np.complex128)
 
 
-def _evaluate_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, weights: Real) -> Evaluation:
-    linear = _solve_amplitudes(group, modes, weights)
-    s, w, gram = modes.shapes, linear.weights, linear.gram
-    drops, parameters = len(group.members), len(slopes.shapes)
-    hat = gram[:, :14, :14] * np.swapaxes(linear.inverse, 1, 2)
+def _evaluate(records: Records, modes: Sequence[ModalSolution], slopes: Complex, weights: Real) -> Evaluation:
+    linear = _solve_amplitudes(records, modes, weights)
+    s, w = linear.shapes, linear.weights
+    hat = linear.gram[:, :14, :14] * np.swapaxes(linear.inverse, 1, 2)
     leverage = w * ((s.conj() @ hat) * s).sum(axis=2).real
 
-    J = _derivatives(slopes, linear.amplitudes)
-    weighted = (J.conj() * w[:, None, :, None]).reshape(drops, parameters, -1)
-    gradient = (weighted @ (linear.data - linear.smoothed).reshape(drops, -1, 1))[:, :, 0].real
-    return Evaluation(linear.residual, leverage, gradient, _information(J, modes, linear))
+    J = _derivatives(slopes[records.load], linear.amplitudes)
+    weighted = (J.conj() * w[:, None, :, None]).reshape(*J.shape[:2], -1)
+    gradient = (weighted @ (linear.data - linear.smoothed).reshape(len(J), -1, 1))[:, :, 0].real
+    return Evaluation(linear.residual, leverage, gradient, _information(J, linear))
 
 
-def _derivatives(slopes: ModalSlopes, amplitudes: NDArray[np.complexfloating]) -> Complex:
+def _derivatives(slopes: Complex, amplitudes: NDArray[np.complexfloating]) -> Complex:
     """Give the derivatives of the fitted records, as coefficients of (e^{λt}, t e^{λt}); (drop, parameter, channel, 28)."""
-    J: Complex = np.concatenate([slopes.shapes, slopes.secular], axis=2) * np.tile(amplitudes, 2)[:, None, None, :]
+    J: Complex = slopes * np.tile(amplitudes, 2)[:, None, None, :]
     return J
 
 
-def _information(J: Complex, modes: ModalSolution, linear: _Amplitudes) -> Real:
+def _information(J: Complex, linear: _Amplitudes) -> Real:
     """Give the products of derivatives with what amplitudes and offsets can take up projected off."""
     drops, parameters = J.shape[:2]
     w = linear.weights[:, None, :, None]
     products = (J.reshape(drops, -1, 28) @ np.swapaxes(linear.gram, 1, 2)).reshape(J.shape)
     within = (J.conj() * w).reshape(drops, parameters, -1) @ np.swapaxes(products.reshape(drops, parameters, -1), 1, 2)
-    across = (modes.shapes.conj() * w * products[..., :14]).sum(axis=2)
+    across = (linear.shapes.conj()[:, None] * w * products[..., :14]).sum(axis=2)
     information: Real = (within - across.conj() @ linear.inverse @ np.swapaxes(across, 1, 2)).real
     return information
 
 
-def _feigned_group(group: Group, modes: ModalSolution, slopes: ModalSlopes, weights: Real) -> Real:
-    linear = _solve_amplitudes(group, modes, weights)
+def _feigned(records: Records, modes: Sequence[ModalSolution], slopes: Complex, weights: Real) -> Real:
+    linear = _solve_amplitudes(records, modes, weights)
     # What noise puts into the amplitudes: their inverse normal equations, less what their reach holds back.
     eigenvalues, vectors = np.linalg.eigh(linear.normal)
     roots = linear.inverse @ (vectors * np.sqrt(np.maximum(eigenvalues, 0.0))[:, None, :])
-    each = [_information(_derivatives(slopes, roots[:, :, j]), modes, linear) for j in range(14)]
+    of_drops = slopes[records.load]
+    each = [_information(_derivatives(of_drops, roots[:, :, j]), linear) for j in range(14)]
     total: Real = np.sum(each, axis=(0, 1))
     return total

@@ -67,32 +67,36 @@ def moments(exponent: Complex, samples: NDArray[np.int64]) -> Moments:
 
 
 def blocks(values: Real) -> Real:
-    """Cut records into blocks, the last one filled with zeros.
+    """Cut a record into blocks, the last one filled with zeros.
 
     Parameters
     ----------
     values
-        Shape (..., time).
+        Shape (channel, time).
 
     Returns
     -------
     ndarray
-        Shape (..., block, BLOCK).
+        Shape (block, channel, BLOCK).
     """
-    samples = values.shape[-1]
+    channels, samples = values.shape
     count = -(-samples // BLOCK)
-    padded = np.zeros((*values.shape[:-1], count * BLOCK))
-    padded[..., :samples] = values
-    return padded.reshape(*values.shape[:-1], count, BLOCK)
+    padded = np.zeros((channels, count * BLOCK))
+    padded[:, :samples] = values
+    return np.ascontiguousarray(padded.reshape(channels, count, BLOCK).swapaxes(0, 1))
 
 
-def correlate(blocked: Real, exponent: Complex, weighted: bool = True) -> tuple[Complex, ...]:
+def correlate(
+    blocked: Real, counts: NDArray[np.int64], exponent: Complex, weighted: bool = True
+) -> tuple[Complex, ...]:
     """Give the inner products of records with exponentials.
 
     Parameters
     ----------
     blocked
-        Records cut by `blocks`, shape (..., block, BLOCK).
+        Records cut by `blocks`, one after the other, shape (block, channel, BLOCK).
+    counts
+        How many blocks each record has, shape (record,).
     exponent
         λ times the sampling interval, shape (mode,).
     weighted
@@ -101,19 +105,21 @@ def correlate(blocked: Real, exponent: Complex, weighted: bool = True) -> tuple[
     Returns
     -------
     tuple of ndarray
-        Σ conj(z^k) y_k and, if wanted, Σ k conj(z^k) y_k, each of shape (..., mode).
+        Σ conj(z^k) y_k and, if wanted, Σ k conj(z^k) y_k, each of shape (record, channel, mode).
     """
+    first = np.concatenate([[0], np.cumsum(counts)[:-1]])
     inside = np.arange(BLOCK)
-    across = BLOCK * np.arange(blocked.shape[-2])
+    across = BLOCK * (np.arange(len(blocked)) - np.repeat(first, counts))
     fine = np.exp(np.conj(exponent) * inside[:, None])
-    coarse = np.exp(np.conj(exponent) * across[:, None])
+    coarse = np.exp(np.conj(exponent) * (BLOCK * np.arange(counts.max()))[:, None])[across // BLOCK, None, :]
     columns = [fine.real, fine.imag]
     if weighted:
         columns += [inside[:, None] * fine.real, inside[:, None] * fine.imag]
-    products = (blocked @ np.hstack(columns)).reshape(*blocked.shape[:-1], len(columns), exponent.size)
-    plain = products[..., 0, :] + 1j * products[..., 1, :]
-    zeroth = (coarse * plain).sum(axis=-2)
+    products = blocked @ np.hstack(columns)
+    modes = exponent.size
+    plain = coarse * (products[..., :modes] + 1j * products[..., modes : 2 * modes])
+    zeroth = np.add.reduceat(plain, first, axis=0)
     if not weighted:
         return (zeroth,)
-    lagged = products[..., 2, :] + 1j * products[..., 3, :]
-    return zeroth, (coarse * (lagged + across[:, None] * plain)).sum(axis=-2)
+    lagged = coarse * (products[..., 2 * modes : 3 * modes] + 1j * products[..., 3 * modes :])
+    return zeroth, np.add.reduceat(lagged + across[:, None, None] * plain, first, axis=0)
