@@ -1,10 +1,13 @@
 """From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
 
 from sprung.identification.added_mass import added_mass
+from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude
 from sprung.identification.inflation import of_colour
 from sprung.identification.joint import Fit, describe, fit_jointly
+from sprung.identification.knowledge import Coordinates, Knowledge
+from sprung.identification.likelihood import Likelihood
 from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.structured import StructuredFit, structured_least_squares
@@ -12,9 +15,14 @@ from sprung.identification.summit import NEAR, Summit, ascend
 
 __all__ = [
     "NEAR",
+    "NO_INFORMATION",
+    "RANK",
+    "Coordinates",
     "Correlation",
     "Estimates",
     "Fit",
+    "Knowledge",
+    "Likelihood",
     "ModeEstimate",
     "Scale",
     "StructuredFit",

@@ -35,7 +35,7 @@ FAR, CLOSE_BY = 1e-3, 1e-9
 _SETTLED = 1e-3  # relative change of the noise levels
 _SAME = 100.0  # distance in standard errors, squared, within which a climb will end where another one has
 _EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have before anybody is told
-_ITERATIONS = 100
+_ITERATIONS, _PROVISIONAL = 100, 40  # steps at the most, where the end counts and where it is only a stage
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
 
@@ -228,7 +228,7 @@ class Climb:
         weights = self._observations / self._energy
         residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), weights)
         point = self._evaluate(u, 1 / self.variance(residual, np.zeros_like(residual)), 0)
-        while point.steps < _ITERATIONS:
+        while point.steps < (_ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
             information, gradient, free = self.system(point)
             if not gradient.size:
                 return replace(point, converged=True)

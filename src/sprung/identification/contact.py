@@ -67,11 +67,11 @@ def ascend_from_contact(
     best, found = tuple(decays), first
     for _ in range(_PASSES):
         shifts = [_shift(d, models[d.load], found.values, state) for d, state in zip(best, found.states, strict=True)]
-        if not found.converged or not any(shifts):
+        if not any(shifts):
             break
         moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
         next_one = again(moved, found.parameters, NEAR).after(found)
-        if not next_one.converged or np.any(next_one.noise > _NO_WORSE * found.noise):
+        if np.any(next_one.noise > _NO_WORSE * found.noise):
             break
         best, found = moved, next_one
     return best, again(best, found.parameters, CONVERGED).after(found)
