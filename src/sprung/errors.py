@@ -54,10 +54,6 @@ class InputError(SprungError, ValueError):
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
-class MissingLibraryError(SprungError, ImportError):
-    """An optional library is needed for what was asked; the message holds the command that installs it."""
-
-
 class ResultFileError(InputError):
     """A saved result cannot be read back: newer schema, truncated or edited."""
 

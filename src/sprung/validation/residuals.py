@@ -32,13 +32,10 @@ class Misfit:
         significant. Shape (channel,).
     ratio
         For each channel the residual over the noise at rest; NaN where no recording shows a rest. Shape (channel,).
-    by_drop
-        Model error as a part of the signal, over all channels, for each drop; shape (drop,).
     """
 
     relative: Real
     ratio: Real
-    by_drop: Real
 
 
 def residual_records(fit: Fit, decays: Sequence[Decay]) -> list[Real]:
@@ -95,15 +92,9 @@ def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     excess = np.max([np.where(part > _SIGNIFICANT * error, part, 0.0) for part in (by_colour, by_variance)], axis=0)
 
     tiny = np.finfo(float).tiny
-    noise = left.variance - excess
-    by_drop = [
-        np.sqrt(max(float(np.nansum(record.var(axis=1) - noise)), 0.0) / max(float(np.nansum(one.var(axis=1))), tiny))
-        for record, one in zip(residuals, signals, strict=True)
-    ]
     return Misfit(
         relative=np.sqrt(excess / np.maximum(signal.variance, tiny)),
         ratio=np.sqrt(np.where(known, left.variance / np.maximum(at_rest + steps, tiny), np.nan)),
-        by_drop=np.array(by_drop),
     )
 
 
