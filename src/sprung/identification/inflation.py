@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
 
-_SPAN = 0.1
+_SPAN = 0.25
 """s over which residuals are correlated: drift and model error last longer, but then they fill it."""
 
 _SIGNIFICANT = 3.0
@@ -22,7 +22,7 @@ _SEEN = 1e-9
 """Information, as a part of the largest, below which one drop says nothing about a direction."""
 
 
-def of_colour(residuals: Sequence[Real], rates: Sequence[float]) -> Real:
+def of_colour(residuals: Sequence[Real], rates: Sequence[float], span: float = _SPAN) -> Real:
     """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
 
     Parameters
@@ -31,18 +31,20 @@ def of_colour(residuals: Sequence[Real], rates: Sequence[float]) -> Real:
         One record for each drop, shape (channel, time), NaN in channels that are left out.
     rates
         Samples per second of each.
+    span
+        s over which means are taken: as long as what correlates the residuals, and a small part of a record.
 
     Returns
     -------
     ndarray
-        For each channel the variance of means over 0.1 s, times the samples in them, over the variance of single samples
+        For each channel the variance of means over that time, times the samples in them, over the variance of single samples
         (batch means: Law and Kelton, Simulation Modeling and Analysis, section 9.5.3). Never below 1; 1 where the excess
         is not significant. Shape (channel,).
     """
     channels = len(residuals[0])
     total, means, samples, batches = np.zeros((4, channels))
     for record, rate in zip(residuals, rates, strict=True):
-        length = min(max(int(_SPAN * rate), 1), record.shape[1])
+        length = min(max(int(span * rate), 1), record.shape[1])
         count = record.shape[1] // length
         batch = np.nan_to_num(record[:, : count * length]).reshape(channels, count, length)
         used = ~np.isnan(record).any(axis=1)

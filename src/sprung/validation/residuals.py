@@ -17,6 +17,9 @@ Real = NDArray[np.float64]
 _SHORTEST_REST = 10
 """Samples below which a rest says nothing about the noise."""
 
+_REST_SPAN = 0.1
+"""s over which the sensors' own colour is sought: a rest holds a few of them at least."""
+
 _SIGNIFICANT = 4.0
 """Standard errors by which an excess must be real before it counts."""
 
@@ -68,17 +71,14 @@ def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     """
     residuals = residual_records(fit, decays)
     signals = [decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays]
-    rests = [decay.rest.noise for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST]
+    rested = [decay for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST]
+    rests = [decay.rest.noise for decay in rested]
     left, signal = _moments(residuals), _moments(signals)
     rest = _moments(rests) if rests else _Moments(*np.zeros((3, len(left.variance))))
     known = rest.samples > 0
 
     # Sensors with a colour of their own have as few independent samples in their short rests as that colour leaves.
-    colour = (
-        of_colour(rests, [decay.rate for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST])
-        if rests
-        else 1.0
-    )
+    colour = of_colour(rests, [decay.rate for decay in rested], _REST_SPAN) if rests else 1.0
     effective = np.maximum(rest.samples / colour, 1.0)
     at_rest = np.where(known, rest.variance / np.maximum(1 - 2 * len(rests) / effective, 0.5), 0.0)
 
