@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sprung import report as report
     from sprung import study as study
-    from sprung.pipeline import Result, check, identify, load, modes
+    from sprung.pipeline import Result, check, identify, load, modes, plan, plan_campaign, plan_file
     from sprung.recording import Campaign, Drop, read, write
     from sprung.simulation import simulate, simulate_file
     from sprung.vehicle import Load, Sensor, Vehicle
@@ -33,6 +33,9 @@ __all__ = [
     "identify",
     "load",
     "modes",
+    "plan",
+    "plan_campaign",
+    "plan_file",
     "read",
     "simulate",
     "simulate_file",
@@ -52,6 +55,9 @@ _HOME = {
     "identify": "pipeline",
     "load": "pipeline",
     "modes": "pipeline",
+    "plan": "pipeline",
+    "plan_campaign": "pipeline",
+    "plan_file": "pipeline",
     "read": "recording",
     "simulate": "simulation",
     "simulate_file": "simulation",

@@ -12,7 +12,7 @@ import pytest
 import sprung
 from command_line import SEDAN, Folder, Identified, Run, run
 
-COMMANDS = ("demo", "paper", "check", "modal", "identify", "simulate")
+COMMANDS = ("demo", "paper", "check", "modal", "identify", "plan", "simulate")
 # The contract's results.json.
 KEYS = {
     "schema",

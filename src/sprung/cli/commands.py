@@ -127,6 +127,36 @@ def simulate(
         say(f"Written: {written}, {recordings}\nNext:    sprung identify {shlex.quote(str(written))}\n")
 
 
+@app.command(epilog="Example: [bold]sprung plan vehicle.toml --wanted 0.5[/bold]")
+def plan(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            metavar="VEHICLE.toml|CAMPAIGN", help="A vehicle as it is thought to be, or a campaign to go on from."
+        ),
+    ],
+    wanted: Annotated[float, typer.Option(help="Percent that no parameter's uncertainty is to exceed.")] = 1.0,
+    rate: Annotated[
+        Optional[float],  # noqa: UP045 (typer reads it)
+        typer.Option(max=1e5, help="Samples per second, with a vehicle file (default: 500)."),
+    ] = None,
+    noise: Annotated[
+        Optional[float],  # noqa: UP045 (typer reads it)
+        typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square, with a vehicle file (default: 0.02)."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Say what to measure next: how well each parameter would be known from a test, and from its alternatives."""
+    with working("reading") as progress:
+        drawn_up = sprung.plan_file(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
+    if as_json:
+        say_json(drawn_up.document())
+    else:
+        say(sprung.report.text_of(sprung.report.plan_view(drawn_up)))
+    if drawn_up.rejected:
+        raise typer.Exit(REJECTED)
+
+
 @app.command(epilog="Example: [bold]sprung demo[/bold]")
 def demo(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,12 +22,17 @@ from sprung.identification import (
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
+from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
 from sprung.prepare import Decay, Prepared, prepare
 from sprung.recording import Campaign
+from sprung.simulation import DEFAULT_HEIGHT
 from sprung.validation import Misfit, judge, judge_residuals
 from sprung.vehicle import Tracks
 
 METHOD = "joint maximum likelihood"
+
+_BEFORE_DECAY = 0.1
+"""s from the release to the decay in a usual drop, for planning further ones."""
 
 
 def identify(
@@ -68,6 +74,39 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
+    return result_of(fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress))
+
+
+class Fitted(NamedTuple):
+    """A campaign and its fit.
+
+    Attributes
+    ----------
+    campaign
+        What was fitted.
+    choice, why
+        With which model, and what decided that.
+    prepared
+        Its decays, from where they were used.
+    fit
+        The fit.
+    """
+
+    campaign: Campaign
+    choice: Choice
+    why: str
+    prepared: Prepared
+    fit: Fit
+
+
+def fit_campaign(
+    campaign: Campaign,
+    *,
+    tracks: Tracks | None = None,
+    extras: Sequence[str] | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Fitted:
+    """Fit a campaign, as `identify` does before it judges."""
     choice = choose_model(campaign, tracks, None if extras is None else tuple(extras))
     progress("finding the decays")
     prepared = prepare(campaign)
@@ -81,7 +120,30 @@ def identify(
         lambda decays, start, enough: _ascend(campaign, choice, decays, start, enough, progress),
     )
     progress("judging the fit")
-    return _result(campaign, choice, why, prepared._replace(decays=decays), describe(summit, decays))
+    return Fitted(campaign, choice, why, prepared._replace(decays=decays), describe(summit, decays))
+
+
+def as_test(fitted: Fitted) -> PlannedTest:
+    """Take what was fitted as a test to which others may be added, of the vehicle that was found."""
+    campaign, choice, decays = fitted.campaign, fitted.choice, fitted.prepared.decays
+    subject = subject_of_fit(
+        fitted.fit,
+        choice.tracks,
+        choice.extras,
+        choice.known,
+        campaign.sensors,
+        rate=float(np.median([decay.rate for decay in decays])),
+        duration=_BEFORE_DECAY + float(np.median([decay.samples / decay.rate for decay in decays])),
+        cg_height=campaign.cg_height,
+        name=campaign.name,
+    )
+    used = {decay.file for decay in decays}
+    dropped = [
+        PlannedDrop(campaign.load(drop.load), drop.wheels, drop.height or DEFAULT_HEIGHT)
+        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
+        if recording.name in used
+    ]
+    return campaign_of_fit(subject, fitted.fit, dropped)
 
 
 def _ascend(
@@ -131,17 +193,21 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
     problems.raise_if_any()
 
 
-def _result(campaign: Campaign, choice: Choice, why: str, prepared: Prepared, fit: Fit) -> Result:
+def result_of(fitted: Fitted) -> Result:
+    """Judge a fit, and put together what is said of it."""
+    campaign, choice, why, prepared, fit = fitted
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
     estimates = conclude(fit, choice.known)
     misfit = judge_residuals(fit, decays)
+    verdict = judge(fit, misfit, estimates.parameters, channels)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     return Result(
         version=version("sprung"),
         vehicle=VehicleName(name=campaign.name),
-        verdict=judge(fit, misfit, estimates.parameters, channels),
+        verdict=verdict,
+        next_step=None if verdict.state == "reject" else next_step(as_test(fitted)).text,
         parameters=estimates.parameters,
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,

@@ -117,6 +117,8 @@ class Result(_Frozen):
         By load: the modes of the identified vehicle, lowest first.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
+    next_step
+        What to measure next, in a sentence; None where the verdict is reject, or an older sprung wrote the result.
     series
         By drop name: what the figures draw.
     """
@@ -135,6 +137,7 @@ class Result(_Frozen):
     fit: FitReport
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
+    next_step: str | None = None
     series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
 
     def to_json(self) -> str:

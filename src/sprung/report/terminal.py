@@ -12,6 +12,7 @@ from sprung.estimate import Estimate, round_by_uncertainty
 from sprung.identification import ModeEstimate
 from sprung.pipeline import Check, Result
 from sprung.report.layout import hanging, table
+from sprung.report.plan import next_line
 from sprung.vehicle import PARAMETERS
 
 _COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
@@ -42,6 +43,8 @@ def result_view(result: Result) -> RenderableType:
     if result.faults:
         parts += [fault_list(result.faults), Text()]
     parts.append(verdict_view(result))
+    if result.next_step is not None:
+        parts += [Text(), next_line(result.next_step)]
     return Group(*parts)
 
 

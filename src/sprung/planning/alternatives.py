@@ -1,0 +1,208 @@
+"""The alternatives to a test: what else could be measured, and what that costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimate import Known
+from sprung.planning.bound import Bound
+from sprung.planning.subject import PlannedDrop, PlannedTest
+from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, quantity
+
+Real = NDArray[np.float64]
+
+SCALES = 0.001
+"""Standard uncertainty of a weighing, as a part of the vehicle's total mass: 5 kg for a bus of 5 t."""
+
+REPEATS = (2, 4)
+"""How often every drop is done."""
+
+FRACTIONS = (0.05, 0.1, 0.2, 0.3)
+"""Mass of the load in the middle, as a part of the vehicle's total mass."""
+
+ELSEWHERE = 0.2
+"""The same of a load elsewhere."""
+
+QUIETER = (2, 5)
+"""By how much the noise of other sensors is smaller."""
+
+RATES = (0.5, 2.0)
+"""Other sampling rates, as multiples of the planned one."""
+
+KINDS: Mapping[frozenset[Wheel], str] = {
+    frozenset(WHEELS): "all wheels",
+    frozenset(("fl", "fr")): "front wheels",
+    frozenset(("rl", "rr")): "rear wheels",
+    frozenset(("fl", "rl")): "left wheels",
+    frozenset(("fr", "rr")): "right wheels",
+    frozenset(("fl", "rr")): "fl and rr",
+    frozenset(("fl",)): "fl alone",
+}
+"""Drops by their wheels."""
+
+
+class Cost(IntEnum):
+    """What a step costs, the cheapest first: the one place where that is said.
+
+    A weighbridge is on the way; weighing axles takes two readings there. Dropping again what is rigged costs minutes, moving
+    the blocks more. A load has to be found, weighed and placed; other sensors have to be bought.
+    """
+
+    TOTAL_MASS = 1
+    AXLE_LOADS = 2
+    REPEATS = 3
+    DROP = 4
+    LOAD = 5
+    SENSORS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class Alternative:
+    """A test that differs from another one.
+
+    Attributes
+    ----------
+    label
+        A few words, for a table.
+    text
+        What is done, for a sentence: ``weighing both axles``.
+    cost
+        None for what is no step beyond the test but another one.
+    times
+        Multiplies the information in all drops: repeats, or quieter sensors.
+    added
+        Drops done besides.
+    statements
+        Known besides.
+    instead, rate
+        Drops done in place of the test's own, if any, and samples per second in place of the planned ones.
+    test
+        What it differs from.
+    """
+
+    label: str
+    text: str
+    test: PlannedTest = field(repr=False)
+    cost: Cost | None = None
+    times: float = 1.0
+    added: tuple[PlannedDrop, ...] = ()
+    statements: Mapping[str, Known] = field(default_factory=dict)
+    instead: tuple[PlannedDrop, ...] | None = None
+    rate: float | None = None
+
+    @cached_property
+    def more(self) -> Real:
+        """Information in what is dropped besides, or less that in what is not dropped; shape (direction, direction)."""
+        subject = self.test.subject
+        if self.instead is not None:
+            return subject.of_drops(self.instead, self.rate) - self.test.data
+        return subject.of_drops(self.added)
+
+    @cached_property
+    def told(self) -> Real:
+        """Information in what is known besides; shape (direction, direction)."""
+        return self.test.subject.of_statements(self.statements)
+
+
+def bound(test: PlannedTest, *alternatives: Alternative) -> Bound:
+    """Give the bound of a test with all these changes together.
+
+    Raises
+    ------
+    InputError
+        If the vehicle cannot be dropped so.
+    """
+    information, times = test.data, 1.0
+    known = test.prior
+    for one in alternatives:
+        information, known, times = information + one.more, known + one.told, times * one.times
+    return Bound(test.subject, times * information + known)
+
+
+def alternatives(test: PlannedTest) -> Iterator[Alternative]:
+    """Name the alternatives to a test, steps beyond it in the order of their cost, then other tests."""
+    yield from _weighings(test)
+    yield from _repeats(test)
+    yield from _drops(test)
+    yield from _loads(test)
+    for factor in QUIETER:
+        part = "half" if factor == 2 else f"1/{factor} of"
+        text = f"sensors with {part} the noise, every drop done anew"
+        more = factor**2 if test.recorded is None else 1 + factor**2  # what is recorded already remains
+        yield Alternative(f"noise / {factor}", text, test, Cost.SENSORS, times=more)
+    if test.recorded is None:
+        yield from _other_tests(test)
+
+
+def _weighings(test: PlannedTest) -> Iterator[Alternative]:
+    subject = test.subject
+    std = SCALES * subject.vehicle.total_mass
+
+    def weighed(*names: str) -> dict[str, Known]:
+        values = {name: quantity(name, subject.names, subject.values)[0] for name in names}
+        return {name: Known(value, std) for name, value in values.items() if name not in subject.known}
+
+    axles = weighed("front_axle_mass", "rear_axle_mass")
+    total = weighed("total_mass") if axles else {}
+    if total:
+        yield Alternative("total mass", "knowing the total mass", test, Cost.TOTAL_MASS, statements=total)
+    if axles:
+        yield Alternative("axle loads", "weighing both axles", test, Cost.AXLE_LOADS, statements=axles)
+
+
+def _repeats(test: PlannedTest) -> Iterator[Alternative]:
+    for times in REPEATS:
+        how = "twice" if times == 2 else f"{times} times"
+        yield Alternative(f"drops {how}", f"doing every drop {how}", test, Cost.REPEATS, times=times)
+
+
+def _drops(test: PlannedTest) -> Iterator[Alternative]:
+    done = {frozenset(drop.wheels) for drop in test.drops if drop.load == EMPTY}
+    height = test.drops[0].height
+    for wheels, name in KINDS.items():
+        if wheels not in done:
+            ordered = tuple(wheel for wheel in WHEELS if wheel in wheels)
+            text = f"a drop of {name if name.startswith('fl') else f'the {name}'.replace('the all', 'all')}"
+            added = (PlannedDrop(EMPTY, ordered, height),)
+            yield Alternative(f"+ {name}", text, test, Cost.DROP, added=added)
+
+
+def _loads(test: PlannedTest) -> Iterator[Alternative]:
+    vehicle = test.subject.vehicle
+    middle = (-vehicle.a, 0.0)
+    half = max(float(getattr(vehicle, f"t_f{which}")) for which in "12")
+    places = [(fraction, "middle", "in the middle", middle) for fraction in FRACTIONS]
+    places += [
+        (ELSEWHERE, "front", "over the front axle", (0.0, 0.0)),
+        (ELSEWHERE, "rear", "over the rear axle", (-vehicle.wheelbase, 0.0)),
+        (ELSEWHERE, "left", "on the left", (-vehicle.a, half)),
+    ]
+    ways = dict.fromkeys((drop.wheels, drop.height) for drop in test.drops)
+    for fraction, label, where, (x, y) in places:
+        # Level with the centre of gravity: how high it sits is a matter of the vehicle, not of the plan.
+        item = Item(mass=fraction * vehicle.total_mass, position=(x, y, vehicle.cg_height or 0.0))
+        load = Load(name=f"{100 * fraction:g} % {where}", items=(item,))
+        text = f"the same drops with a load of {100 * fraction:g} % of the total mass {where}"
+        added = tuple(PlannedDrop(load, *way) for way in ways)
+        yield Alternative(f"+ {100 * fraction:g} % {label}", text, test, Cost.LOAD, added=added)
+
+
+def _other_tests(test: PlannedTest) -> Iterator[Alternative]:
+    """Name tests that do less, or sample otherwise; a test that is done can only be added to."""
+    empty = tuple(drop for drop in test.drops if drop.load == EMPTY)
+    if empty and len(empty) < len(test.drops):
+        yield Alternative("without load", "leaving the load out", test, instead=empty)
+    for wheels, name in KINDS.items():
+        some = tuple(drop for drop in test.drops if frozenset(drop.wheels) == wheels)
+        if some and len(some) < len(test.drops):
+            yield Alternative(f"only {name}", f"drops of {name} only", test, instead=some)
+    for times in RATES:
+        rate = times * test.subject.rate
+        text = f"sampling at {rate:g} Hz, the noise per root hertz staying"
+        yield Alternative(f"{rate:g} Hz", text, test, instead=test.drops, rate=rate)

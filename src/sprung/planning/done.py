@@ -1,0 +1,65 @@
+"""A campaign that is done, as a test to which others may be added."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from sprung.estimate import Known
+from sprung.identification import Fit
+from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
+from sprung.vehicle import Sensor, Tracks, Vehicle
+
+
+def subject_of_fit(
+    fit: Fit,
+    tracks: Tracks,
+    extras: tuple[str, ...],
+    known: Mapping[str, Known],
+    sensors: Sequence[Sensor],
+    *,
+    rate: float,
+    duration: float,
+    cg_height: float | None = None,
+    name: str = "vehicle",
+) -> Subject:
+    """Take the vehicle that a fit has found, and its noise, for further tests.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    tracks, extras, known, sensors
+        Of the campaign that was fitted.
+    rate, duration
+        Samples per second, and seconds after the release, of further recordings.
+    cg_height
+        Height of the sprung mass's centre of gravity, m.
+    name
+        The vehicle's.
+    """
+    # An extra may come out a little below zero, where no vehicle is.
+    parameters = {name: max(value, 0.0) for name, value in zip(fit.names, fit.values.tolist(), strict=True)}
+    vehicle = Vehicle.from_parameters(parameters, cg_height=cg_height, name=name)
+    return Subject(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
+
+
+def campaign_of_fit(subject: Subject, fit: Fit, drops: Sequence[PlannedDrop]) -> PlannedTest:
+    """Take the drops that a fit has used, with what they have told.
+
+    Parameters
+    ----------
+    subject
+        From `subject_of_fit`.
+    fit
+        The fit.
+    drops
+        What was dropped.
+    """
+    # The fit's covariance holds what was known beforehand, which is taken out again: no repeat makes that any better.
+    covariance = subject.free.T @ fit.relative_covariance @ subject.free
+    variances, vectors = np.linalg.eigh(covariance)
+    least = np.finfo(float).eps * variances.max(initial=0.0)
+    total = (vectors / np.maximum(variances, least)) @ vectors.T
+    return PlannedTest(subject, tuple(drops), total - subject.of_statements(subject.known))

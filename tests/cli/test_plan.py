@@ -1,0 +1,119 @@
+"""`sprung plan`: what it prints, which document it gives, and how it leaves."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from command_line import DROPS, LEAFBUS, Folder, Identified, copy_sedan, run
+
+
+def test_a_vehicle_file(vehicle_file: Path) -> None:
+    before = sorted(vehicle_file.parent.iterdir())
+    said = run("plan", vehicle_file)
+    assert (said.status, said.err) == (0, "")
+    assert said.out.startswith("car: standard uncertainty to expect, %\n")
+    assert "Next: knowing the total mass would determine 11 more parameters" in said.out
+    first = next(line.split() for line in said.out.splitlines() if line.startswith("as planned"))
+    assert first[2:5] == ["m_s", "-", "11"]
+    assert sorted(vehicle_file.parent.iterdir()) == before
+
+
+def test_what_cannot_be_told_is_named_below_the_table(vehicle_file: Path) -> None:
+    said = " ".join(run("plan", vehicle_file).out.split())
+    _, _, reasons = said.partition("Not determined")
+    assert "as planned" in reasons
+    assert "m_s, I_yy, I_xx" in reasons
+    assert "changes no acceleration" in reasons
+    assert "t_f" in reasons  # a bounce alone does not roll
+
+
+@pytest.mark.parametrize("columns", [40, 60, 80, 120, 200])
+def test_every_width(vehicle_file: Path, columns: int) -> None:
+    said = run("plan", vehicle_file, columns=columns).out
+    assert max(map(len, said.splitlines())) <= columns
+    assert not any(line != line.rstrip() for line in said.splitlines())
+    rows = run("plan", vehicle_file, "--json").json["alternatives"]
+    for row in rows:
+        line = next(line for line in said.splitlines() if line.startswith(row["name"]))
+        assert line.removeprefix(row["name"]).split()[0] == row["worst"]
+    assert (" k_tf " in said.splitlines()[1]) == (columns >= 120)
+    assert (" m_s " in said.splitlines()[1]) == (columns >= 60)
+
+
+def test_the_document(vehicle_file: Path) -> None:
+    said = run("plan", vehicle_file, "--json", "--wanted", "0.15", "--noise", "0.01", "--rate", "250")
+    assert (said.status, said.err) == (0, "")
+    assert (said.json["wanted"], said.json["rate"], set(said.json["noise"].values())) == (0.15, 250, {0.01})
+    step = said.json["next_step"]
+    assert step["enough"]
+    assert max(step["percent"].values()) <= 0.15
+
+
+def test_a_campaign(folder: Folder) -> None:
+    before = folder.listing()
+    said = run("plan", folder.path)
+    assert (said.status, said.err) == (0, "")
+    assert "as it is" in said.out
+    assert folder.listing() == before
+    identified = run("identify", folder.path)
+    next_line = said.out.partition("Next: ")[2]
+    assert next_line
+    assert next_line in identified.out
+    document = json.loads((folder.path / "results" / "results.json").read_text(encoding="utf-8"))
+    assert f"{document['next_step']}." == " ".join(next_line.split())
+
+
+def test_identify_says_what_would_help(one_drop: Identified, sedan: Identified) -> None:
+    assert "knowing the total mass and a drop of the left wheels would determine" in one_drop.json.json["next_step"]
+    assert sedan.json.json["next_step"].startswith("nothing more is needed")
+
+
+def test_a_rejected_campaign_is_no_ground_for_a_plan(leafbus: Identified) -> None:
+    said = run("plan", LEAFBUS, "--json")
+    assert said.status == 3
+    assert "does not explain the records" in said.json["rejected"][0]
+    text = run("plan", LEAFBUS).out
+    assert "bounds do not hold" in " ".join(text.split())
+    assert "Next:" not in text
+    assert leafbus.json.json["next_step"] is None
+    assert "Next:" not in leafbus.text.out
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--wanted", "0"), ("plan: wanted",)),
+        (("--noise", "0"), ("plan: noise",)),
+        (("--rate", "1", "--noise", "-1"), ("plan: rate", "plan: noise", "2 faults")),
+        (("--wanted", "much"), ("--wanted",)),
+    ],
+)
+def test_bad_options(vehicle_file: Path, options: tuple[str, ...], words: tuple[str, ...]) -> None:
+    said = run("plan", vehicle_file, "--json", *options)
+    assert (said.status, said.out) == (2, "")
+    assert all(word in said.err for word in words)
+    assert "Traceback" not in said.err
+
+
+def test_bad_files(vehicle_file: Path, folder: Folder) -> None:
+    for path in (vehicle_file.with_name("none.toml"), vehicle_file.parent):
+        assert run("plan", path).status == 2
+    vehicle_file.write_text(vehicle_file.read_text().replace("m_s = 1380\n", ""))
+    said = run("plan", vehicle_file)
+    assert (said.status, said.out) == (2, "")
+    assert "no 'm_s'" in said.err
+    said = run("plan", folder.path, "--noise", "0.1", "--rate", "100")
+    assert (said.status, said.out) == (2, "")
+    assert said.err.count("a campaign brings its own along") == 2
+    folder.edit("wheelbase", "wheelbse")
+    assert run("plan", folder.path).status == 2
+
+
+def test_a_campaign_with_one_drop(tmp_path: Path) -> None:
+    folder = copy_sedan(tmp_path / "one", DROPS[:1])
+    said = run("plan", folder.path, "--json")
+    assert said.status == 0
+    assert said.json["next_step"]["alternatives"] == ["total mass", "+ left wheels"]
