@@ -5,7 +5,7 @@ from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude
 from sprung.identification.inflation import of_colour
-from sprung.identification.joint import Fit, describe, fit_jointly
+from sprung.identification.joint import Fit, describe, fit_jointly, residual_records
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.modes import ModeEstimate, mode_estimates
@@ -37,5 +37,6 @@ __all__ = [
     "mode_estimates",
     "of_colour",
     "parameters_from_matrices",
+    "residual_records",
     "structured_least_squares",
 ]

@@ -150,8 +150,7 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
     """
     climb, best, knowledge = summit.climb, summit.point, summit.climb.knowledge
     fitted = climb.likelihood.fitted(summit.values, best.weights)
-    residuals = [d.values - d.values.mean(axis=1, keepdims=True) - f for d, f in zip(decays, fitted, strict=True)]
-    colour = float(of_colour(residuals, [decay.rate for decay in decays]).max())
+    colour = float(of_colour(residual_records(fitted, decays), [decay.rate for decay in decays]).max())
     inflated = max(colour, summit.disagreement)
 
     eigenvalues, directions = _directions(summit, inflated)
@@ -175,6 +174,27 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
         starts_agreeing=summit.starts_agreeing,
         starts=summit.starts,
     )
+
+
+def residual_records(fitted: Sequence[Real], decays: Sequence[Decay]) -> list[Real]:
+    """Give measured minus fitted for every drop.
+
+    Parameters
+    ----------
+    fitted
+        What the model makes of every record, its mean taken off; each of shape (channel, time), m/s².
+    decays
+        What was fitted.
+
+    Returns
+    -------
+    list of ndarray
+        Each of shape (channel, time), m/s²; NaN in channels that are left out.
+    """
+    return [
+        decay.values - decay.values.mean(axis=1, keepdims=True) - record
+        for decay, record in zip(decays, fitted, strict=True)
+    ]
 
 
 def _directions(summit: Summit, inflated: float) -> tuple[Real, Real]:

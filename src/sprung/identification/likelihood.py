@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -106,7 +107,7 @@ class Likelihood:
         energy: Real = self.records.energy.sum(axis=0)
         return energy
 
-    @property
+    @cached_property
     def largest(self) -> Likelihood:
         """The part of it with most drops that share one load and one rate; the other drops count as perfectly fitted."""
         records = self.records.largest

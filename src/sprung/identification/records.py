@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -69,10 +70,16 @@ class Records:
             blocked=np.concatenate([blocks(record) for record in centred]),
         )
 
-    @property
+    @cached_property
     def _counts(self) -> Index:
         return -(-self.samples // BLOCK)
 
+    @cached_property
+    def _ends(self) -> Index:
+        """Give where the blocks of each record end, 0 before the first."""
+        return np.concatenate([[0], np.cumsum(self._counts)])
+
+    @cached_property
     def _runs(self) -> list[slice]:
         """Give the runs of records that share load and step, and so poles."""
         new = np.flatnonzero((np.diff(self.load) != 0) | (np.diff(self.step) != 0)) + 1
@@ -82,8 +89,7 @@ class Records:
     @property
     def largest(self) -> Records:
         """The most of them that share load and rate, with that one load."""
-        run = max(self._runs(), key=lambda run: int(run.stop - run.start))
-        ends = np.concatenate([[0], np.cumsum(self._counts)])
+        run = max(self._runs, key=lambda run: int(run.stop - run.start))
         return Records(
             order=self.order[run],
             load=np.zeros_like(self.load[run]),
@@ -92,13 +98,12 @@ class Records:
             samples=self.samples[run],
             present=self.present[run],
             energy=self.energy[run],
-            blocked=self.blocked[ends[run.start] : ends[run.stop]],
+            blocked=self.blocked[self._ends[run.start] : self._ends[run.stop]],
         )
 
     def record(self, drop: int) -> Real:
         """Give one centred record, shape (channel, time)."""
-        ends = np.concatenate([[0], np.cumsum(self._counts)])
-        whole = self.blocked[ends[drop] : ends[drop + 1]].swapaxes(0, 1)
+        whole = self.blocked[self._ends[drop] : self._ends[drop + 1]].swapaxes(0, 1)
         record: Real = whole.reshape(whole.shape[0], -1)[:, : self.samples[drop]]
         return record
 
@@ -117,14 +122,13 @@ class Records:
         ndarray
             Shape (drop, channel, mode or twice as many).
         """
-        ends = np.concatenate([[0], np.cumsum(self._counts)])
         parts = []
-        for run in self._runs():
+        for run in self._runs:
             # Poles come in conjugate pairs, one beside the other: one of each pair is enough for real records.
             poles, step = exponent[run.start], self.step[run.start]
             upper = poles.imag >= 0
             of_pair = np.cumsum(upper) - 1
-            blocked = self.blocked[ends[run.start] : ends[run.stop]]
+            blocked = self.blocked[self._ends[run.start] : self._ends[run.stop]]
             halves = correlate(blocked, self._counts[run], poles[upper], secular)
             whole = [np.where(upper, half[:, :, of_pair], half[:, :, of_pair].conj()) for half in halves]
             parts.append(np.concatenate([half * step**power for power, half in enumerate(whole)], axis=2))

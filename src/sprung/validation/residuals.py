@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, of_colour
+from sprung.identification import Fit, of_colour, residual_records
 from sprung.prepare import Decay, resolution
 
 Real = NDArray[np.float64]
@@ -41,14 +41,6 @@ class Misfit:
     ratio: Real
 
 
-def residual_records(fit: Fit, decays: Sequence[Decay]) -> list[Real]:
-    """Give measured minus fitted for every drop, each of shape (channel, time), m/s²."""
-    return [
-        decay.values - decay.values.mean(axis=1, keepdims=True) - fitted
-        for decay, fitted in zip(decays, fit.fitted, strict=True)
-    ]
-
-
 def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     """Separate model error from noise in the residuals.
 
@@ -69,7 +61,7 @@ def judge_residuals(fit: Fit, decays: Sequence[Decay]) -> Misfit:
     So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
-    residuals = residual_records(fit, decays)
+    residuals = residual_records(fit.fitted, decays)
     signals = [decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays]
     rested = [decay for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST]
     rests = [decay.rest.noise for decay in rested]
