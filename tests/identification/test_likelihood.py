@@ -52,34 +52,34 @@ def test_residual_is_that_of_plain_least_squares(vehicle: Vehicle) -> None:
     likelihood, values, records, loads = likelihood_of(vehicle)
     values = values * 1.07
     weights = np.linspace(1.0, 2.0, 8) * HEAVY
-    found = likelihood.evaluate(values, weights)
+    found = likelihood.at(values).evaluate(weights)
     for record, load, residual in zip(records, loads, found.residual, strict=True):
         root = np.repeat(np.sqrt(weights), record.shape[1])
         columns = basis(likelihood, values, load, record.shape[1])
         coefficients = np.linalg.lstsq(columns * root[:, None], record.ravel() * root, rcond=None)[0]
         left = (record.ravel() - columns @ coefficients).reshape(record.shape)
         np.testing.assert_allclose(residual, np.sum(left**2, axis=1), rtol=1e-8)
-    np.testing.assert_allclose(likelihood.misfit(values, weights), found.residual, rtol=1e-12)
+    np.testing.assert_allclose(likelihood.at(values).misfit(weights), found.residual, rtol=1e-12)
 
 
 def test_gradient_is_the_slope_of_the_residual() -> None:
     likelihood, values, *_ = likelihood_of(TABLE_1_CAR)
     values = values * np.linspace(0.95, 1.08, len(values))
     weights = np.linspace(0.5, 1.0, 8) * HEAVY
-    gradient = likelihood.evaluate(values, weights).gradient.sum(axis=0)
+    gradient = likelihood.at(values).evaluate(weights).gradient
     for i, value in enumerate(values):
         step = 1e-5 * value
         up, down = values.copy(), values.copy()
         up[i] += step
         down[i] -= step
-        slope = np.sum((likelihood.misfit(up, weights) - likelihood.misfit(down, weights)) @ weights) / (2 * step)
+        slope = np.sum((likelihood.at(up).misfit(weights) - likelihood.at(down).misfit(weights)) @ weights) / (2 * step)
         assert gradient[i] == pytest.approx(-slope / 2, rel=1e-5, abs=1e-6 * abs(slope).max())
 
 
 def test_information_is_the_projected_jacobian_squared() -> None:
     likelihood, values, records, loads = likelihood_of(TABLE_1_CAR, noise=0.0)
     weights = np.full(8, HEAVY)
-    information = likelihood.evaluate(values, weights).information.sum(axis=0) / HEAVY
+    information = likelihood.at(values).evaluate(weights).information / HEAVY
     expected = np.zeros_like(information)
     for record, load in zip(records, loads, strict=True):
         columns = basis(likelihood, values, load, record.shape[1])
@@ -128,13 +128,13 @@ def test_repeated_poles_do_not_spoil_the_derivative() -> None:
     likelihood, values, *_ = likelihood_of(symmetric)
     weights = np.full(8, HEAVY)
     start = values * 1.0
-    gradient = likelihood.evaluate(start, weights).gradient.sum(axis=0)
+    gradient = likelihood.at(start).evaluate(weights).gradient
     for i, value in enumerate(start):
         step = 2e-5 * value
         up, down = start.copy(), start.copy()
         up[i] += step
         down[i] -= step
-        slope = np.sum((likelihood.misfit(up, weights) - likelihood.misfit(down, weights)) @ weights) / (2 * step)
+        slope = np.sum((likelihood.at(up).misfit(weights) - likelihood.at(down).misfit(weights)) @ weights) / (2 * step)
         assert gradient[i] * value == pytest.approx(-slope / 2 * value, rel=1e-4, abs=1e-2)
 
 
@@ -159,14 +159,14 @@ def test_modes_that_meet_in_one_shape() -> None:
     assert np.linalg.cond(shapes) > 1e6  # this is what the test is about
     likelihood, values, records, loads = likelihood_of(vehicle, noise=0.02)
     weights = np.full(8, 1 / 0.02**2)
-    found = likelihood.evaluate(values, weights)
+    found = likelihood.at(values).evaluate(weights)
     for record, load, residual in zip(records, loads, found.residual, strict=True):
         columns = basis(likelihood, values, load, record.shape[1])
         left = record.ravel() - columns @ np.linalg.lstsq(columns, record.ravel(), rcond=None)[0]
         np.testing.assert_allclose(residual, np.sum(left.reshape(record.shape) ** 2, axis=1), rtol=1e-3)
-    relative = found.information.sum(axis=0) * np.outer(values, values)
+    relative = found.information * np.outer(values, values)
     beside = values * (1 + 1e-3 * np.cos(np.arange(len(values))))  # where modal coordinates exist again
-    reference = likelihood.evaluate(beside, weights).information.sum(axis=0) * np.outer(values, values)
+    reference = likelihood.at(beside).evaluate(weights).information * np.outer(values, values)
     np.testing.assert_allclose(np.linalg.eigvalsh(relative), np.linalg.eigvalsh(reference), rtol=0.05)
 
 
@@ -175,21 +175,28 @@ def test_both_ways_agree(vehicle: Vehicle) -> None:
     """The modal way, in closed form, against matrix exponentials sample by sample."""
     likelihood, values, records, loads = likelihood_of(vehicle)
     values, weights = values * np.linspace(0.97, 1.04, len(values)), np.linspace(0.5, 1.0, 8) * HEAVY
-    found = likelihood.evaluate(values, weights)
-    information = np.zeros_like(found.information[0])
-    fitted = likelihood.fitted(values, weights)
-    states = likelihood.states(values, weights)
+    found = likelihood.at(values).evaluate(weights)
+    information = np.zeros_like(found.information)
+    gradients, informations = likelihood.at(values).by_drop(weights)
+    leverage = np.zeros_like(weights)
+    fitted = likelihood.at(values).fitted(weights)
+    states = likelihood.at(values).states(weights)
     for drop, (whole, load) in enumerate(zip(records, loads, strict=True)):
         record = whole - whole.mean(axis=1, keepdims=True)
         model = likelihood.models[likelihood.records.loads.index(load)]
         one = evaluate_drop(model, likelihood.sensors, values, record, 200.0, weights)
         np.testing.assert_allclose(found.residual[drop], one.residual, rtol=1e-9)
-        np.testing.assert_allclose(found.leverage[drop], one.leverage, rtol=1e-6)
-        np.testing.assert_allclose(found.gradient[drop] * values, one.gradient * values, rtol=1e-7, atol=1e-3)
+        np.testing.assert_allclose(gradients[drop] * values, one.gradient * values, rtol=1e-7, atol=1e-3)
+        size = np.sqrt(np.diag(one.information))
+        relative = (informations[drop] - one.information) / np.outer(size, size)
+        np.testing.assert_allclose(relative, 0.0, atol=1e-9)
+        leverage += one.leverage
         np.testing.assert_allclose(fitted[drop], one.fitted, atol=1e-9)
         np.testing.assert_allclose(states[drop], one.state, atol=1e-9)
         information += one.information
+    np.testing.assert_allclose(found.leverage, leverage, rtol=1e-6)
+    np.testing.assert_allclose(found.gradient, gradients.sum(axis=0), rtol=1e-9, atol=1e-9 * np.abs(gradients).max())
     scale = np.sqrt(np.diag(information))
     np.testing.assert_allclose(
-        found.information.sum(axis=0) / np.outer(scale, scale), information / np.outer(scale, scale), atol=1e-9
+        found.information / np.outer(scale, scale), information / np.outer(scale, scale), atol=1e-9
     )

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sprung.identification.sums import BLOCK, blocks, correlate, moments
+from sprung.identification.sums import BLOCK, blocks, correlate, gram, moments
 
 
 @given(
@@ -19,25 +19,41 @@ def test_moments_are_the_sums(decay: float, turn: float, samples: int) -> None:
     exponent = complex(decay, turn) * 10.0 ** -float(samples % 7)
     k = np.arange(samples)
     powers = np.exp(exponent * k)
-    found = moments(np.array(exponent), np.array(samples))
+    group = np.zeros(1, dtype=np.int64)
+    found = moments(np.array([exponent]), group, np.exp(np.array([exponent]) * samples), np.array([samples]))
     for moment, power in zip(found, (0, 1, 2), strict=True):
         # Relative to the largest sum there could be: one that cancels cannot be had better from its terms either.
         size = np.sum((k + 1.0) ** power * np.abs(powers))
-        assert abs(moment - np.sum(k**power * powers)) <= 1e-11 * size
+        assert abs(moment[0] - np.sum(k**power * powers)) <= 1e-11 * size
 
 
 @pytest.mark.parametrize("samples", [(1,), (BLOCK - 1, BLOCK), (BLOCK + 1, 1501, 3)])
-def test_correlate_is_the_inner_product(samples: tuple[int, ...]) -> None:
+def test_correlate_is_the_inner_product_with_centred_records(samples: tuple[int, ...]) -> None:
     random = np.random.default_rng(1)
     records = [random.standard_normal((5, count)) for count in samples]
     exponent = np.array([-0.01 + 0.1j, -0.3 + 0j, -0.002 - 0.02j])
     cut = [blocks(record) for record in records]
     counts = np.array([len(one) for one in cut])
-    zeroth, first = correlate(np.concatenate(cut), counts, exponent)
-    for record, found, weighted in zip(records, zeroth, first, strict=True):
-        k = np.arange(record.shape[1])
+    same = np.zeros(len(samples), dtype=np.int64)
+    found = correlate(np.concatenate(cut), counts, exponent[None], same)
+    for whole, products in zip(records, found, strict=True):
+        k, record = np.arange(whole.shape[1]), whole - whole.mean(axis=1, keepdims=True)
         powers = np.exp(exponent[:, None] * k)
-        np.testing.assert_allclose(found, record @ powers.conj().T, rtol=0, atol=1e-11)
-        np.testing.assert_allclose(weighted, record @ (k * powers).conj().T, rtol=0, atol=1e-8)
-    (alone,) = correlate(np.concatenate(cut), counts, exponent, weighted=False)
-    np.testing.assert_allclose(alone, zeroth, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(products[:, 0], record @ powers.conj().T, rtol=0, atol=1e-11)
+        np.testing.assert_allclose(products[:, 1], record @ (k * powers).conj().T, rtol=0, atol=1e-8)
+    alone = correlate(np.concatenate(cut), counts, exponent[None], same, secular=False)
+    np.testing.assert_allclose(alone, found[:, :, :1], rtol=0, atol=1e-12)
+
+
+def test_gram_is_of_centred_exponentials() -> None:
+    exponent = np.array([-0.01 + 0.1j, -0.3 + 0j, -0.002 - 0.02j, -1e-5 + 0j])
+    samples = np.array([40, 1501])
+    both = gram(exponent[None], samples, np.zeros(2, dtype=np.int64))
+    for found, count in zip(both, samples, strict=True):
+        k = np.arange(count)
+        powers = np.exp(exponent[:, None] * k)
+        waves = np.vstack([powers, k * powers])
+        waves -= waves.mean(axis=1, keepdims=True)
+        size = np.linalg.norm(waves, axis=1)
+        np.testing.assert_allclose(found / np.outer(size, size), waves.conj() @ waves.T / np.outer(size, size), atol=1e-9)
+    np.testing.assert_allclose(gram(exponent[None].repeat(2, axis=0), samples, secular=False), both[:, :4, :4], atol=1e-9)

@@ -6,6 +6,7 @@ residuals, so that what is maximised is the likelihood itself, not a sum of squa
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.knowledge import Knowledge
-from sprung.identification.likelihood import Evaluation, Likelihood
+from sprung.identification.likelihood import Evaluation, Likelihood, Place
+from sprung.identification.rating import rate_vehicles
 
 Real = NDArray[np.float64]
 
@@ -34,6 +36,7 @@ FAR, CLOSE_BY = 1e-3, 1e-9
 
 _SETTLED = 1e-3  # relative change of the noise levels
 _SAME = 100.0  # distance in standard errors, squared, within which a climb will end where another one has
+_LEADS_THERE = 0.05  # part of the distance, squared, that a step may miss another climb's end by and still lead there
 _EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have before anybody is told
 _ITERATIONS, _PROVISIONAL = 100, 40  # steps at the most, where the end counts and where it is only a stage
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
@@ -73,10 +76,12 @@ class Point:
     ----------
     u
         Coordinates of the parameters, shape (parameter,).
+    place
+        The likelihood there.
     weights
         1/σ² of each channel with which `evaluation` was made, shape (channel,).
     evaluation
-        The likelihood there.
+        Fit and derivatives.
     steps
         How many were taken.
     converged
@@ -84,6 +89,7 @@ class Point:
     """
 
     u: Real
+    place: Place
     weights: Real
     evaluation: Evaluation
     steps: int = 0
@@ -127,14 +133,14 @@ class Climb:
         Parameters
         ----------
         residual, leverage
-            As in an `Evaluation`, shape (drop, channel).
+            As in an `Evaluation`, shapes (drop, channel) and (channel,).
 
         Returns
         -------
         ndarray
             (m/s²)², shape (channel,).
         """
-        freedom = np.maximum(self._observations - self._constants - leverage.sum(axis=0), 1.0)
+        freedom = np.maximum(self._observations - self._constants - leverage, 1.0)
         variance = residual.sum(axis=0) / freedom + NOISE_FLOOR**2 * self._energy / self._observations
         # A channel that no drop has weighs nothing, whatever its noise.
         return np.where(self._constants > 0, variance, 1.0)
@@ -145,11 +151,12 @@ class Climb:
         variance = self.variance(point.evaluation.residual, point.evaluation.leverage)
         return float(self._observations @ np.log(variance) + prior @ prior)
 
-    def first_cost(self, u: Real) -> float:
-        """Rate a start: the same from one group of drops alone, its channels weighted by their energy."""
-        weights = self._observations / self._energy
-        residual = self.likelihood.largest.misfit(self.knowledge.coordinates.values(u), weights)
-        return float(self._observations @ np.log(self.variance(residual, np.zeros_like(residual))))
+    def first_costs(self, starts: Sequence[Real]) -> Real:
+        """Rate starts: the same from one run of drops alone, its channels weighted by their energy; shape (start,)."""
+        values = np.array([self.knowledge.coordinates.values(u) for u in starts])
+        shares = rate_vehicles(self.likelihood, values, self._observations / self._energy)
+        costs: Real = np.log(shares + NOISE_FLOOR**2) @ self._observations
+        return costs
 
     def system(self, point: Point, inflation: float = 1.0) -> tuple[Real, Real, Real]:
         """Give information and gradient in the free directions, and those directions.
@@ -169,14 +176,15 @@ class Climb:
         slopes = self.knowledge.coordinates.slopes(point.u)
         prior = self.knowledge.prior(point.u)
         free = self.knowledge.free(point.u)
-        data = point.evaluation.information.sum(axis=0) * np.outer(slopes, slopes) / inflation
-        gradient = point.evaluation.gradient.sum(axis=0) * slopes / inflation + prior.slopes.T @ prior.residual
+        data = point.evaluation.information * np.outer(slopes, slopes) / inflation
+        gradient = point.evaluation.gradient * slopes / inflation + prior.slopes.T @ prior.residual
         return free.T @ (data + prior.slopes.T @ prior.slopes) @ free, free.T @ gradient, free
 
     def by_drop(self, point: Point) -> tuple[Real, Real]:
         """Give each drop's own gradient and information in the free directions."""
         free = self.knowledge.free(point.u) * self.knowledge.coordinates.slopes(point.u)[:, None]
-        return point.evaluation.gradient @ free, free.T @ point.evaluation.information @ free
+        gradients, informations = point.place.by_drop(point.weights)
+        return gradients @ free, free.T @ informations @ free
 
     def contradictions(self, point: Point, inflation: float) -> dict[str, float]:
         """Hold each known quantity against everything else.
@@ -215,7 +223,8 @@ class Climb:
         u
             Coordinates to start from, exact knowledge fulfilled.
         summit
-            Where another climb has ended: coming within ten standard errors of it, this one ends there too.
+            Where another climb has ended: coming within ten standard errors of it, or where the next step leads there, this
+            one ends there too.
         enough
             Expected gain in log-likelihood at which to stop.
         damping
@@ -226,27 +235,30 @@ class Climb:
         Point
         """
         weights = self._observations / self._energy
-        residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), weights)
-        point = self._evaluate(u, 1 / self.variance(residual, np.zeros_like(residual)), 0)
+        place = self._at(u)
+        variance = self.variance(place.misfit(weights), np.zeros_like(weights))
+        point = _evaluated(u, place, 1 / variance, 0)
+        before = np.inf
         while point.steps < (_ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
             information, gradient, free = self.system(point)
             if not gradient.size:
                 return replace(point, converged=True)
-            if summit is not None:
-                distance = free.T @ (summit.u - point.u)
-                if distance @ information @ distance < _SAME:
-                    return summit
+            if summit is not None and _leads(information, gradient, free.T @ (summit.u - point.u)):
+                return summit
             moved, damping, gain = self._step(point, information, gradient, free, damping)
             if moved is None:
                 return replace(point, converged=gain < 1e-3)
             settled = np.abs(np.log(moved.weights / point.weights)).max() < _SETTLED
             point = moved
-            if gain < enough and (settled or enough > CONVERGED):
+            # What the steps to come will gain, if they go on shrinking as the last two did.
+            ratio = min(gain / before, 0.9) if before < np.inf else 0.9
+            before = gain
+            if gain * min(ratio / (1 - ratio), 1.0) < enough and (settled or enough > CONVERGED):
                 return replace(point, converged=True)
         return point
 
-    def _evaluate(self, u: Real, weights: Real, steps: int) -> Point:
-        return Point(u, weights, self.likelihood.evaluate(self.knowledge.coordinates.values(u), weights), steps)
+    def _at(self, u: Real) -> Place:
+        return self.likelihood.at(self.knowledge.coordinates.values(u))
 
     def _step(
         self, point: Point, information: Real, gradient: Real, free: Real, damping: float
@@ -266,15 +278,30 @@ class Climb:
             move = free @ (told @ step)
             move *= min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300))
             u = self.knowledge.bind(point.u + move)
-            residual = self.likelihood.misfit(self.knowledge.coordinates.values(u), point.weights)
+            place = self._at(u)
+            residual = place.misfit(point.weights)
             won = now - self._weighted(u, residual, point.weights)
             if won >= -1e-10 * abs(now):
                 weights = 1 / self.variance(residual, point.evaluation.leverage)
                 damping = max(damping / 10, _LEAST_DAMPING) if won > 0.25 * gain else 8 * damping
-                return self._evaluate(u, weights, point.steps + 1), damping, gain
+                return _evaluated(u, place, weights, point.steps + 1), damping, gain
             damping = max(damping, 1e-6) * 8
         return None, damping, gain
 
     def _weighted(self, u: Real, residual: Real, weights: Real) -> float:
         prior = self.knowledge.prior(u).residual
         return float(residual.sum(axis=0) @ weights + prior @ prior)
+
+
+def _evaluated(u: Real, place: Place, weights: Real, steps: int) -> Point:
+    return Point(u, place, weights, place.evaluate(weights), steps)
+
+
+def _leads(information: Real, gradient: Real, distance: Real) -> bool:
+    """Say whether the next step leads to a place that far away, or is there already."""
+    squared = float(distance @ information @ distance)
+    if squared < _SAME:
+        return True
+    told = told_directions(information)
+    missed = told.T @ distance - np.linalg.solve(told.T @ information @ told, told.T @ gradient)
+    return float(missed @ (told.T @ information @ told) @ missed) < _LEADS_THERE * squared

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.estimate import Known
 from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.inflation import of_colour
-from sprung.identification.summit import Summit, ascend
+from sprung.identification.summit import STARTS, Summit, ascend
 from sprung.prepare import Decay
 from sprung.vehicle import PARAMETERS, LinearModel, Sensor
 
@@ -119,19 +119,20 @@ def fit_jointly(
     known: Mapping[str, Known],
     *,
     start: Mapping[str, float] | None = None,
+    starts: int = STARTS,
 ) -> Fit:
     """Fit one vehicle to all decays: `ascend`, and `describe` where that ends.
 
     Parameters
     ----------
-    decays, models, sensors, known, start
+    decays, models, sensors, known, start, starts
         As for `ascend`.
 
     Returns
     -------
     Fit
     """
-    return describe(ascend(decays, models, sensors, known, start=start), decays)
+    return describe(ascend(decays, models, sensors, known, start=start, starts=starts), decays)
 
 
 def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
@@ -149,7 +150,7 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
     Fit
     """
     climb, best, knowledge = summit.climb, summit.point, summit.climb.knowledge
-    fitted = climb.likelihood.fitted(summit.values, best.weights)
+    fitted = best.place.fitted(best.weights)
     colour = float(of_colour(residual_records(fitted, decays), [decay.rate for decay in decays]).max())
     inflated = max(colour, summit.disagreement)
 
@@ -208,6 +209,6 @@ def _directions(summit: Summit, inflated: float) -> tuple[Real, Real]:
     rounding = RANK * eigenvalues.max(initial=0.0)
     if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
         seen = climb.knowledge.coordinates.slopes(point.u)[:, None] * free
-        feigned = seen.T @ climb.likelihood.feigned(summit.values, point.weights) @ seen
+        feigned = seen.T @ point.place.feigned(point.weights) @ seen
         eigenvalues, vectors = np.linalg.eigh(information - _FEIGNED * feigned)
     return np.where(eigenvalues < rounding, 0.0, eigenvalues), free @ vectors

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -52,13 +53,15 @@ class Coordinates:
     names: tuple[str, ...]
     references: Real
 
-    @property
+    @cached_property
     def _logarithmic(self) -> NDArray[np.bool_]:
         return np.array([PARAMETERS[name].positive for name in self.names])
 
     def values(self, u: Real) -> Real:
         """Give parameter values, SI, at coordinates."""
-        return np.where(self._logarithmic, np.exp(np.where(self._logarithmic, u, 0.0)), self.references * u)
+        values = self.references * u
+        values[self._logarithmic] = np.exp(u[self._logarithmic])
+        return values
 
     def slopes(self, u: Real) -> Real:
         """Give the derivative of each value by its coordinate; shape (parameter,)."""
@@ -66,7 +69,9 @@ class Coordinates:
 
     def of(self, values: Real) -> Real:
         """Give coordinates at parameter values, SI."""
-        return np.where(self._logarithmic, np.log(np.where(self._logarithmic, values, 1.0)), values / self.references)
+        u = values / self.references
+        u[self._logarithmic] = np.log(values[self._logarithmic])
+        return u
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,21 +89,31 @@ class Knowledge:
     coordinates: Coordinates
     statements: Mapping[str, Known]
 
-    def _at(self, u: Real, exact: bool) -> tuple[Real, Real, Real]:
-        chosen = [(name, known) for name, known in self.statements.items() if known.exact == exact]
+    @cached_property
+    def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
+        """Names, values and sizes of error that count as one; of the exact statements, and of the others."""
+        chosen = {}
+        for exact in (True, False):
+            those = {name: known for name, known in self.statements.items() if known.exact == exact}
+            values = np.array([known.value for known in those.values()])
+            std = np.array([known.std for known in those.values()])
+            sizes = np.abs(values) if exact else np.maximum(std, _FINEST * np.abs(values))
+            chosen[exact] = tuple(those), values, sizes
+        return chosen
+
+    def _at(self, u: Real, exact: bool) -> tuple[Real, Real]:
+        """Give what statements differ from what the coordinates make of them, and the slopes of that, in their sizes."""
+        names, known, sizes = self._chosen[exact]
+        if not names:
+            return np.zeros(0), np.zeros((0, len(u)))
         values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
-        residual, rows = np.zeros(len(chosen)), np.zeros((len(chosen), len(u)))
-        scale = np.array([known.value if exact else max(known.std, _FINEST * abs(known.value)) for _, known in chosen])
-        for i, (name, known) in enumerate(chosen):
-            value, gradient = quantity(name, self.coordinates.names, values)
-            residual[i] = known.value - value
-            rows[i] = gradient * slopes
-        return residual, rows, scale
+        found = [quantity(name, self.coordinates.names, values) for name in names]
+        residual = (known - np.array([value for value, _ in found])) / sizes
+        return residual, np.array([gradient for _, gradient in found]) * slopes / sizes[:, None]
 
     def prior(self, u: Real) -> Prior:
         """Give the uncertain statements as observations in units of their own standard uncertainty."""
-        residual, rows, std = self._at(u, exact=False)
-        return Prior(residual / std, rows / std[:, None])
+        return Prior(*self._at(u, exact=False))
 
     def without(self, name: str) -> Knowledge:
         """Give the knowledge without one statement."""
@@ -112,10 +127,10 @@ class Knowledge:
     def bind(self, u: Real) -> Real:
         """Move coordinates, by the shortest way, to where every exact statement holds."""
         for _ in range(20):
-            residual, rows, size = self._at(u, exact=True)
-            if residual.size == 0 or np.all(np.abs(residual) <= 1e-14 * np.abs(size)):
+            residual, rows = self._at(u, exact=True)
+            if np.all(np.abs(residual) <= 1e-14):
                 break
-            u = u + np.linalg.pinv(rows / size[:, None]) @ (residual / size)
+            u = u + np.linalg.pinv(rows) @ residual
         return u
 
     def free(self, u: Real) -> Real:
@@ -126,9 +141,9 @@ class Knowledge:
         ndarray
             Shape (coordinate, direction).
         """
-        residual, rows, size = self._at(u, exact=True)
+        residual, rows = self._at(u, exact=True)
         if residual.size == 0:
             return np.eye(len(u))
-        _, singular, right = np.linalg.svd(rows / size[:, None])
+        _, singular, right = np.linalg.svd(rows)
         rank = int(np.sum(singular > 1e-10 * singular[0]))
         return right[rank:].T

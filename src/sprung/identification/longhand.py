@@ -98,7 +98,7 @@ def evaluate_drop(
 
     # How the readings from that state change with each parameter: Ẏ' = A Y' + dA Y, both propagated together.
     changes = []
-    for dS, dlower in zip(sensors.slopes, slopes, strict=True):
+    for dS, dlower in zip(np.swapaxes(sensors.slopes, 0, 1), slopes, strict=True):
         dA = np.vstack([np.zeros((7, 14)), dlower])
         both = np.block([[A, np.zeros((14, 14))], [dA, A]])
         motion = affine_response(both, np.zeros(28), np.append(state, np.zeros(14)), 1 / rate, samples)

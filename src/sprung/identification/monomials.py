@@ -7,42 +7,37 @@ these products, and the parameters follow as the products of one factor and as r
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle import LinearModel, Matrices, Tracks, parameter_names, seven_degrees_of_freedom
-from sprung.vehicle.model import Quadratic
+from sprung.vehicle.elements import Law
+from sprung.vehicle.model import LAWS
 
 Real = NDArray[np.float64]
 Key = tuple[int, int, int]
 """A product of parameters: their positions in the list of names counted from 1, in order, filled up with 0 for 1."""
 
 
-def expand(matrix: Quadratic) -> dict[Key, Real]:
-    """Write a sum over elements as a linear combination of products of parameters.
+def expand(model: LinearModel, law: Law) -> dict[Key, Real]:
+    """Write M, C or K as a linear combination of products of parameters.
 
     Parameters
     ----------
-    matrix
-        Mass, damping or stiffness of a `LinearModel`.
+    model
+        Equations of motion.
+    law
+        Which of the three.
 
     Returns
     -------
     dict
-        For each product the matrix that it multiplies, shape (7, 7); products that cancel are left out.
+        For each product the matrix that it multiplies, shape (7, 7).
     """
-    terms: defaultdict[Key, Real] = defaultdict(lambda: np.zeros((7, 7)))
-    for affine, coefficients in zip(matrix.rows.affine, matrix.coefficients, strict=True):
-        factors = np.flatnonzero(affine.any(axis=0)).tolist()
-        for kappa in np.flatnonzero(coefficients).tolist():
-            for i in factors:
-                for j in factors:
-                    one, two, three = sorted((kappa, i, j))
-                    terms[one, two, three] += coefficients[kappa] * np.outer(affine[:, i], affine[:, j])
-    return {key: term for key, term in terms.items() if term.any()}
+    terms = model.terms[:, LAWS.index(law)]
+    return {(one, two, three): term for (one, two, three), term in zip(model.products.tolist(), terms, strict=True) if term.any()}
 
 
 def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], names: Sequence[str]) -> Real:
@@ -107,7 +102,7 @@ def parameters_from_matrices(matrices: Matrices, tracks: Tracks = "shared") -> d
     names = parameter_names(tracks)
     model = LinearModel.of(seven_degrees_of_freedom(tracks), names)
     products: dict[Key, float] = {}
-    laws = [expand(quadratic) for quadratic in (model.mass, model.damping, model.stiffness)]
+    laws = [expand(model, law) for law in LAWS]
     for identified, terms in zip(matrices, laws, strict=True):
         design = np.stack([term.ravel() for term in terms.values()], axis=1)
         found = np.linalg.lstsq(design, np.asarray(identified, dtype=float).ravel(), rcond=None)[0]
@@ -133,7 +128,7 @@ def shape_of(A: Real, model: LinearModel) -> Real:
     ndarray
         Parameters with m_s = 1 kg, shape (parameter,); NaN where nothing was found.
     """
-    mass, damping, stiffness = expand(model.mass), expand(model.damping), expand(model.stiffness)
+    mass, damping, stiffness = (expand(model, law) for law in LAWS)
     keys = list(dict.fromkeys([*mass, *damping, *stiffness]))
     nothing = np.zeros((7, 7))
     columns = [

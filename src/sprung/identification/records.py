@@ -1,11 +1,10 @@
-"""The records as the fit uses them: centred, cut into blocks, those that share poles side by side."""
+"""The records as the fit uses them: centred, cut into blocks, those that share their channels in one run."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,35 +16,38 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Index = NDArray[np.int64]
 
+_LARGEST = 400
+"""Blocks in a run at the most, unless one record has more: its products then stay in a processor's cache."""
+
 
 @dataclass(frozen=True, eq=False)
-class Records:
-    """Decays of any load, rate and length.
+class Run:
+    """Decays with the same channels, those of one load and rate, and so of the same poles and shapes, in one group.
 
     Attributes
     ----------
     order
-        Position of each record in the fit's list of decays: here those of one load and rate stand together; shape (drop,).
+        Position of each record in the fit's list of decays, shape (record,).
+    group
+        Which group it belongs to, ascending, shape (record,).
     load
-        Which load each belongs to, by its position in `loads`, shape (drop,).
-    loads
-        Names of the loads.
+        Which load each group has, by its position in the list of loads, shape (group,).
     step
-        Sampling interval of each, s, shape (drop,).
+        Sampling interval of each group, s, shape (group,).
     samples
-        Shape (drop,).
+        Of each record, shape (record,).
     present
-        1 for a channel that is used, 0 for one that is left out; shape (drop, channel).
+        1 for a channel that is used, 0 for one that is left out; shape (channel,).
     energy
-        Sum of squares of the centred records, (m/s²)², shape (drop, channel).
+        Sum of squares of the centred records, (m/s²)², shape (record, channel).
     blocked
         Centred records cut into blocks, one after the other, channels that are left out zero; shape (block, channel,
         BLOCK).
     """
 
     order: Index
+    group: Index
     load: Index
-    loads: tuple[str, ...]
     step: Real
     samples: Index
     present: Real
@@ -53,90 +55,107 @@ class Records:
     blocked: Real
 
     @classmethod
-    def of(cls, decays: Sequence[Decay]) -> Records:
-        """Take up decays."""
-        loads = tuple(sorted({decay.load for decay in decays}))
-        order = sorted(range(len(decays)), key=lambda i: (decays[i].load, decays[i].rate))
-        chosen = [decays[i] for i in order]
-        centred = [_centred(decay) for decay in chosen]
+    def of(cls, order: Sequence[int], decays: Sequence[Decay], loads: Sequence[str]) -> Run:
+        """Take up decays that belong together, by their positions in the list of all."""
+        alike = sorted({(loads.index(decays[i].load), 1.0 / decays[i].rate) for i in order})
+        groups = {i: alike.index((loads.index(decays[i].load), 1.0 / decays[i].rate)) for i in order}
+        order = sorted(order, key=groups.__getitem__)
+        samples = np.array([decays[i].samples for i in order])
+        cut = [blocks(decays[i].values, decays[i].usable) for i in order]
         return cls(
             order=np.array(order),
-            load=np.array([loads.index(decay.load) for decay in chosen]),
-            loads=loads,
-            step=np.array([1.0 / decay.rate for decay in chosen]),
-            samples=np.array([decay.samples for decay in chosen]),
-            present=np.array([decay.usable for decay in chosen], dtype=float),
-            energy=np.array([np.sum(record**2, axis=1) for record in centred]),
-            blocked=np.concatenate([blocks(record) for record in centred]),
+            group=np.array([groups[i] for i in order]),
+            load=np.array([load for load, _ in alike]),
+            step=np.array([step for _, step in alike]),
+            samples=samples,
+            present=np.array(decays[order[0]].usable, dtype=float),
+            energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
+            blocked=np.concatenate(cut),
         )
 
     @cached_property
-    def _counts(self) -> Index:
+    def counts(self) -> Index:
+        """How many blocks each record has, shape (record,)."""
         return -(-self.samples // BLOCK)
 
     @cached_property
-    def _ends(self) -> Index:
-        """Give where the blocks of each record end, 0 before the first."""
-        return np.concatenate([[0], np.cumsum(self._counts)])
+    def _first(self) -> Index:
+        """Give the first record of each group."""
+        return np.searchsorted(self.group, np.arange(len(self.load)))
 
-    @cached_property
-    def _runs(self) -> list[slice]:
-        """Give the runs of records that share load and step, and so poles."""
-        new = np.flatnonzero((np.diff(self.load) != 0) | (np.diff(self.step) != 0)) + 1
-        edges = [0, *new.tolist(), len(self.load)]
-        return [slice(begin, end) for begin, end in pairwise(edges)]
+    def by_group(self, values: Complex) -> Complex:
+        """Add up over the records of each group; shape (record, ...) to (group, ...)."""
+        return np.add.reduceat(values, self._first, axis=0)
 
-    @property
-    def largest(self) -> Records:
-        """The most of them that share load and rate, with that one load."""
-        run = max(self._runs, key=lambda run: int(run.stop - run.start))
-        return Records(
-            order=self.order[run],
-            load=np.zeros_like(self.load[run]),
-            loads=(self.loads[self.load[run.start]],),
-            step=self.step[run],
-            samples=self.samples[run],
-            present=self.present[run],
-            energy=self.energy[run],
-            blocked=self.blocked[self._ends[run.start] : self._ends[run.stop]],
-        )
+    def members(self, group: int) -> slice:
+        """Give the records of a group."""
+        ends = [*self._first.tolist(), len(self.group)]
+        return slice(ends[group], ends[group + 1])
 
-    def record(self, drop: int) -> Real:
+    def record(self, position: int) -> Real:
         """Give one centred record, shape (channel, time)."""
-        whole = self.blocked[self._ends[drop] : self._ends[drop + 1]].swapaxes(0, 1)
-        record: Real = whole.reshape(whole.shape[0], -1)[:, : self.samples[drop]]
+        end = int(self.counts[: position + 1].sum())
+        whole = self.blocked[end - self.counts[position] : end].swapaxes(0, 1)
+        record: Real = whole.reshape(whole.shape[0], -1)[:, : self.samples[position]]
         return record
 
-    def correlate(self, exponent: Complex, secular: bool) -> Complex:
-        """Give the inner products of the records with e^{λt} and, if wanted, t e^{λt}.
+    def correlate(self, exponent: Complex) -> Complex:
+        """Give the inner products of the records with e^{λk} and k e^{λk}.
 
         Parameters
         ----------
         exponent
-            λ times the sampling interval, for each drop; shape (drop, mode).
-        secular
-            Whether the second half is wanted.
+            λ per sample, conjugates beside each other, shape (group, mode).
 
         Returns
         -------
         ndarray
-            Shape (drop, channel, mode or twice as many).
+            Shape (record, channel, twice as many modes).
         """
-        parts = []
-        for run in self._runs:
-            # Poles come in conjugate pairs, one beside the other: one of each pair is enough for real records.
-            poles, step = exponent[run.start], self.step[run.start]
-            upper = poles.imag >= 0
-            of_pair = np.cumsum(upper) - 1
-            blocked = self.blocked[self._ends[run.start] : self._ends[run.stop]]
-            halves = correlate(blocked, self._counts[run], poles[upper], secular)
-            whole = [np.where(upper, half[:, :, of_pair], half[:, :, of_pair].conj()) for half in halves]
-            parts.append(np.concatenate([half * step**power for power, half in enumerate(whole)], axis=2))
-        return np.concatenate(parts)
+        # Of every pair of conjugate poles one is enough for real records; which has more real ones sets the width.
+        upper = exponent.imag >= 0
+        width = upper.sum(axis=1).max()
+        chosen = np.take_along_axis(exponent, np.argsort(~upper, axis=1, kind="stable")[:, :width], axis=1)
+        half = correlate(self.blocked, self.counts, chosen, self.group)
+        of_pair = (np.cumsum(upper, axis=1) - 1)[self.group]
+        whole = np.take_along_axis(half, of_pair[:, None, None], axis=-1)
+        whole.imag *= np.where(upper, 1.0, -1.0)[self.group][:, None, None]
+        return whole.reshape(*whole.shape[:2], -1)
 
 
-def _centred(decay: Decay) -> Real:
-    record = np.zeros(decay.values.shape)
-    usable = decay.values[decay.usable]
-    record[decay.usable] = usable - usable.mean(axis=1, keepdims=True)
-    return record
+@dataclass(frozen=True, eq=False)
+class Records:
+    """All decays of a fit.
+
+    Attributes
+    ----------
+    loads
+        Names of the loads.
+    runs
+        The decays.
+    drops
+        How many there are.
+    """
+
+    loads: tuple[str, ...]
+    runs: tuple[Run, ...]
+    drops: int
+
+    @classmethod
+    def of(cls, decays: Sequence[Decay]) -> Records:
+        """Take up decays of any load, rate and length."""
+        loads = tuple(sorted({decay.load for decay in decays}))
+        together: dict[tuple[bool, ...], list[list[int]]] = {}
+        for i in sorted(range(len(decays)), key=lambda i: (decays[i].load, decays[i].rate)):
+            runs = together.setdefault(tuple(decays[i].usable), [[]])
+            if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK:
+                runs.append([])
+            runs[-1].append(i)
+        return cls(loads, tuple(Run.of(order, decays, loads) for runs in together.values() for order in runs), len(decays))
+
+    def in_order(self, by_run: Sequence[Real]) -> Real:
+        """Put what belongs to each record where the fit's list of decays has it."""
+        ordered = np.zeros((self.drops, *by_run[0].shape[1:]))
+        for run, values in zip(self.runs, by_run, strict=True):
+            ordered[run.order] = values
+        return ordered

@@ -1,7 +1,12 @@
-"""Modal coordinates of one load: poles and shapes at the sensors, and their derivatives by the parameters."""
+"""Modal coordinates: poles and shapes at the sensors, and their derivatives by the parameters.
+
+Every array may have leading axes: of loads where the model is one of several `side_by_side`, of vehicles where the values have them.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,31 +21,36 @@ _CLOSE = 1e-6
 """Two poles are one where their difference turns by less than this over a record: their mode is then t e^{λt}."""
 
 
-class ModalSolution(NamedTuple):
-    """Poles and shapes of one load.
+@dataclass(frozen=True, eq=False)
+class ModalSolution:
+    """Poles and shapes.
 
     Attributes
     ----------
     poles
-        λ, 1/s, shape (14,).
-    right, left
-        Eigenvectors of the state matrix as columns, and their inverse, shape (14, 14).
+        λ, 1/s, shape (..., 14).
+    right
+        Eigenvectors of the state matrix as columns, shape (..., 14, 14).
     shapes
-        s: reading of each channel per unit of modal amplitude, shape (channel, 14).
+        s: reading of each channel per unit of modal amplitude, shape (..., channel, 14).
     """
 
     poles: Complex
     right: Complex
-    left: Complex
     shapes: Complex
+
+    @cached_property
+    def left(self) -> Complex:
+        """Inverse of `right`, shape (..., 14, 14)."""
+        return np.linalg.inv(self.right)
 
     @property
     def condition(self) -> float:
         """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
         # Displacements and velocities are made comparable by a mean frequency.
         balance = np.repeat([float(np.abs(self.poles).mean()), 1.0], 7)
-        right = np.linalg.norm(self.right * balance[:, None], axis=0)
-        return float((right * np.linalg.norm(self.left / balance, axis=1)).max())
+        right = _sizes(self.right * balance[:, None], axis=-2)
+        return float((right * _sizes(self.left / balance, axis=-1)).max())
 
 
 class ModalSlopes(NamedTuple):
@@ -49,11 +59,11 @@ class ModalSlopes(NamedTuple):
     Attributes
     ----------
     poles
-        Shape (parameter, 14).
+        Shape (..., parameter, 14).
     shapes
-        σ, shape (parameter, channel, 14).
+        σ, what multiplies q e^{λt} in the derivative of a channel; shape (..., channel, parameter, 14).
     secular
-        τ, shape (parameter, channel, 14).
+        τ, what multiplies q t e^{λt}; shape (..., channel, parameter, 14).
     """
 
     poles: Complex
@@ -62,7 +72,7 @@ class ModalSlopes(NamedTuple):
 
 
 def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolution:
-    """Solve the eigenvalue problem of one load.
+    """Solve the eigenvalue problem.
 
     Parameters
     ----------
@@ -71,15 +81,18 @@ def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolutio
     sensors
         The sensors' rows.
     values
-        Parameters, SI.
+        Parameters, SI, shape (..., parameter).
 
     Returns
     -------
     ModalSolution
     """
     A = model.matrices(values).state
-    poles, right = np.linalg.eig(A)
-    return ModalSolution(poles, right, np.linalg.inv(right), sensors.at(values) @ (A[7:] @ right))
+    # A real matrix whose poles are all real gives real arrays.
+    poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
+    S = sensors.at(values)
+    S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
+    return ModalSolution(poles, right, S @ (right[..., 7:, :] * poles[..., None, :]))
 
 
 def differentiate_modes(
@@ -89,10 +102,12 @@ def differentiate_modes(
 
     Parameters
     ----------
-    model, sensors, values
-        As for `solve_modes`, which gave `modes`.
+    model, sensors
+        As for `solve_modes`.
+    values
+        Of shape (parameter,).
     modes
-        Poles and shapes.
+        Poles and shapes there.
     span
         Length of the longest record, s: decides which poles are too close to be told apart.
 
@@ -105,14 +120,37 @@ def differentiate_modes(
     The derivative of e^{At} in modal coordinates has the entries D_kj (e^{λ_j t} - e^{λ_k t})/(λ_j - λ_k), with
     D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What is left is
     D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones.
+
+    With motions v, λv, λ²v of a mode, dA V is -M⁻¹ (dM λ²v + dC λv + dK v).
     """
-    lower, slopes = model.accelerations(values)
-    changes = slopes @ modes.right
-    D = modes.left[:, 7:] @ changes
-    difference = modes.poles[None, :] - modes.poles[:, None]
+    lead, channels, parameters = modes.poles.shape[:-1], len(sensors.affine), len(values)
+    displacements = modes.right[..., :7, :]
+    accelerations = modes.right[..., 7:, :] * modes.poles[..., None, :]
+    motions = np.concatenate([accelerations, modes.right[..., 7:, :], displacements], axis=-2)
+    # The rows of dM, dC and dK beside each other: (..., 7 rows of every parameter, 21).
+    slopes = np.moveaxis(np.concatenate(model.slopes(values), axis=-1), 0, -2)
+    forces = (slopes.reshape(*lead, -1, 21) @ motions).reshape(*lead, 7, -1)
+    S = np.broadcast_to(sensors.at(values), (*lead, channels, 7))
+    both = np.concatenate([modes.left[..., 7:], S], axis=-2) @ -np.linalg.inv(model.matrices(values).M)
+    changed = (both @ forces).reshape(*lead, 14 + channels, parameters, 14)
+    D, of_sensors = changed[..., :14, :, :], changed[..., 14:, :, :]
+
+    difference = modes.poles[..., None, :] - modes.poles[..., :, None]
     close = np.abs(difference) * span < _CLOSE
     mixing = np.where(close, 0.0, 1.0 / np.where(close, 1.0, difference))
-    of_sensors = sensors.slopes @ (lower @ modes.right) + sensors.at(values) @ changes
+
+    def seen(mixed: Complex) -> Complex:
+        by_channel: Complex = modes.shapes @ mixed.reshape(*lead, 14, -1)
+        return by_channel.reshape(*lead, channels, parameters, 14)
+
+    moved = (sensors.slopes.reshape(-1, 7) @ accelerations).reshape(*lead, channels, parameters, 14)
     return ModalSlopes(
-        np.diagonal(D, axis1=1, axis2=2), of_sensors + modes.shapes @ (D * mixing), modes.shapes @ (D * close)
+        np.diagonal(D, axis1=-3, axis2=-1),
+        of_sensors + moved + seen(D * mixing[..., :, None, :]),
+        seen(D * close[..., :, None, :]),
     )
+
+
+def _sizes(vectors: Complex, axis: int) -> Real:
+    sizes: Real = np.sqrt(np.sum(vectors.real**2 + vectors.imag**2, axis=axis))
+    return sizes

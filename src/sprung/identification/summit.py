@@ -23,8 +23,8 @@ Real = NDArray[np.float64]
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
 
-_STARTS = 3
-"""How many of the catalogue's vehicles are refined: those that explain the records best as they are."""
+STARTS = 3
+"""How many starts are usually refined: enough to see whether they agree."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class Summit:
     @property
     def states(self) -> Real:
         """{X, Ẋ} of each drop at the start of its decay, SI, shape (drop, 14)."""
-        return self.climb.likelihood.states(self.values, self.point.weights)
+        return self.point.place.states(self.point.weights)
 
     def after(self, before: Summit) -> Summit:
         """Give this summit with the history of the one from which it was reached."""
@@ -104,6 +104,7 @@ def ascend(
     known: Mapping[str, Known],
     *,
     start: Mapping[str, float] | None = None,
+    starts: int = STARTS,
     enough: float = CONVERGED,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Summit:
@@ -121,6 +122,8 @@ def ascend(
         Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
     start
         Parameter values, SI, to start from; the catalogue of usual vehicles is tried where it is left out.
+    starts
+        How many of the catalogue's vehicles are refined: those that explain the records best as they are. The best end wins.
     enough
         Expected gain in log-likelihood at which to stop.
     progress
@@ -138,15 +141,15 @@ def ascend(
     knowledge = Knowledge(coordinates, known)
     climb = Climb(likelihood, knowledge)
 
-    tried = [knowledge.bind(coordinates.of(np.array([values[name] for name in names]))) for values in candidates]
+    tried = [coordinates.of(np.array([values[name] for name in names])) for values in candidates]
     if start is None:
         progress(f"trying {len(tried)} usual vehicles")
-        tried = sorted(tried, key=climb.first_cost)[:_STARTS]
+        tried = [tried[i] for i in np.argsort(climb.first_costs(tried), kind="stable")[:starts]]
     ends: list[Point] = []
     for number, u in enumerate(tried, start=1):
         progress(f"fitting from start {number} of {len(tried)}")
         summit = min(ends, key=climb.cost, default=None)
-        ends.append(climb.to_the_top(u, summit, enough, FAR if start is None else CLOSE_BY))
+        ends.append(climb.to_the_top(knowledge.bind(u), summit, enough, FAR if start is None else CLOSE_BY))
     best = min(ends, key=climb.cost)
     agreeing = sum(climb.cost(end) - climb.cost(best) < max(1e-3, 4 * enough) for end in ends)
     return Summit(climb, best, best.steps, len(ends), agreeing)

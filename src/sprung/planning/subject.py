@@ -168,7 +168,7 @@ class Subject:
         models = {name: LinearModel.of(elements + load.elements(height), self.names) for load, name in names.items()}
         likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
         weights = self.rate / sampling / self.noise**2
-        told = likelihood.evaluate(self.values, weights).information.sum(axis=0)
+        told = likelihood.at(self.values).evaluate(weights).information
         seen = self.slopes[:, None] * self.free
         information: Real = seen.T @ told @ seen / self.inflation
         return information

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +16,12 @@ from sprung.vehicle.rows import Row
 
 Array = NDArray[np.float64]
 
+LAWS: tuple[Law, ...] = ("mass", "damper", "spring")
+"""What adds to M, to C and to K."""
+
 
 class Matrices(NamedTuple):
-    """Mass, damping and stiffness matrices, each of shape (7, 7), SI."""
+    """Mass, damping and stiffness matrices, each of shape (..., 7, 7), SI."""
 
     M: Array
     C: Array
@@ -24,9 +29,11 @@ class Matrices(NamedTuple):
 
     @property
     def state(self) -> Array:
-        """State matrix A of eq. (4), shape (14, 14), for the state {X, Ẋ}."""
-        inverse = np.linalg.inv(self.M)
-        return np.block([[np.zeros((7, 7)), np.eye(7)], [-inverse @ self.K, -inverse @ self.C]])
+        """State matrix A of eq. (4), shape (..., 14, 14), for the state {X, Ẋ}."""
+        A = np.zeros((*self.M.shape[:-2], 14, 14))
+        A[..., :7, 7:] = np.eye(7)
+        A[..., 7:, :] = -np.linalg.inv(self.M) @ np.concatenate([self.K, self.C], axis=-1)
+        return A
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,66 +66,40 @@ class Rows:
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
-        """Give the rows at parameter values; shape (row, 7)."""
-        rows: Array = self.affine @ np.concatenate([[1.0], np.asarray(values, dtype=float)])
-        return rows
+        """Give the rows at parameter values of shape (..., parameter); shape (..., row, 7)."""
+        factors = _with_one(values)
+        rows: Array = factors @ self.affine.reshape(-1, factors.shape[-1]).T
+        return rows.reshape(*factors.shape[:-1], *self.affine.shape[:2])
 
-    @property
+    @cached_property
     def slopes(self) -> Array:
-        """Change of each row with each parameter; shape (parameter, row, 7)."""
-        return np.moveaxis(self.affine[:, :, 1:], 2, 0)
-
-
-@dataclass(frozen=True, eq=False)
-class Quadratic:
-    """A sum over elements of κ g gᵀ: one of the three matrices.
-
-    Attributes
-    ----------
-    rows
-        The elements' rows.
-    coefficients
-        Shape (element, 1 + parameter): κ is this times (1, parameters).
-    """
-
-    rows: Rows
-    coefficients: Array
-
-    def at(self, values: ArrayLike) -> Array:
-        """Give the matrix; shape (7, 7)."""
-        g = self.rows.at(values)
-        return g.T @ (self._kappa(values)[:, None] * g)
-
-    def slopes(self, values: ArrayLike) -> Array:
-        """Give its exact derivative by each parameter; shape (parameter, 7, 7)."""
-        g = self.rows.at(values)
-        squares = (g[:, :, None] * g[:, None, :]).reshape(len(g), -1)
-        by_coefficient = (self.coefficients[:, 1:].T @ squares).reshape(-1, 7, 7)
-        half = np.swapaxes(self.rows.slopes, 1, 2) @ (self._kappa(values)[:, None] * g)
-        slopes: Array = by_coefficient + half + np.swapaxes(half, 1, 2)
-        return slopes
-
-    def _kappa(self, values: ArrayLike) -> Array:
-        kappa: Array = self.coefficients @ np.concatenate([[1.0], np.asarray(values, dtype=float)])
-        return kappa
+        """Change of each row with each parameter; shape (row, parameter, 7)."""
+        return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
 
 
 @dataclass(frozen=True, eq=False)
 class LinearModel:
-    """M, C and K over one list of parameters.
+    """M, C and K over one list of parameters, as polynomials in them.
+
+    An element adds κ g gᵀ with κ a parameter and g affine in the geometry, so every entry is a sum of products of at
+    most three parameters: k_sf, k_sf a, k_sf a². The products are what depends on the parameters, and few; what they
+    multiply is constant.
 
     Attributes
     ----------
     names
         The parameters, in the order of every vector of values.
-    mass, damping, stiffness
-        The three sums over elements.
+    products
+        The products of parameters that occur: their positions in the list of names counted from 1, in order, filled up
+        with 0 in front for a product of fewer than three; shape (product, 3).
+    terms
+        What each multiplies in M, C and K: shape (product, 3, 7, 7), or (product, model, 3, 7, 7) of several models
+        `side_by_side`, whose matrices then have a leading axis.
     """
 
     names: tuple[str, ...]
-    mass: Quadratic
-    damping: Quadratic
-    stiffness: Quadratic
+    products: NDArray[np.int64]
+    terms: Array
 
     @classmethod
     def of(cls, elements: Sequence[Element], names: Sequence[str]) -> LinearModel:
@@ -136,27 +117,44 @@ class LinearModel:
         KeyError
             If an element needs a parameter that is not listed.
         """
+        index = {name: i for i, name in enumerate(names, start=1)}
+        terms: dict[tuple[int, ...], Array] = {}
+        rows = Rows.of([element.row for element in elements], names).affine
+        for element, row in zip(elements, rows, strict=True):
+            named = isinstance(element.coefficient, str)
+            kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
+            factors = np.flatnonzero(row.any(axis=0)).tolist()
+            for one, two in product(factors, factors):
+                term = terms.setdefault(tuple(sorted((kappa, one, two))), np.zeros((len(LAWS), 7, 7)))
+                term[LAWS.index(element.law)] += size * np.outer(row[:, one], row[:, two])
+        kept = {key: term for key, term in terms.items() if term.any()}
+        shape = (len(kept), len(LAWS), 7, 7)
+        return cls(tuple(names), np.array(list(kept)).reshape(-1, 3), np.array(list(kept.values())).reshape(shape))
 
-        def quadratic(law: Law) -> Quadratic:
-            chosen = [element for element in elements if element.law == law]
-            index = {name: i for i, name in enumerate(names, start=1)}
-            coefficients = np.zeros((len(chosen), 1 + len(names)))
-            for element, kappa in zip(chosen, coefficients, strict=True):
-                if isinstance(element.coefficient, str):
-                    kappa[index[element.coefficient]] = 1.0
-                else:
-                    kappa[0] = element.coefficient
-            return Quadratic(Rows.of([element.row for element in chosen], names), coefficients)
-
-        return cls(tuple(names), quadratic("mass"), quadratic("damper"), quadratic("spring"))
+    @classmethod
+    def side_by_side(cls, models: Sequence[LinearModel]) -> LinearModel:
+        """Put models over the same parameters side by side, so that all of them are evaluated at once."""
+        keys = list(dict.fromkeys(tuple(key) for model in models for key in model.products.tolist()))
+        terms = np.zeros((len(keys), len(models), len(LAWS), 7, 7))
+        for i, model in enumerate(models):
+            terms[[keys.index(tuple(key)) for key in model.products.tolist()], i] = model.terms
+        return cls(models[0].names, np.array(keys), terms)
 
     def matrices(self, values: ArrayLike) -> Matrices:
-        """Give M, C and K at parameter values, in the order of `names`."""
-        return Matrices(self.mass.at(values), self.damping.at(values), self.stiffness.at(values))
+        """Give M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
+        factors = _with_one(values)[..., self.products]
+        flat = factors.prod(axis=-1) @ self.terms.reshape(len(self.terms), -1)
+        each = np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
+        return Matrices(*each)
 
     def slopes(self, values: ArrayLike) -> Matrices:
-        """Give the derivatives of M, C and K by each parameter; each of shape (parameter, 7, 7)."""
-        return Matrices(self.mass.slopes(values), self.damping.slopes(values), self.stiffness.slopes(values))
+        """Give the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., 7, 7)."""
+        first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
+        others = np.array([second * third, first * third, first * second])
+        changes = np.einsum("ik,ikp->pk", others, self._factors)
+        flat = changes @ self.terms.reshape(len(self.terms), -1)
+        each = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
+        return Matrices(*each)
 
     def accelerations(self, values: ArrayLike) -> tuple[Array, Array]:
         """Give the lower half of the state matrix of eq. (4) and its derivatives.
@@ -170,7 +168,17 @@ class LinearModel:
         """
         M, C, K = self.matrices(values)
         dM, dC, dK = self.slopes(values)
-        inverse: Array = np.asarray(np.linalg.inv(M), dtype=float)
-        lower: Array = -inverse @ np.hstack([K, C])
-        slopes: Array = -inverse @ (dM @ lower + np.concatenate([dK, dC], axis=2))
+        lower: Array = -np.linalg.solve(M, np.hstack([K, C]))
+        slopes: Array = -np.linalg.solve(M, dM @ lower + np.concatenate([dK, dC], axis=2))
         return lower, slopes
+
+    @cached_property
+    def _factors(self) -> Array:
+        """Give which parameter each factor of each product is; shape (3, product, parameter)."""
+        factors: Array = np.eye(1 + len(self.names))[self.products.T, 1:]
+        return np.ascontiguousarray(factors)
+
+
+def _with_one(values: ArrayLike) -> Array:
+    values = np.asarray(values, dtype=float)
+    return np.concatenate([np.ones((*values.shape[:-1], 1)), values], axis=-1)

@@ -1,0 +1,204 @@
+"""A run of records at given poles and shapes: its free amplitudes, and what they leave of the derivatives.
+
+In modal coordinates a channel of a decay is Σ_j s_cj q_j e^{λ_j t} plus an offset, and its derivative by a parameter
+is Σ_j (σ_cj + τ_cj t) q_j e^{λ_j t}. The amplitudes q (the unknown initial state) and the offsets are linear: they are
+solved for in closed form, and their directions are projected off the derivatives (variable projection after Golub and
+Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, in Kaufman's form). All that is assumed of an initial state is that it is one
+a vehicle can be in, so that a motion which no sensor sees is taken to be none.
+
+Shapes belong to a load, not to a record. So whatever they multiply is added up over the records of a group first, and derivatives
+of records are never made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification.longhand import REACH
+from sprung.identification.records import Run
+from sprung.identification.sums import gram, waves
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """What an evaluation needs of a run's samples, whatever the weights.
+
+    Attributes
+    ----------
+    run
+        The records.
+    shapes
+        s, shape (group, channel, 14).
+    reach
+        What is assumed of initial states, as information on the amplitudes, shape (group, 14, 14).
+    gram
+        Inner products of (e^{λk}, k e^{λk}) with each other, shape (record, 28, 28).
+    data
+        Inner products of them with the records, shape (record, channel, 28).
+    """
+
+    run: Run
+    shapes: Complex
+    reach: Complex
+    gram: Complex
+    data: Complex
+
+    @classmethod
+    def of(cls, run: Run, poles: Complex, right: Complex, shapes: Complex) -> Sums:
+        """Sum over the samples, once for given poles, eigenvectors and shapes of each load."""
+        exponent, right = poles[run.load] * run.step[:, None], right[run.load]
+        reach = (np.swapaxes(right.conj(), 1, 2) / REACH**2) @ right
+        products = gram(exponent, run.samples, run.group)
+        return cls(run, shapes[run.load], reach, products, run.correlate(exponent))
+
+    def solve(self, weights: Real) -> Amplitudes:
+        """Solve for the amplitudes, channels weighted by 1/σ², shape (channel,)."""
+        w, group = self.run.present * weights, self.run.group
+        weighted = self.shapes.conj() * w[:, None]
+        normal = (np.swapaxes(weighted, 1, 2) @ self.shapes)[group] * self.gram[:, :14, :14]
+        regular = normal + self.reach[group]
+        scale = 1 / np.sqrt(np.diagonal(regular, axis1=1, axis2=2).real)
+        both = scale[:, :, None] * scale[:, None, :]
+        inverse = np.linalg.inv(regular * both) * both
+        projected = (weighted[group] * self.data[:, :, :14]).sum(axis=1)
+        return Amplitudes(self, w, normal, inverse, (inverse @ projected[:, :, None])[:, :, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class Amplitudes:
+    """The linear half of an evaluation.
+
+    Attributes
+    ----------
+    sums
+        Where.
+    weights
+        1/σ², zero for channels that are left out, shape (channel,).
+    normal
+        Normal equations of the amplitudes, from the records alone, shape (record, 14, 14).
+    inverse
+        Inverse of the same with their reach added, shape (record, 14, 14).
+    amplitudes
+        q, shape (record, 14).
+    """
+
+    sums: Sums
+    weights: Real
+    normal: Complex
+    inverse: Complex
+    amplitudes: Complex
+
+    @cached_property
+    def _fitted(self) -> Complex:
+        """Coefficients of e^{λk} in the fitted records, shape (record, channel, 14)."""
+        return self.sums.shapes[self.sums.run.group] * self.amplitudes[:, None, :]
+
+    @cached_property
+    def _smoothed(self) -> Complex:
+        """Inner products of (e^{λk}, k e^{λk}) with the fitted records, shape (record, channel, 28)."""
+        return self._fitted @ np.swapaxes(self.sums.gram[:, :, :14], 1, 2)
+
+    @cached_property
+    def residual(self) -> Real:
+        """Residual sum of squares of each channel, (m/s²)², shape (record, channel)."""
+        run, fitted = self.sums.run, self._fitted
+        unexplained = 2 * self.sums.data[:, :, :14] - self._smoothed[:, :, :14]
+        explained = (fitted.real * unexplained.real + fitted.imag * unexplained.imag).sum(axis=2)
+        return np.maximum(run.energy - run.present * explained, 0.0)
+
+    @property
+    def leverage(self) -> Real:
+        """How many of the amplitudes each channel pays for, all records together; shape (channel,)."""
+        s = self.sums.shapes
+        hat = self.sums.run.by_group(self.sums.gram[:, :14, :14] * np.swapaxes(self.inverse, 1, 2))
+        leverage: Real = self.weights * ((s.conj() @ hat) * s).sum(axis=(0, 2)).real
+        return leverage
+
+    def gradient(self, slopes: Complex) -> Real:
+        """Give Σ derivative · residual / σ² over all records.
+
+        Parameters
+        ----------
+        slopes
+            σ and τ beside each other, τ per sample; shape (group, channel, parameter, 28).
+
+        Returns
+        -------
+        ndarray
+            Shape (parameter,).
+        """
+        left = (self.sums.data - self._smoothed).conj() * np.tile(self.amplitudes, 2)[:, None, :]
+        weighted = self.sums.run.by_group(left) * self.weights[:, None]
+        gradient: Real = (slopes @ weighted[..., None]).sum(axis=(0, 1, 3)).real
+        return gradient
+
+    def information(self, slopes: Complex) -> Real:
+        """Give the products of all records' derivatives with each other, less what amplitudes and offsets can take up.
+
+        Parameters
+        ----------
+        slopes
+            As for `gradient`.
+
+        Returns
+        -------
+        ndarray
+            Fisher information, shape (parameter, parameter).
+        """
+        groups, channels, parameters, _ = slopes.shape
+        run, q = self.sums.run, np.tile(self.amplitudes, 2)
+        driven = self.sums.gram * q[:, None, :]
+        shared = run.by_group(q.conj()[:, :, None] * driven)
+        products = (slopes.reshape(groups, -1, 28) @ np.swapaxes(shared, 1, 2)).reshape(slopes.shape)
+        # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
+        weighted = np.swapaxes((products * self.weights[:, None, None]).view(float), 2, 3)
+        within = (slopes.view(float) @ weighted).sum(axis=(0, 1))
+        # Amplitudes see the derivatives through the shapes.
+        through = np.swapaxes(self.sums.shapes.conj() * self.weights[:, None], 1, 2)
+        seen = (through @ slopes.reshape(groups, channels, -1)).reshape(groups, 14, parameters, 28)
+        by_mode = np.swapaxes(driven[:, :14], 0, 1)
+        across = [by_mode[:, run.members(g)] @ np.swapaxes(one, 1, 2) for g, one in enumerate(seen)]
+        flat = np.swapaxes(np.concatenate(across, axis=1), 0, 1)
+        solved, flat = (self.inverse @ flat).reshape(-1, parameters), flat.reshape(-1, parameters)
+        information: Real = within - flat.real.T @ solved.real - flat.imag.T @ solved.imag
+        return information
+
+    def feigned(self, slopes: Complex) -> Real:
+        """Give the information that noise alone feigns, as `information` does."""
+        # What noise puts into the amplitudes: their inverse normal equations, less what their reach holds back.
+        eigenvalues, vectors = np.linalg.eigh(self.normal)
+        roots = self.inverse @ (vectors * np.sqrt(np.maximum(eigenvalues, 0.0))[:, None, :])
+        each = [replace(self, amplitudes=roots[:, :, j]).information(slopes) for j in range(14)]
+        total: Real = np.sum(each, axis=0)
+        return total
+
+    def fitted(self, poles: Complex) -> Iterator[Real]:
+        """Give what the model makes of each record, its mean taken off, from poles of each load; of shape (channel, time)."""
+        run = self.sums.run
+        for group, (load, step) in enumerate(zip(run.load, run.step, strict=True)):
+            members = run.members(group)
+            # A pole and its conjugate add the same real part twice.
+            upper = poles[load].imag >= 0
+            twice = np.where(poles[load].imag > 0, 2.0, 1.0)[upper]
+            motion = waves(poles[load][upper] * step, int(run.samples[members].max())).T
+            parts = np.concatenate([motion.real, -motion.imag])
+            for one, samples in zip(self._fitted[members][..., upper] * twice, run.samples[members], strict=True):
+                record = np.concatenate([one.real, one.imag], axis=1) @ parts[:, :samples]
+                yield record - record.mean(axis=1, keepdims=True)
+
+    def apart(self) -> Iterator[tuple[int, Amplitudes]]:
+        """Give the group of each record, and its own amplitudes."""
+        run, nothing = self.sums.run, np.zeros(1, dtype=np.int64)
+        for i, group in enumerate(run.group.tolist()):
+            one, its = slice(i, i + 1), slice(group, group + 1)
+            alone = replace(run, energy=run.energy[one], group=nothing, load=run.load[its])
+            sums = Sums(alone, self.sums.shapes[its], self.sums.reach[its], self.sums.gram[one], self.sums.data[one])
+            yield group, Amplitudes(sums, self.weights, self.normal[one], self.inverse[one], self.amplitudes[one])
