@@ -55,5 +55,9 @@ def test_gram_is_of_centred_exponentials() -> None:
         waves = np.vstack([powers, k * powers])
         waves -= waves.mean(axis=1, keepdims=True)
         size = np.linalg.norm(waves, axis=1)
-        np.testing.assert_allclose(found / np.outer(size, size), waves.conj() @ waves.T / np.outer(size, size), atol=1e-9)
-    np.testing.assert_allclose(gram(exponent[None].repeat(2, axis=0), samples, secular=False), both[:, :4, :4], atol=1e-9)
+        np.testing.assert_allclose(
+            found / np.outer(size, size), waves.conj() @ waves.T / np.outer(size, size), atol=1e-9
+        )
+    np.testing.assert_allclose(
+        gram(exponent[None].repeat(2, axis=0), samples, secular=False), both[:, :4, :4], atol=1e-9
+    )

@@ -67,7 +67,7 @@ class Sums:
         regular = normal + self.reach[group]
         scale = 1 / np.sqrt(np.diagonal(regular, axis1=1, axis2=2).real)
         both = scale[:, :, None] * scale[:, None, :]
-        inverse = np.linalg.inv(regular * both) * both
+        inverse = np.asarray(np.linalg.inv(regular * both), dtype=np.complex128) * both
         projected = (weighted[group] * self.data[:, :, :14]).sum(axis=1)
         return Amplitudes(self, w, normal, inverse, (inverse @ projected[:, :, None])[:, :, 0])
 
@@ -112,7 +112,8 @@ class Amplitudes:
         run, fitted = self.sums.run, self._fitted
         unexplained = 2 * self.sums.data[:, :, :14] - self._smoothed[:, :, :14]
         explained = (fitted.real * unexplained.real + fitted.imag * unexplained.imag).sum(axis=2)
-        return np.maximum(run.energy - run.present * explained, 0.0)
+        residual: Real = np.maximum(run.energy - run.present * explained, 0.0)
+        return residual
 
     @property
     def leverage(self) -> Real:
@@ -123,7 +124,7 @@ class Amplitudes:
         return leverage
 
     def gradient(self, slopes: Complex) -> Real:
-        """Give Σ derivative · residual / σ² over all records.
+        """Give Σ derivative · residual / σ² of each record.
 
         Parameters
         ----------
@@ -133,51 +134,59 @@ class Amplitudes:
         Returns
         -------
         ndarray
-            Shape (parameter,).
+            Shape (record, parameter).
         """
         left = (self.sums.data - self._smoothed).conj() * np.tile(self.amplitudes, 2)[:, None, :]
-        weighted = self.sums.run.by_group(left) * self.weights[:, None]
-        gradient: Real = (slopes @ weighted[..., None]).sum(axis=(0, 1, 3)).real
-        return gradient
+        left *= self.weights[:, None]
+        run = self.sums.run
+        parts = [
+            np.tensordot(left[run.members(group)], own, axes=([1, 2], [0, 2])).real for group, own in enumerate(slopes)
+        ]
+        return np.concatenate(parts)
 
-    def information(self, slopes: Complex) -> Real:
-        """Give the products of all records' derivatives with each other, less what amplitudes and offsets can take up.
+    def information(self, slopes: Complex, apart: bool = False) -> Real:
+        """Give the products of the derivatives with each other, less what amplitudes and offsets can take up.
 
         Parameters
         ----------
         slopes
             As for `gradient`.
+        apart
+            Whether those of each record are wanted, or of each group together.
 
         Returns
         -------
         ndarray
-            Fisher information, shape (parameter, parameter).
+            Fisher information, shape (group or record, parameter, parameter).
         """
         groups, channels, parameters, _ = slopes.shape
         run, q = self.sums.run, np.tile(self.amplitudes, 2)
         driven = self.sums.gram * q[:, None, :]
-        shared = run.by_group(q.conj()[:, :, None] * driven)
-        products = (slopes.reshape(groups, -1, 28) @ np.swapaxes(shared, 1, 2)).reshape(slopes.shape)
+        shared = q.conj()[:, :, None] * driven
+        if not apart:
+            shared = run.by_group(shared)
+        own = slopes[run.group] if apart else slopes
+        products = (own.reshape(len(own), -1, 28) @ np.swapaxes(shared, 1, 2)).reshape(own.shape)
         # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
         weighted = np.swapaxes((products * self.weights[:, None, None]).view(float), 2, 3)
-        within = (slopes.view(float) @ weighted).sum(axis=(0, 1))
+        within = (own.view(float) @ weighted).sum(axis=1)
         # Amplitudes see the derivatives through the shapes.
         through = np.swapaxes(self.sums.shapes.conj() * self.weights[:, None], 1, 2)
         seen = (through @ slopes.reshape(groups, channels, -1)).reshape(groups, 14, parameters, 28)
         by_mode = np.swapaxes(driven[:, :14], 0, 1)
-        across = [by_mode[:, run.members(g)] @ np.swapaxes(one, 1, 2) for g, one in enumerate(seen)]
-        flat = np.swapaxes(np.concatenate(across, axis=1), 0, 1)
-        solved, flat = (self.inverse @ flat).reshape(-1, parameters), flat.reshape(-1, parameters)
-        information: Real = within - flat.real.T @ solved.real - flat.imag.T @ solved.imag
+        across = [by_mode[:, run.members(group)] @ np.swapaxes(one, 1, 2) for group, one in enumerate(seen)]
+        flat = np.ascontiguousarray(np.swapaxes(np.concatenate(across, axis=1), 0, 1))
+        taken = np.swapaxes(flat.conj(), 1, 2) @ (self.inverse @ flat)
+        information: Real = within - (taken if apart else run.by_group(taken)).real
         return information
 
     def feigned(self, slopes: Complex) -> Real:
-        """Give the information that noise alone feigns, as `information` does."""
+        """Give the information that noise alone feigns, shape (parameter, parameter)."""
         # What noise puts into the amplitudes: their inverse normal equations, less what their reach holds back.
         eigenvalues, vectors = np.linalg.eigh(self.normal)
         roots = self.inverse @ (vectors * np.sqrt(np.maximum(eigenvalues, 0.0))[:, None, :])
         each = [replace(self, amplitudes=roots[:, :, j]).information(slopes) for j in range(14)]
-        total: Real = np.sum(each, axis=0)
+        total: Real = np.sum(each, axis=(0, 1))
         return total
 
     def fitted(self, poles: Complex) -> Iterator[Real]:
@@ -193,12 +202,3 @@ class Amplitudes:
             for one, samples in zip(self._fitted[members][..., upper] * twice, run.samples[members], strict=True):
                 record = np.concatenate([one.real, one.imag], axis=1) @ parts[:, :samples]
                 yield record - record.mean(axis=1, keepdims=True)
-
-    def apart(self) -> Iterator[tuple[int, Amplitudes]]:
-        """Give the group of each record, and its own amplitudes."""
-        run, nothing = self.sums.run, np.zeros(1, dtype=np.int64)
-        for i, group in enumerate(run.group.tolist()):
-            one, its = slice(i, i + 1), slice(group, group + 1)
-            alone = replace(run, energy=run.energy[one], group=nothing, load=run.load[its])
-            sums = Sums(alone, self.sums.shapes[its], self.sums.reach[its], self.sums.gram[one], self.sums.data[one])
-            yield group, Amplitudes(sums, self.weights, self.normal[one], self.inverse[one], self.amplitudes[one])

@@ -152,7 +152,7 @@ class Climb:
         return float(self._observations @ np.log(variance) + prior @ prior)
 
     def first_costs(self, starts: Sequence[Real]) -> Real:
-        """Rate starts: the same from one run of drops alone, its channels weighted by their energy; shape (start,)."""
+        """Rate starts: the same from a sketch of the records, its channels weighted by their energy; shape (start,)."""
         values = np.array([self.knowledge.coordinates.values(u) for u in starts])
         shares = rate_vehicles(self.likelihood, values, self._observations / self._energy)
         costs: Real = np.log(shares + NOISE_FLOOR**2) @ self._observations

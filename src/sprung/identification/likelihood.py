@@ -159,11 +159,12 @@ class Place:
                 np.sum([drop.information for drop in drops], axis=0),
             )
         solved = self._solve(weights)
+        pairs = list(zip(solved, self._slopes, strict=True))
         return Evaluation(
             self.likelihood.records.in_order([one.residual for one in solved]),
             np.sum([one.leverage for one in solved], axis=0),
-            np.sum([one.gradient(slopes) for one, slopes in zip(solved, self._slopes, strict=True)], axis=0),
-            np.sum([one.information(slopes) for one, slopes in zip(solved, self._slopes, strict=True)], axis=0),
+            np.concatenate([one.gradient(slopes) for one, slopes in pairs]).sum(axis=0),
+            np.concatenate([one.information(slopes) for one, slopes in pairs]).sum(axis=0),
         )
 
     def by_drop(self, weights: Real) -> tuple[Real, Real]:
@@ -171,13 +172,10 @@ class Place:
         if self._defective:
             drops = self._longhand(weights)
             return np.array([drop.gradient for drop in drops]), np.array([drop.information for drop in drops])
-        gradients, informations = [], []
-        for solved, slopes in zip(self._solve(weights), self._slopes, strict=True):
-            apart = [(one, slopes[group : group + 1]) for group, one in solved.apart()]
-            gradients.append(np.array([one.gradient(own) for one, own in apart]))
-            informations.append(np.array([one.information(own) for one, own in apart]))
+        pairs = list(zip(self._solve(weights), self._slopes, strict=True))
         in_order = self.likelihood.records.in_order
-        return in_order(gradients), in_order(informations)
+        gradients = in_order([solved.gradient(slopes) for solved, slopes in pairs])
+        return gradients, in_order([solved.information(slopes, apart=True) for solved, slopes in pairs])
 
     def feigned(self, weights: Real) -> Real:
         """Give the information that noise alone feigns.

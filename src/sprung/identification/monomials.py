@@ -37,7 +37,8 @@ def expand(model: LinearModel, law: Law) -> dict[Key, Real]:
         For each product the matrix that it multiplies, shape (7, 7).
     """
     terms = model.terms[:, LAWS.index(law)]
-    return {(one, two, three): term for (one, two, three), term in zip(model.products.tolist(), terms, strict=True) if term.any()}
+    keyed = zip(model.products.tolist(), terms, strict=True)
+    return {(one, two, three): term for (one, two, three), term in keyed if term.any()}
 
 
 def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], names: Sequence[str]) -> Real:

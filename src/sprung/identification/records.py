@@ -92,6 +92,37 @@ class Run:
         ends = [*self._first.tolist(), len(self.group)]
         return slice(ends[group], ends[group + 1])
 
+    def sketch(self, group: int, rate: float, longest: float, most: int) -> Run:
+        """Thin records of a group, and cut them to one length.
+
+        Parameters
+        ----------
+        group
+            Which.
+        rate
+            Samples per second to go down to.
+        longest
+            s of each record at the most.
+        most
+            Records at the most; those much shorter than the others are left out.
+        """
+        step = float(self.step[group])
+        own = np.arange(len(self.group))[self.members(group)]
+        long = own[2 * self.samples[own] >= self.samples[own].max()][:most].tolist()
+        every = max(int(1 / (step * rate)), 1)
+        samples = min(int(longest / step), int(self.samples[long].min()))
+        cut = [blocks(self.record(i)[:, :samples:every]) for i in long]
+        return Run(
+            order=self.order[long],
+            group=np.zeros(len(long), dtype=np.int64),
+            load=self.load[group : group + 1],
+            step=np.array([every * step]),
+            samples=np.full(len(long), -(-samples // every)),
+            present=self.present,
+            energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
+            blocked=np.concatenate(cut),
+        )
+
     def record(self, position: int) -> Real:
         """Give one centred record, shape (channel, time)."""
         end = int(self.counts[: position + 1].sum())
@@ -99,24 +130,26 @@ class Run:
         record: Real = whole.reshape(whole.shape[0], -1)[:, : self.samples[position]]
         return record
 
-    def correlate(self, exponent: Complex) -> Complex:
-        """Give the inner products of the records with e^{λk} and k e^{λk}.
+    def correlate(self, exponent: Complex, secular: bool = True) -> Complex:
+        """Give the inner products of the records with e^{λk} and, if wanted, k e^{λk}.
 
         Parameters
         ----------
         exponent
             λ per sample, conjugates beside each other, shape (group, mode).
+        secular
+            Whether the second half is wanted.
 
         Returns
         -------
         ndarray
-            Shape (record, channel, twice as many modes).
+            Shape (record, channel, mode or twice as many).
         """
         # Of every pair of conjugate poles one is enough for real records; which has more real ones sets the width.
         upper = exponent.imag >= 0
         width = upper.sum(axis=1).max()
         chosen = np.take_along_axis(exponent, np.argsort(~upper, axis=1, kind="stable")[:, :width], axis=1)
-        half = correlate(self.blocked, self.counts, chosen, self.group)
+        half = correlate(self.blocked, self.counts, chosen, self.group, secular)
         of_pair = (np.cumsum(upper, axis=1) - 1)[self.group]
         whole = np.take_along_axis(half, of_pair[:, None, None], axis=-1)
         whole.imag *= np.where(upper, 1.0, -1.0)[self.group][:, None, None]
@@ -151,7 +184,9 @@ class Records:
             if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK:
                 runs.append([])
             runs[-1].append(i)
-        return cls(loads, tuple(Run.of(order, decays, loads) for runs in together.values() for order in runs), len(decays))
+        return cls(
+            loads, tuple(Run.of(order, decays, loads) for runs in together.values() for order in runs), len(decays)
+        )
 
     def in_order(self, by_run: Sequence[Real]) -> Real:
         """Put what belongs to each record where the fit's list of decays has it."""

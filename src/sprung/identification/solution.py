@@ -1,6 +1,7 @@
 """Modal coordinates: poles and shapes at the sensors, and their derivatives by the parameters.
 
-Every array may have leading axes: of loads where the model is one of several `side_by_side`, of vehicles where the values have them.
+Every array may have leading axes: of loads where the model is one of several `side_by_side`, of vehicles where the values
+have them.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class ModalSolution:
     @cached_property
     def left(self) -> Complex:
         """Inverse of `right`, shape (..., 14, 14)."""
-        return np.linalg.inv(self.right)
+        return np.asarray(np.linalg.inv(self.right), dtype=np.complex128)
 
     @property
     def condition(self) -> float:

@@ -8,8 +8,6 @@ one with a table over the blocks, give them all.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -114,7 +112,7 @@ def gram(exponent: Complex, samples: Index, group: Index | None = None, secular:
     return whole
 
 
-def blocks(values: Real, usable: Sequence[bool] | None = None) -> Real:
+def blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
     """Centre a record and cut it into blocks, the last one filled with zeros.
 
     Parameters
@@ -132,7 +130,7 @@ def blocks(values: Real, usable: Sequence[bool] | None = None) -> Real:
     channels, samples = values.shape
     count, rest = divmod(samples, BLOCK)
     cut = np.zeros((count + (rest > 0), channels, BLOCK))
-    chosen = np.ones(channels, dtype=bool) if usable is None else np.asarray(usable, dtype=bool)
+    chosen = np.ones(channels, dtype=bool) if usable is None else usable
     mean = np.where(chosen, values.mean(axis=1), 0.0)[:, None]
     whole = values[:, : count * BLOCK].reshape(channels, count, BLOCK)
     np.subtract(whole.swapaxes(0, 1), mean, out=cut[:count], where=chosen[:, None])

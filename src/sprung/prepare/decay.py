@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +49,7 @@ class Decay:
     rest: Rest
     faults: tuple[Fault, ...] = ()
 
-    @property
+    @cached_property
     def usable(self) -> NDArray[np.bool_]:
         """Which channels are not left out; shape (channel,)."""
         usable: NDArray[np.bool_] = np.logical_not(np.isnan(self.values).any(axis=1))

@@ -168,8 +168,8 @@ class LinearModel:
         """
         M, C, K = self.matrices(values)
         dM, dC, dK = self.slopes(values)
-        lower: Array = -np.linalg.solve(M, np.hstack([K, C]))
-        slopes: Array = -np.linalg.solve(M, dM @ lower + np.concatenate([dK, dC], axis=2))
+        lower: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C])), dtype=float)
+        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ lower + np.concatenate([dK, dC], axis=2)), dtype=float)
         return lower, slopes
 
     @cached_property
