@@ -6,8 +6,8 @@ solved for in closed form, and their directions are projected off the derivative
 Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, in Kaufman's form). All that is assumed of an initial state is that it is one
 a vehicle can be in, so that a motion which no sensor sees is taken to be none.
 
-Shapes belong to a load, not to a record. So whatever they multiply is added up over the records of a group first, and derivatives
-of records are never made.
+Shapes belong to a load, not to a record. So whatever they multiply is added up over the records of a group first, and
+derivatives of records are never made.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ NO_INFORMATION = 1.0
 CONVERGED = 1e-8
 """Expected gain in log-likelihood at which a climb has ended: the parameters are within 1e-4 of a standard error."""
 
-FAR, CLOSE_BY = 1e-3, 1e-9
+FAR, NEARER, CLOSE_BY = 1e-3, 1e-6, 1e-9
 """Damping of the first step, as a part of each parameter's own information."""
 
 _SETTLED = 1e-3  # relative change of the noise levels
@@ -228,7 +228,8 @@ class Climb:
         enough
             Expected gain in log-likelihood at which to stop.
         damping
-            At the first step: `FAR` from a start that is only a guess, `CLOSE_BY` from one that is nearly there.
+            At the first step: `FAR` from a start that is only a guess, `NEARER` from a direct one, `CLOSE_BY` from one that
+            is nearly there.
 
         Returns
         -------

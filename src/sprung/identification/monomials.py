@@ -12,9 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle import LinearModel, Matrices, Tracks, parameter_names, seven_degrees_of_freedom
+from sprung.vehicle import LAWS, LinearModel, Matrices, Tracks, parameter_names, seven_degrees_of_freedom
 from sprung.vehicle.elements import Law
-from sprung.vehicle.model import LAWS
 
 Real = NDArray[np.float64]
 Key = tuple[int, int, int]

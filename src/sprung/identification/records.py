@@ -123,6 +123,10 @@ class Run:
             blocked=np.concatenate(cut),
         )
 
+    def shortened(self, duration: float) -> Run:
+        """Cut the records of a sketch to a duration, s."""
+        return self.sketch(0, 1.0 / float(self.step[0]), duration, len(self.samples))
+
     def record(self, position: int) -> Real:
         """Give one centred record, shape (channel, time)."""
         end = int(self.counts[: position + 1].sum())

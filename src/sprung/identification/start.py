@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sprung.estimate import Known
 from sprung.vehicle import Sensor
@@ -22,29 +24,65 @@ _GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do whe
 _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
 
 
-def catalogue(known: Mapping[str, Known], sensors: Sequence[Sensor]) -> Iterator[dict[str, float]]:
-    """Make vehicles of every usual kind, of the size that the known quantities and the sensors' places tell.
+class Outline(NamedTuple):
+    """Size of a vehicle, as what is known and the sensors' places tell it.
+
+    Attributes
+    ----------
+    wheelbase
+        m.
+    front_share
+        The front axle's share of the weight.
+    mass
+        Of the whole vehicle, kg.
+    weighed
+        Whether somebody knows it; a usual one for the wheelbase otherwise.
+    half_track
+        m.
+    """
+
+    wheelbase: float
+    front_share: float
+    mass: float
+    weighed: bool
+    half_track: float
+
+    @classmethod
+    def of(cls, known: Mapping[str, Known], sensors: Sequence[Sensor]) -> Outline:
+        """Gather what is known beforehand, the wheelbase included; the rest is taken from the sensors' places."""
+        value = {name: one.value for name, one in known.items()}
+        places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
+        wheelbase, front_share = _length(value, places)
+        mass = _mass(value)
+        half_track = float(np.abs(places[:, 1]).sum()) / max(len(places), 1) or 0.27 * wheelbase
+        usual = _GRAVITY_FREE_MASS * (wheelbase / 2.7) ** 3
+        return cls(wheelbase, front_share, usual if mass is None else mass, mass is not None, half_track)
+
+    @property
+    def sprung_mass(self) -> float:
+        """Mass of a usual body in it, kg."""
+        return self.mass * (1 - 4 * _WHEEL_SHARE)
+
+
+def catalogue(outline: Outline, known: Mapping[str, Known]) -> Iterator[dict[str, float]]:
+    """Make vehicles of every usual kind, of one size.
 
     Parameters
     ----------
+    outline
+        The size.
     known
-        What was measured beforehand, the wheelbase included.
-    sensors
-        The sensors; the body's outline is taken from theirs where nothing better is known.
+        What was measured beforehand.
 
     Yields
     ------
     dict
         Values, SI, of every parameter of every linear model; the known ones hold.
     """
-    places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
-    wheelbase, front_share = _length(known, places)
-    total = _mass(known, wheelbase)
-    half_track = float(np.abs(places[:, 1]).sum()) / max(len(places), 1) or 0.27 * wheelbase
+    wheelbase, front_share, half_track = outline.wheelbase, outline.front_share, outline.half_track
     a, b = (1 - front_share) * wheelbase, front_share * wheelbase
+    wheel, sprung_mass = _WHEEL_SHARE * outline.mass, outline.sprung_mass
     for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
-        wheel = _WHEEL_SHARE * total
-        sprung_mass = total - 4 * wheel
         values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
         for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
             spring = corner * (2 * np.pi * body) ** 2
@@ -61,11 +99,8 @@ def catalogue(known: Mapping[str, Known], sensors: Sequence[Sensor]) -> Iterator
         yield values | {name: one.value for name, one in known.items() if name in values}
 
 
-def _length(
-    known: Mapping[str, Known], places: np.ndarray[tuple[int, ...], np.dtype[np.float64]]
-) -> tuple[float, float]:
+def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:
     """Give wheelbase and the front axle's share of the weight."""
-    value = {name: one.value for name, one in known.items()}
     wheelbase = value.get("wheelbase")
     if wheelbase is None and "a" in value and "b" in value:
         wheelbase = value["a"] + value["b"]
@@ -82,8 +117,7 @@ def _length(
     return wheelbase, float(np.clip(share, 0.1, 0.9))
 
 
-def _mass(known: Mapping[str, Known], wheelbase: float) -> float:
-    value = {name: one.value for name, one in known.items()}
+def _mass(value: Mapping[str, float]) -> float | None:
     if "total_mass" in value:
         return value["total_mass"]
     axles = [value[name] for name in ("front_axle_mass", "rear_axle_mass") if name in value]
@@ -91,4 +125,4 @@ def _mass(known: Mapping[str, Known], wheelbase: float) -> float:
         return sum(axles) * 2 / len(axles)
     if "m_s" in value:
         return value["m_s"] / (1 - 4 * _WHEEL_SHARE)
-    return _GRAVITY_FREE_MASS * (wheelbase / 2.7) ** 3
+    return None

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimate import Known
-from sprung.identification.climb import CLOSE_BY, CONVERGED, FAR, Climb, Point
+from sprung.identification.climb import CLOSE_BY, CONVERGED, FAR, NEARER, Climb, Point
+from sprung.identification.direct import direct_start
 from sprung.identification.inflation import of_disagreement
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
-from sprung.identification.start import catalogue
+from sprung.identification.start import Outline, catalogue
 from sprung.prepare import Decay
 from sprung.vehicle import PARAMETERS, LinearModel, Rows, Sensor
 
@@ -121,9 +122,10 @@ def ascend(
     known
         Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
     start
-        Parameter values, SI, to start from; the catalogue of usual vehicles is tried where it is left out.
+        Parameter values, SI, to start from; where it is left out, a direct start and the catalogue of usual vehicles.
     starts
-        How many of the catalogue's vehicles are refined: those that explain the records best as they are. The best end wins.
+        How many are refined: the direct one where there is one, and those of the catalogue that explain the records best
+        as they are. The best end wins.
     enough
         Expected gain in log-likelihood at which to stop.
     progress
@@ -135,21 +137,32 @@ def ascend(
     """
     names = next(iter(models.values())).names
     likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
-    candidates = list(catalogue(known, sensors)) if start is None else [dict(start)]
-    references = np.array([_reference(name, candidates[0]) for name in names])
-    coordinates = Coordinates(names, references)
-    knowledge = Knowledge(coordinates, known)
-    climb = Climb(likelihood, knowledge)
+    outline = Outline.of(known, sensors)
+    usual = [dict(start)] if start is not None else list(catalogue(outline, known))
+    coordinates = Coordinates(names, np.array([_reference(name, usual[0]) for name in names]))
+    climb = Climb(likelihood, Knowledge(coordinates, known))
 
-    tried = [coordinates.of(np.array([values[name] for name in names])) for values in candidates]
-    if start is None:
-        progress(f"trying {len(tried)} usual vehicles")
-        tried = [tried[i] for i in np.argsort(climb.first_costs(tried), kind="stable")[:starts]]
+    def at(values: Mapping[str, float]) -> Real:
+        return coordinates.of(np.array([values[name] for name in names]))
+
+    if start is not None:
+        return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(start)), None, enough, CLOSE_BY)], enough)
+    direct = direct_start(likelihood.records.runs, likelihood.models, sensors, outline)
+    tried = [] if direct is None else [(at(direct), NEARER)]
+    if len(tried) < starts:
+        progress(f"trying {len(usual)} usual vehicles")
+        places = [at(values) for values in usual]
+        order = np.argsort(climb.first_costs(places), kind="stable")
+        tried += [(places[i], FAR) for i in order[: starts - len(tried)]]
     ends: list[Point] = []
-    for number, u in enumerate(tried, start=1):
+    for number, (u, damping) in enumerate(tried, start=1):
         progress(f"fitting from start {number} of {len(tried)}")
         summit = min(ends, key=climb.cost, default=None)
-        ends.append(climb.to_the_top(knowledge.bind(u), summit, enough, FAR if start is None else CLOSE_BY))
+        ends.append(climb.to_the_top(climb.knowledge.bind(u), summit, enough, damping))
+    return _best(climb, ends, enough)
+
+
+def _best(climb: Climb, ends: Sequence[Point], enough: float) -> Summit:
     best = min(ends, key=climb.cost)
     agreeing = sum(climb.cost(end) - climb.cost(best) < max(1e-3, 4 * enough) for end in ends)
     return Summit(climb, best, best.steps, len(ends), agreeing)

@@ -6,7 +6,7 @@ from sprung.vehicle.elements import LINEAR_EXTRAS, Element, Tracks, half_distanc
 from sprung.vehicle.examples import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.ground import static_wheel_loads, tyre_rates
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
-from sprung.vehicle.model import LinearModel, Matrices, Rows
+from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
 from sprung.vehicle.parameters import EXTRA_PARAMETERS, PARAMETERS, Parameter, Vehicle, parameter_names
 from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
 from sprung.vehicle.rows import COORDINATES, WHEELS, Row, Wheel
@@ -17,6 +17,7 @@ __all__ = [
     "DERIVED",
     "EMPTY",
     "EXTRA_PARAMETERS",
+    "LAWS",
     "LINEAR_EXTRAS",
     "PARAMETERS",
     "SCHOOL_BUS",

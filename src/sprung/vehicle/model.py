@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -95,11 +94,14 @@ class LinearModel:
     terms
         What each multiplies in M, C and K: shape (product, 3, 7, 7), or (product, model, 3, 7, 7) of several models
         `side_by_side`, whose matrices then have a leading axis.
+    elements
+        What it was compiled from; none where it is several models.
     """
 
     names: tuple[str, ...]
     products: NDArray[np.int64]
     terms: Array
+    elements: tuple[Element, ...] = ()
 
     @classmethod
     def of(cls, elements: Sequence[Element], names: Sequence[str]) -> LinearModel:
@@ -123,13 +125,20 @@ class LinearModel:
         for element, row in zip(elements, rows, strict=True):
             named = isinstance(element.coefficient, str)
             kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
-            factors = np.flatnonzero(row.any(axis=0)).tolist()
-            for one, two in product(factors, factors):
-                term = terms.setdefault(tuple(sorted((kappa, one, two))), np.zeros((len(LAWS), 7, 7)))
-                term[LAWS.index(element.law)] += size * np.outer(row[:, one], row[:, two])
+            factors = np.flatnonzero(row.any(axis=0))
+            parts = size * row.T[factors]
+            squares = parts[:, None, :, None] * row.T[factors][None, :, None, :]
+            law = LAWS.index(element.law)
+            for one, of_one in zip(factors.tolist(), squares, strict=True):
+                for two, square in zip(factors.tolist(), of_one, strict=True):
+                    key = tuple(sorted((kappa, one, two)))
+                    if key not in terms:
+                        terms[key] = np.zeros((len(LAWS), 7, 7))
+                    terms[key][law] += square
         kept = {key: term for key, term in terms.items() if term.any()}
         shape = (len(kept), len(LAWS), 7, 7)
-        return cls(tuple(names), np.array(list(kept)).reshape(-1, 3), np.array(list(kept.values())).reshape(shape))
+        products, constants = np.array(list(kept)).reshape(-1, 3), np.array(list(kept.values())).reshape(shape)
+        return cls(tuple(names), products, constants, tuple(elements))
 
     @classmethod
     def side_by_side(cls, models: Sequence[LinearModel]) -> LinearModel:
@@ -139,6 +148,11 @@ class LinearModel:
         for i, model in enumerate(models):
             terms[[keys.index(tuple(key)) for key in model.products.tolist()], i] = model.terms
         return cls(models[0].names, np.array(keys), terms)
+
+    def seen_from_front_axle(self, wheelbase: float) -> LinearModel:
+        """Give the same equations for the body's motion above the front axle, a wheelbase in m being known."""
+        moved = [replace(element, row=element.row.seen_from_front_axle(wheelbase)) for element in self.elements]
+        return LinearModel.of(moved, self.names)
 
     def matrices(self, values: ArrayLike) -> Matrices:
         """Give M, C and K at parameter values of shape (..., parameter), in the order of `names`."""

@@ -50,6 +50,22 @@ class Row:
             {name: self.slopes.get(name, nothing) - other.slopes.get(name, nothing) for name in names},
         )
 
+    def seen_from_front_axle(self, wheelbase: float) -> Row:
+        """Give the same displacement with the body's vertical motion taken above the front axle, not at its centre of gravity.
+
+        Wherever the centre of gravity may be, springs, dampers and sensors are then where they are; it moves only the mass.
+
+        Parameters
+        ----------
+        wheelbase
+            a + b, m.
+        """
+        # z_s is z above the front axle plus a θ, and b is what a leaves of the wheelbase.
+        by_b = self.slopes.get("b", np.zeros(7))
+        by_a = self.slopes.get("a", np.zeros(7)) + self.constant[0] * _THETA - by_b
+        rest = {name: slope for name, slope in self.slopes.items() if name not in ("a", "b")}
+        return Row(self.constant + wheelbase * by_b, rest | ({"a": by_a} if by_a.any() else {}))
+
 
 def body_point(x: float, y: float) -> Row:
     """Vertical displacement of a point of the body.
