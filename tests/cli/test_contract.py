@@ -118,7 +118,7 @@ def test_results_json(any_campaign: Identified) -> None:
 
 
 def check_parameter(estimate: dict[str, Any]) -> None:
-    assert estimate.keys() == {"value", "std", "interval95", "unit", "status"}
+    assert estimate.keys() == {"value", "std", "interval95", "unit", "status", "interval_from"}
     assert estimate["unit"] in UNITS
     match estimate["status"]:
         case "estimated":

@@ -15,6 +15,7 @@ from rich.console import Console
 
 import sprung
 from sprung.errors import Fault
+from sprung.estimate import Estimate
 from sprung.pipeline import Check, DropReport, Result
 from sprung.recording import Campaign
 from sprung.report import check_view, modes_view, result_view, text_of
@@ -81,6 +82,19 @@ def test_the_displays_show_what_their_names_say(name: str) -> None:
     }
     assert all(word in text for word in words[name])
     assert all(len(line) <= 80 and line == line.rstrip() for line in text.splitlines())
+
+
+def test_intervals_from_profiles(regenerate: bool) -> None:
+    """Open to one side, to the other, far from even, of a derived quantity; and residuals that are coloured."""
+    result = Result.model_validate(json.loads((HERE / "accept.json").read_text(encoding="utf-8")))
+    limits = {"k_sf": (16821.3, 17352.9), "k_tf": (188123.0, None), "c_sf": (None, 1515.2), "t_f": (0.00123, 0.7452)}
+    parameters = dict(result.parameters)
+    for name, interval in limits.items():
+        parameters[name] = dataclasses.replace(parameters[name], interval95=interval, interval_from="profile")
+    derived = {"total_mass": Estimate(1553.1, 5.0, (1543.4, 1562.9), "kg", "estimated", "profile")}
+    fit = result.fit.model_copy(update={"inflated_by": "coloured residuals", "most_coloured": "wheel_rl"})
+    changed = result.model_copy(update={"parameters": parameters, "derived": derived, "fit": fit})
+    compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
 
 
 def test_a_check(regenerate: bool) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import traceback
 
@@ -9,12 +10,17 @@ from sprung.cli.commands import app
 from sprung.cli.output import BAD_INPUT, DEFECT, complain
 from sprung.errors import SprungError
 
+_THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""What tells NumPy's libraries, when it is imported, how many threads to use."""
+
 
 def main() -> None:
     """Run the command line; exit status 0, 1, 2 or 3 as the contract has it, 130 when it is interrupted."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that knows no ² must still get the numbers
+    for variable in _THREADS:  # every matrix is small: threads would only wait for each other
+        os.environ.setdefault(variable, "1")
     try:
         app(prog_name="sprung")
     except SprungError as error:

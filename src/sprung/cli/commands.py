@@ -48,13 +48,21 @@ def identify(
         Optional[Path],  # noqa: UP045 (typer reads it)
         typer.Option("-o", "--output", metavar="DIR", help="Where to write results.json and series.npz."),
     ] = None,
+    profile: Annotated[
+        Optional[list[str]],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            metavar="NAME",
+            help="Take the 95 % interval of a parameter from the whole likelihood, for one that is weakly determined; "
+            "can be given more than once; all for every one.",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Identify every parameter and write the results folder (default: results/ beside the campaign)."""
     with working("reading the recordings") as progress:
         read = sprung.read(campaign)
         folder = output or (read.path or campaign).parent / "results"
-        result = sprung.identify(read, progress=progress)
+        result = sprung.identify(read, profile=profile or (), progress=progress)
         result.save(folder)
     conclude(result, folder, as_json)
 

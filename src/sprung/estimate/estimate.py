@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Status = Literal["estimated", "known", "unidentifiable"]
+IntervalFrom = Literal["curvature", "profile"]
 
 NORMAL_95 = 1.959963984540054
 """Half-width of the central 95 % of a normal distribution, in standard deviations."""
@@ -22,18 +23,22 @@ class Estimate:
     std
         Standard uncertainty, SI; 0 where it was known exactly, None where undetermined.
     interval95
-        Limits of the 95 % interval, SI; None where undetermined.
+        Limits of the 95 % interval, SI; None where undetermined. One limit is None where the interval is open to that side.
     unit
         SI, such as ``N/m``.
     status
         ``known`` beforehand and exactly, ``estimated`` from the recordings and what was known, or ``unidentifiable``.
+    interval_from
+        Whether the interval follows from the ``curvature`` of the likelihood at its maximum, as the standard uncertainty does,
+        or from its whole ``profile``; None where nothing was estimated.
     """
 
     value: float | None
     std: float | None
-    interval95: tuple[float, float] | None
+    interval95: tuple[float | None, float | None] | None
     unit: str
     status: Status
+    interval_from: IntervalFrom | None = None
 
     @property
     def percent(self) -> float | None:

@@ -3,15 +3,16 @@
 from sprung.identification.added_mass import added_mass
 from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.contact import ascend_from_contact
-from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude
+from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
 from sprung.identification.inflation import of_colour
-from sprung.identification.joint import Fit, describe, fit_jointly, residual_records
+from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, residual_records
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
+from sprung.identification.profile import profiled
 from sprung.identification.structured import StructuredFit, structured_least_squares
-from sprung.identification.summit import NEAR, Summit, ascend
+from sprung.identification.summit import NEAR, Summit, ascend, expected_gain
 
 __all__ = [
     "NEAR",
@@ -21,6 +22,7 @@ __all__ = [
     "Correlation",
     "Estimates",
     "Fit",
+    "Inflater",
     "Knowledge",
     "Likelihood",
     "ModeEstimate",
@@ -33,10 +35,13 @@ __all__ = [
     "ascend_from_contact",
     "conclude",
     "describe",
+    "estimate_of",
+    "expected_gain",
     "fit_jointly",
     "mode_estimates",
     "of_colour",
     "parameters_from_matrices",
+    "profiled",
     "residual_records",
     "structured_least_squares",
 ]

@@ -159,26 +159,26 @@ class Amplitudes:
         ndarray
             Fisher information, shape (group or record, parameter, parameter).
         """
-        groups, channels, parameters, _ = slopes.shape
         run, q = self.sums.run, np.tile(self.amplitudes, 2)
         driven = self.sums.gram * q[:, None, :]
-        shared = q.conj()[:, :, None] * driven
-        if not apart:
-            shared = run.by_group(shared)
-        own = slopes[run.group] if apart else slopes
-        products = (own.reshape(len(own), -1, 28) @ np.swapaxes(shared, 1, 2)).reshape(own.shape)
-        # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
-        weighted = np.swapaxes((products * self.weights[:, None, None]).view(float), 2, 3)
-        within = (own.view(float) @ weighted).sum(axis=1)
-        # Amplitudes see the derivatives through the shapes.
-        through = np.swapaxes(self.sums.shapes.conj() * self.weights[:, None], 1, 2)
-        seen = (through @ slopes.reshape(groups, channels, -1)).reshape(groups, 14, parameters, 28)
-        by_mode = np.swapaxes(driven[:, :14], 0, 1)
-        across = [by_mode[:, run.members(group)] @ np.swapaxes(one, 1, 2) for group, one in enumerate(seen)]
-        flat = np.ascontiguousarray(np.swapaxes(np.concatenate(across, axis=1), 0, 1))
-        taken = np.swapaxes(flat.conj(), 1, 2) @ (self.inverse @ flat)
-        information: Real = within - (taken if apart else run.by_group(taken)).real
-        return information
+        found = []
+        for group, own in enumerate(slopes):
+            members, channels, parameters = run.members(group), own.shape[0], own.shape[1]
+            shared = q[members].conj()[:, :, None] * driven[members]
+            if not apart:
+                shared = shared.sum(axis=0, keepdims=True)
+            products = (own.reshape(-1, 28) @ np.swapaxes(shared, 1, 2)).reshape(-1, *own.shape)
+            products *= self.weights[:, None, None]
+            # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
+            within = (own.view(float) @ np.swapaxes(products.view(float), 2, 3)).sum(axis=1)
+            # Amplitudes see the derivatives through the shapes.
+            through = (self.sums.shapes[group].conj() * self.weights[:, None]).T
+            seen = (through @ own.reshape(channels, -1)).reshape(14, parameters, 28)
+            across = np.swapaxes(driven[members, :14], 0, 1) @ np.swapaxes(seen, 1, 2)
+            flat = np.ascontiguousarray(np.swapaxes(across, 0, 1))
+            taken = (np.swapaxes(flat.conj(), 1, 2) @ (self.inverse[members] @ flat)).real
+            found.append(within - (taken if apart else taken.sum(axis=0, keepdims=True)))
+        return np.concatenate(found)
 
     def feigned(self, slopes: Complex) -> Real:
         """Give the information that noise alone feigns, shape (parameter, parameter)."""
@@ -197,8 +197,9 @@ class Amplitudes:
             # A pole and its conjugate add the same real part twice.
             upper = poles[load].imag >= 0
             twice = np.where(poles[load].imag > 0, 2.0, 1.0)[upper]
-            motion = waves(poles[load][upper] * step, int(run.samples[members].max())).T
-            parts = np.concatenate([motion.real, -motion.imag])
+            # The real part of a product of complex numbers is that of pairs of real ones, one of them conjugated.
+            motion = waves(poles[load][upper] * step, int(run.samples[members].max())).view(float)
             for one, samples in zip(self._fitted[members][..., upper] * twice, run.samples[members], strict=True):
-                record = np.concatenate([one.real, one.imag], axis=1) @ parts[:, :samples]
-                yield record - record.mean(axis=1, keepdims=True)
+                record = np.ascontiguousarray(one.conj()).view(float) @ motion[:samples].T
+                record -= record.mean(axis=1, keepdims=True)
+                yield record

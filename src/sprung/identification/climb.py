@@ -6,9 +6,10 @@ residuals, so that what is maximised is the likelihood itself, not a sum of squa
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,7 +155,9 @@ class Climb:
     def first_costs(self, starts: Sequence[Real]) -> Real:
         """Rate starts: the same from a sketch of the records, its channels weighted by their energy; shape (start,)."""
         values = np.array([self.knowledge.coordinates.values(u) for u in starts])
-        shares = rate_vehicles(self.likelihood, values, self._observations / self._energy)
+        weights = self._observations / self._energy
+        # In two halves, for the sake of memory.
+        shares = np.concatenate([rate_vehicles(self.likelihood, half, weights) for half in np.array_split(values, 2)])
         costs: Real = np.log(shares + NOISE_FLOOR**2) @ self._observations
         return costs
 
@@ -235,18 +238,15 @@ class Climb:
         -------
         Point
         """
-        weights = self._observations / self._energy
-        place = self._at(u)
-        variance = self.variance(place.misfit(weights), np.zeros_like(weights))
-        point = _evaluated(u, place, 1 / variance, 0)
+        point = self.at(u)
         before = np.inf
         while point.steps < (_ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
-            information, gradient, free = self.system(point)
-            if not gradient.size:
+            slope = self._slope(point)
+            if not slope.gradient.size:
                 return replace(point, converged=True)
-            if summit is not None and _leads(information, gradient, free.T @ (summit.u - point.u)):
+            if summit is not None and slope.leads(slope.free.T @ (summit.u - point.u)):
                 return summit
-            moved, damping, gain = self._step(point, information, gradient, free, damping)
+            moved, damping, gain = self._step(point, slope, damping)
             if moved is None:
                 return replace(point, converged=gain < 1e-3)
             settled = np.abs(np.log(moved.weights / point.weights)).max() < _SETTLED
@@ -258,36 +258,56 @@ class Climb:
                 return replace(point, converged=True)
         return point
 
+    def at(self, u: Real) -> Point:
+        """Stand somewhere, with the noise that the residuals show there."""
+        weights, place = self._observations / self._energy, self._at(u)
+        variance = self.variance(place.misfit(weights), np.zeros_like(weights))
+        return _evaluated(u, place, 1 / variance, 0)
+
     def _at(self, u: Real) -> Place:
         return self.likelihood.at(self.knowledge.coordinates.values(u))
 
-    def _step(
-        self, point: Point, information: Real, gradient: Real, free: Real, damping: float
-    ) -> tuple[Point | None, float, float]:
+    def _slope(self, point: Point) -> _Slope:
+        return _Slope(*self.system(point))
+
+    def _step(self, point: Point, slope: _Slope, damping: float) -> tuple[Point | None, float, float]:
         """Take one damped step that does not lose; give None where there is none left to take.
 
-        Directions of which the records say nothing yet are left alone: they would only wander.
+        In a bent valley the straight way leads up its wall, and only the next step down again, further along: where the first
+        step loses, one more is tried from there (the watchdog of Chamberlain and others, Math. Prog. Study 16 (1982) 1).
         """
         now = self._weighted(point.u, point.evaluation.residual, point.weights)
-        told = told_directions(information)
-        system, slope = told.T @ information @ told, told.T @ gradient
-        scale = told.T @ (np.diag(information)[:, None] * told)
+        first = True
         gain = 0.0
         while damping < _MOST_DAMPING:
-            step = np.linalg.solve(system + damping * scale, slope)
-            gain = float(slope @ step)
-            move = free @ (told @ step)
-            move *= min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300))
-            u = self.knowledge.bind(point.u + move)
-            place = self._at(u)
-            residual = place.misfit(point.weights)
-            won = now - self._weighted(u, residual, point.weights)
+            move, gain = slope.step(damping)
+            moved, won = self._tried(point, self.knowledge.bind(point.u + move), now)
             if won >= -1e-10 * abs(now):
-                weights = 1 / self.variance(residual, point.evaluation.leverage)
-                damping = max(damping / 10, _LEAST_DAMPING) if won > 0.25 * gain else 8 * damping
-                return _evaluated(u, place, weights, point.steps + 1), damping, gain
-            damping = max(damping, 1e-6) * 8
+                damping = (
+                    max(damping / (100 if won > 0.75 * gain else 10), _LEAST_DAMPING)
+                    if won > 0.25 * gain
+                    else 8 * damping
+                )
+                return moved(), damping, gain
+            if first:
+                above = moved()
+                back, _ = self._slope(above).step(damping)
+                moved, won = self._tried(point, self.knowledge.bind(above.u + back), now)
+                if won > 0:
+                    return moved(), damping, max(gain, won)
+                first = False
+            damping = max(damping, 1e-8) * 8
         return None, damping, gain
+
+    def _tried(self, point: Point, u: Real, now: float) -> tuple[Callable[[], Point], float]:
+        """Give what going to other coordinates wins, and the way to stand there."""
+        place = self._at(u)
+        residual = place.misfit(point.weights)
+
+        def moved() -> Point:
+            return _evaluated(u, place, 1 / self.variance(residual, point.evaluation.leverage), point.steps + 1)
+
+        return moved, now - self._weighted(u, residual, point.weights)
 
     def _weighted(self, u: Real, residual: Real, weights: Real) -> float:
         prior = self.knowledge.prior(u).residual
@@ -298,11 +318,31 @@ def _evaluated(u: Real, place: Place, weights: Real, steps: int) -> Point:
     return Point(u, place, weights, place.evaluate(weights), steps)
 
 
-def _leads(information: Real, gradient: Real, distance: Real) -> bool:
-    """Say whether the next step leads to a place that far away, or is there already."""
-    squared = float(distance @ information @ distance)
-    if squared < _SAME:
-        return True
-    told = told_directions(information)
-    missed = told.T @ distance - np.linalg.solve(told.T @ information @ told, told.T @ gradient)
-    return float(missed @ (told.T @ information @ told) @ missed) < _LEADS_THERE * squared
+class _Slope(NamedTuple):
+    """Where it goes up from a point: information and gradient in the free directions, and these."""
+
+    information: Real
+    gradient: Real
+    free: Real
+
+    def step(self, damping: float) -> tuple[Real, float]:
+        """Give the step in the coordinates, and what it should gain.
+
+        Directions of which the records say nothing yet are left alone: they would only wander.
+        """
+        told = told_directions(self.information)
+        system, slope = told.T @ self.information @ told, told.T @ self.gradient
+        scale = told.T @ (np.diag(self.information)[:, None] * told)
+        step = np.linalg.solve(system + damping * scale, slope)
+        move = self.free @ (told @ step)
+        return move * min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300)), float(slope @ step)
+
+    def leads(self, distance: Real) -> bool:
+        """Say whether the next step leads to a place that far away, or is there already."""
+        squared = float(distance @ self.information @ distance)
+        if squared < _SAME:
+            return True
+        told = told_directions(self.information)
+        system = told.T @ self.information @ told
+        missed = told.T @ distance - np.linalg.solve(system, told.T @ self.gradient)
+        return float(missed @ system @ missed) < _LEADS_THERE * squared

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.climb import CONVERGED
-from sprung.identification.summit import NEAR, Summit
+from sprung.identification.summit import Summit
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import LinearModel
@@ -65,30 +65,38 @@ def ascend_from_contact(
         Where the fit of these decays ends.
     """
     best, found = tuple(decays), first
+    settled = False
     for _ in range(_PASSES):
-        shifts = [_shift(d, models[d.load], found.values, state) for d, state in zip(best, found.states, strict=True)]
+        shifts = _shifts(best, models, found)
         if not any(shifts):
             break
         moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
-        next_one = again(moved, found.parameters, NEAR).after(found)
+        next_one = again(moved, found.parameters, CONVERGED).after(found)
         if np.any(next_one.noise > _NO_WORSE * found.noise):
             break
-        best, found = moved, next_one
-    return best, again(best, found.parameters, CONVERGED).after(found)
+        best, found, settled = moved, next_one, True
+    return best, found if settled else again(best, found.parameters, CONVERGED).after(found)
 
 
-def _shift(decay: Decay, model: LinearModel, values: Real, state: Real) -> int:
-    """Give by how many samples the start of a decay has to be moved."""
-    matrices = model.matrices(values)
-    weight = matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * STANDARD_GRAVITY
-    static = np.linalg.solve(matrices.K, weight)[3:, None]  # how far the standing vehicle compresses its tyres
-    earlier = decay.earlier.shape[1]
-    poles, shapes = np.linalg.eig(matrices.state)
-    amplitudes = np.linalg.solve(shapes, state)
-    samples = np.arange(-earlier, min(decay.samples, int(_LONGEST * decay.rate)))
-    exponent = poles[:, None] * samples / decay.rate
-    powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
-    motion = ((shapes[3:7] * amplitudes) @ powers).real
-    loose = np.flatnonzero((static - motion < _COMPRESSED * static).any(axis=0))
-    first = int(loose[-1]) + 1 if loose.size else 0
-    return first - earlier if first - earlier < _MOST * decay.samples else 0
+def _shifts(decays: Sequence[Decay], models: Mapping[str, LinearModel], found: Summit) -> list[int]:
+    """Give by how many samples the start of each decay has to be moved."""
+    shifts = np.zeros(len(decays), dtype=np.int64)
+    states = found.states
+    for load, rate in {(decay.load, decay.rate) for decay in decays}:
+        alike = [i for i, decay in enumerate(decays) if (decay.load, decay.rate) == (load, rate)]
+        matrices = models[load].matrices(found.values)
+        weight = matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * STANDARD_GRAVITY
+        static = np.linalg.solve(matrices.K, weight)[3:, None]  # how far the standing vehicle compresses its tyres
+        poles, shapes = np.linalg.eig(matrices.state)
+        before = max(decays[i].earlier.shape[1] for i in alike)
+        after = min(max(decays[i].samples for i in alike), int(_LONGEST * rate))
+        exponent = poles[:, None] * np.arange(-before, after) / rate
+        powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
+        for i in alike:
+            earlier, samples = decays[i].earlier.shape[1], decays[i].samples
+            amplitudes = np.linalg.solve(shapes, states[i])
+            motion = ((shapes[3:7] * amplitudes) @ powers[:, before - earlier : before + samples]).real
+            loose = np.flatnonzero((static - motion < _COMPRESSED * static).any(axis=0))
+            first = int(loose[-1]) + 1 if loose.size else 0
+            shifts[i] = first - earlier if first - earlier < _MOST * samples else 0
+    return shifts.tolist()

@@ -71,15 +71,15 @@ def direct_start(
     # m_s a² stands where I_yy does: only their sum can be found.
     keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))
     keys = [key for key in keys if key != _key(sorted((sprung, ahead, ahead)))]
+    motions = [(_Motion.of(run, seen), _terms(moved[run.load[0]], keys, wheelbase)) for run in _sketches(runs, seen)]
     normal = np.zeros((len(keys), len(keys)))
-    tables: dict[tuple[int, float], _Modulating] = {}
-    for run in _sketches(runs, seen):
-        kind = int(run.samples[0]), float(run.step[0])
-        if kind not in tables:
-            tables[kind] = _Modulating.of(*kind)
-        normal += _normal(
-            run, np.linalg.pinv(seen[run.present > 0]), tables[kind], _terms(moved[run.load[0]], keys, wheelbase)
-        )
+    for falling, frequencies in _WINDOWS:
+        tables: dict[tuple[int, float], _Modulating] = {}
+        for motion, terms in motions:
+            kind = motion.coordinates.shape[2], motion.step
+            if kind not in tables:
+                tables[kind] = _Modulating.of(*kind, falling, frequencies)
+            normal += _normal(motion, tables[kind], terms)
     products = _products(normal, keys, (0, 0, sprung))
     if products is None:
         return None
@@ -135,23 +135,52 @@ def _sketches(runs: Sequence[Run], seen: Real) -> list[Run]:
     ]
 
 
-class _Modulating(NamedTuple):
-    """Modulating functions of one length.
+class _Motion(NamedTuple):
+    """Accelerations of the coordinates in records of one length.
 
     Attributes
     ----------
-    functions
-        p₃, -p₂ and p₁ of ψ = u⁵(1-u)⁵ e^{-st}, u running from 0 to 1; shape (function, 3, time).
-    overlap
-        Their inner products, shape (function, 3, 3).
+    coordinates
+        Shape (record, 7, time).
+    noise
+        Its covariance between the coordinates, shape (7, 7).
+    step
+        Sampling interval, s.
     """
 
-    functions: Complex
+    coordinates: Real
+    noise: Real
+    step: float
+
+    @classmethod
+    def of(cls, run: Run, seen: Real) -> _Motion:
+        used = run.present > 0
+        to_coordinates = np.linalg.pinv(seen[used])
+        records = np.array([run.record(i) for i in range(len(run.samples))])[:, used]
+        # From differences of the last third, where hardly anything else is left.
+        late = np.diff(records[:, :, -max(records.shape[2] // 3, 3) :], 2, axis=2)
+        noise = (to_coordinates * (np.mean(late**2, axis=(0, 2)) / 6)) @ to_coordinates.T
+        return cls(to_coordinates @ records, noise, float(run.step[0]))
+
+
+class _Modulating(NamedTuple):
+    """Modulating functions of one length: p₃, -p₂ and p₁ of ψ = u⁵(1-u)⁵ e^{-st}, u running from 0 to 1.
+
+    Attributes
+    ----------
+    real, imaginary
+        Shape (function, 3, time).
+    overlap
+        Real part of their inner products, shape (function, 3, 3).
+    """
+
+    real: Real
+    imaginary: Real
     overlap: Real
 
     @classmethod
-    def of(cls, samples: int, step: float) -> _Modulating:
-        s = np.concatenate([rate + 2j * np.pi * frequencies for rate, frequencies in _WINDOWS])
+    def of(cls, samples: int, step: float, rate: float, frequencies: Real) -> _Modulating:
+        s = np.asarray(rate + 2j * np.pi * frequencies, dtype=np.complex128)
         duration = (samples - 1) * step
         powers = np.linspace(0.0, 1.0, samples) ** np.arange(_BUMP.shape[1])[:, None]
         derivatives = _BUMP @ powers / duration ** np.arange(4)[:, None]
@@ -160,30 +189,26 @@ class _Modulating(NamedTuple):
         rows = np.array(
             [[-(s**3), 3 * s**2, -3 * s, one], [-(s**2), 2 * s, -one, nothing], [-s, one, nothing, nothing]]
         )
-        falling = waves(-np.asarray(s, dtype=np.complex128) * step, samples).T
+        falling = waves(-s * step, samples).T
         size = np.linalg.norm(derivatives[0] * falling, axis=1)
-        functions = np.moveaxis(rows, 2, 0) @ derivatives * (falling / size[:, None])[:, None]
-        return cls(functions, (functions.conj() @ np.swapaxes(functions, 1, 2)).real)
+        functions = np.moveaxis(rows, 2, 0) @ derivatives
+        functions *= (falling / size[:, None])[:, None]
+        real, imaginary = np.ascontiguousarray(functions.real), np.ascontiguousarray(functions.imag)
+        overlap = real @ np.swapaxes(real, 1, 2) + imaginary @ np.swapaxes(imaginary, 1, 2)
+        return cls(real, imaginary, overlap)
 
 
-def _normal(run: Run, to_coordinates: Real, table: _Modulating, terms: Real) -> Real:
-    """Give the normal equations of the products, from one load's records of one length; shape (product, product)."""
-    records = np.array([run.record(i) for i in range(len(run.samples))])[:, run.present > 0]
-    motion = to_coordinates @ records
-    functions, overlap = table
-    integrals = motion.reshape(-1, motion.shape[2]).astype(complex) @ functions.reshape(-1, functions.shape[2]).T
-    integrals = integrals.reshape(len(motion), 7, -1, 3).transpose(3, 1, 0, 2).reshape(21, len(motion), -1)
-
-    # The noise, from differences of the last third, where hardly anything else is left.
-    late = np.diff(records[:, :, -max(records.shape[2] // 3, 3) :], 2, axis=2)
-    covariance = (to_coordinates * (np.mean(late**2, axis=(0, 2)) / 6)) @ to_coordinates.T
-
+def _normal(motion: _Motion, table: _Modulating, terms: Real) -> Real:
+    """Give the normal equations of the products, shape (product, product)."""
+    records, _, samples = motion.coordinates.shape
+    flat = motion.coordinates.reshape(-1, samples)
+    parts = [flat @ part.reshape(-1, samples).T for part in (table.real, table.imaginary)]
+    integrals = np.array(parts).reshape(2, records, 7, -1, 3).transpose(4, 2, 0, 1, 3).reshape(21, 2 * records, -1)
     normal = np.zeros((len(terms), len(terms)))
     for own in np.unique(_OWN):
-        weights = 1 / (overlap[:, 0, 0] + own**4 * overlap[:, 2, 2])
+        weights = 1 / (table.overlap[:, 0, 0] + own**4 * table.overlap[:, 2, 2])
         weighted = (integrals * np.sqrt(weights)).reshape(21, -1)
-        squares = (weighted @ weighted.conj().T).real
-        feigned = len(motion) * np.kron(np.tensordot(weights, overlap, 1), covariance)
+        feigned = records * np.kron(np.tensordot(weights, table.overlap, 1), motion.noise)
         design = terms[:, own == _OWN]
-        normal += np.tensordot(design @ (squares - feigned), design, axes=([1, 2], [1, 2]))
+        normal += np.tensordot(design @ (weighted @ weighted.T - feigned), design, axes=([1, 2], [1, 2]))
     return normal

@@ -24,6 +24,8 @@ _HARDLY = (
     "would determine it"
 )
 
+_DERIVED_UNITS = {"total_mass": "kg", "front_axle_mass": "kg", "rear_axle_mass": "kg", "wheelbase": "m"}
+
 _PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s"}
 
 
@@ -91,25 +93,41 @@ def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:
     -------
     Estimates
     """
-    parameters = {name: _estimate(fit, known, i, name) for i, name in enumerate(fit.names)}
+    parameters = {name: estimate_of(fit, known, name) for name in fit.names}
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 
-def _estimate(fit: Fit, known: Mapping[str, Known], position: int, name: str) -> Estimate:
-    value, unit = float(fit.values[position]), PARAMETERS[name].unit
+def estimate_of(fit: Fit, known: Mapping[str, Known], name: str) -> Estimate:
+    """Say what the fit says of one quantity.
+
+    Parameters
+    ----------
+    fit, known
+        As for `conclude`.
+    name
+        A parameter, or a derived quantity of `sprung.vehicle.DERIVED`.
+
+    Returns
+    -------
+    Estimate
+    """
+    value, gradient = quantity(name, fit.names, fit.values)
+    unit = PARAMETERS[name].unit if name in PARAMETERS else _DERIVED_UNITS[name]
     if name in known and known[name].exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
-    std = fit.spread(fit.slopes[position] * np.eye(len(fit.names))[position], value)
+    std = fit.spread(gradient * fit.slopes, value)
     if std is None:
         return Estimate(None, None, None, unit, "unidentifiable")
     if std <= 1e-12 * abs(value):
         return Estimate(value, 0.0, (value, value), unit, "known")
-    return Estimate(value, std, _interval(name, value, std), unit, "estimated")
+    return Estimate(value, std, _interval(name, value, std), unit, "estimated", "curvature")
 
 
 def _interval(name: str, value: float, std: float) -> tuple[float, float]:
-    if PARAMETERS[name].positive:  # estimated by its logarithm, so the interval is even there and never negative
+    if (
+        name not in PARAMETERS or PARAMETERS[name].positive
+    ):  # estimated by its logarithm, so the interval is even there and never negative
         factor = float(np.exp(NORMAL_95 * std / value))
         return value / factor, value * factor
     return value - NORMAL_95 * std, value + NORMAL_95 * std

@@ -5,7 +5,7 @@ Two things show it without any other model: residuals that are coloured, and dro
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ _SEEN = 1e-9
 """Information, as a part of the largest, below which one drop says nothing about a direction."""
 
 
-def of_colour(residuals: Sequence[Real], rates: Sequence[float], span: float = _SPAN) -> Real:
+def of_colour(residuals: Iterable[Real], rates: Sequence[float], span: float = _SPAN) -> Real:
     """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
 
     Parameters
@@ -41,17 +41,17 @@ def of_colour(residuals: Sequence[Real], rates: Sequence[float], span: float = _
         (batch means: Law and Kelton, Simulation Modeling and Analysis, section 9.5.3). Never below 1; 1 where the excess
         is not significant. Shape (channel,).
     """
-    channels = len(residuals[0])
-    total, means, samples, batches = np.zeros((4, channels))
+    sums = []
     for record, rate in zip(residuals, rates, strict=True):
         length = min(max(int(span * rate), 1), record.shape[1])
         count = record.shape[1] // length
-        batch = np.nan_to_num(record[:, : count * length]).reshape(channels, count, length)
-        used = ~np.isnan(record).any(axis=1)
-        total += np.sum(batch**2, axis=(1, 2))
-        means += length * np.sum(batch.mean(axis=2) ** 2, axis=1)
-        samples += used * count * length
-        batches += used * count
+        batch = record[:, : count * length].reshape(len(record), count, length)
+        energy, mean = np.einsum("cbt,cbt->c", batch, batch), np.sum(batch.mean(axis=2) ** 2, axis=1)
+        used = ~np.isnan(energy)
+        sums.append(
+            [np.where(used, energy, 0.0), np.where(used, length * mean, 0.0), used * count * length, used * count]
+        )
+    total, means, samples, batches = np.sum(sums, axis=0)
     variance = np.maximum(total / np.maximum(samples, 1.0), np.finfo(float).tiny)
     ratio = means / np.maximum(batches, 1.0) / variance
     return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,8 @@ from sprung.vehicle import PARAMETERS, LinearModel, Sensor
 
 Real = NDArray[np.float64]
 
+Inflater = Literal["nothing", "coloured residuals", "drops that disagree"]
+"""What shows that the records tell less than white residuals would."""
 
 _BEYOND_DOUBT = 1e4
 """Information that noise never feigns: one percent of uncertainty."""
@@ -67,6 +70,10 @@ class Fit:
         Whether the last step promised no further gain.
     starts_agreeing, starts
         How many of the refined starts ended in the same place, and how many there were.
+    inflated_by
+        Which of the two, the larger, has enlarged the variances.
+    most_coloured
+        For coloured residuals the position of the channel in which they are worst; None otherwise.
     """
 
     names: tuple[str, ...]
@@ -85,6 +92,8 @@ class Fit:
     converged: bool
     starts_agreeing: int
     starts: int
+    inflated_by: Inflater = "nothing"
+    most_coloured: int | None = None
 
     def moved(self, step: Real) -> Real:
         """Give parameter values, SI, a step of the coordinates away, shape (parameter,)."""
@@ -150,9 +159,12 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
     Fit
     """
     climb, best, knowledge = summit.climb, summit.point, summit.climb.knowledge
+    disagreement = summit.disagreement
     fitted = best.place.fitted(best.weights)
-    colour = float(of_colour(residual_records(fitted, decays), [decay.rate for decay in decays]).max())
-    inflated = max(colour, summit.disagreement)
+    colours = of_colour(residual_records(fitted, decays), [decay.rate for decay in decays])
+    colour = float(colours.max())
+    inflated = max(colour, disagreement)
+    coloured = 1 < colour == inflated
 
     eigenvalues, directions = _directions(summit, inflated)
     relative = directions @ (directions / np.maximum(eigenvalues, _LEAST)).T
@@ -174,11 +186,13 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
         converged=summit.converged,
         starts_agreeing=summit.starts_agreeing,
         starts=summit.starts,
+        inflated_by="nothing" if inflated == 1 else "coloured residuals" if coloured else "drops that disagree",
+        most_coloured=int(colours.argmax()) if coloured else None,
     )
 
 
-def residual_records(fitted: Sequence[Real], decays: Sequence[Decay]) -> list[Real]:
-    """Give measured minus fitted for every drop.
+def residual_records(fitted: Sequence[Real], decays: Sequence[Decay]) -> Iterator[Real]:
+    """Give measured minus fitted for every drop, one after the other.
 
     Parameters
     ----------
@@ -187,15 +201,15 @@ def residual_records(fitted: Sequence[Real], decays: Sequence[Decay]) -> list[Re
     decays
         What was fitted.
 
-    Returns
-    -------
-    list of ndarray
-        Each of shape (channel, time), m/s²; NaN in channels that are left out.
+    Yields
+    ------
+    ndarray
+        Shape (channel, time), m/s²; NaN in channels that are left out.
     """
-    return [
-        decay.values - decay.values.mean(axis=1, keepdims=True) - record
-        for decay, record in zip(decays, fitted, strict=True)
-    ]
+    for decay, record in zip(decays, fitted, strict=True):
+        left = decay.values - record
+        left -= left.mean(axis=1, keepdims=True)
+        yield left
 
 
 def _directions(summit: Summit, inflated: float) -> tuple[Real, Real]:

@@ -108,8 +108,9 @@ class Knowledge:
             return np.zeros(0), np.zeros((0, len(u)))
         values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
         found = [quantity(name, self.coordinates.names, values) for name in names]
-        residual = (known - np.array([value for value, _ in found])) / sizes
-        return residual, np.array([gradient for _, gradient in found]) * slopes / sizes[:, None]
+        rows = np.array([gradient for _, gradient in found]) * slopes
+        sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero
+        return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
 
     def prior(self, u: Real) -> Prior:
         """Give the uncertain statements as observations in units of their own standard uncertainty."""

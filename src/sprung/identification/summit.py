@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimate import Known
-from sprung.identification.climb import CLOSE_BY, CONVERGED, FAR, NEARER, Climb, Point
+from sprung.identification.climb import CLOSE_BY, CONVERGED, FAR, NEARER, Climb, Point, told_directions
 from sprung.identification.direct import direct_start
 from sprung.identification.inflation import of_disagreement
 from sprung.identification.knowledge import Coordinates, Knowledge
@@ -135,18 +135,16 @@ def ascend(
     -------
     Summit
     """
-    names = next(iter(models.values())).names
-    likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
     outline = Outline.of(known, sensors)
     usual = [dict(start)] if start is not None else list(catalogue(outline, known))
-    coordinates = Coordinates(names, np.array([_reference(name, usual[0]) for name in names]))
-    climb = Climb(likelihood, Knowledge(coordinates, known))
+    climb = _climb(decays, models, sensors, known, usual[0])
 
     def at(values: Mapping[str, float]) -> Real:
-        return coordinates.of(np.array([values[name] for name in names]))
+        return climb.knowledge.coordinates.of(np.array([values[name] for name in climb.knowledge.coordinates.names]))
 
     if start is not None:
         return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(start)), None, enough, CLOSE_BY)], enough)
+    likelihood = climb.likelihood
     direct = direct_start(likelihood.records.runs, likelihood.models, sensors, outline)
     tried = [] if direct is None else [(at(direct), NEARER)]
     if len(tried) < starts:
@@ -160,6 +158,49 @@ def ascend(
         summit = min(ends, key=climb.cost, default=None)
         ends.append(climb.to_the_top(climb.knowledge.bind(u), summit, enough, damping))
     return _best(climb, ends, enough)
+
+
+def expected_gain(
+    decays: Sequence[Decay],
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, Known],
+    values: Mapping[str, float],
+) -> float:
+    """Give what a model with more parameters would gain over one that is fitted already, without fitting it.
+
+    Parameters
+    ----------
+    decays, models, sensors, known
+        As for `ascend`, of the larger model.
+    values
+        Its parameters, SI, where it equals the fitted smaller one.
+
+    Returns
+    -------
+    float
+        In twice the log-likelihood, to second order: the score test (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50).
+    """
+    climb = _climb(decays, models, sensors, known, values)
+    coordinates = climb.knowledge.coordinates
+    point = climb.at(climb.knowledge.bind(coordinates.of(np.array([values[name] for name in coordinates.names]))))
+    information, gradient, _ = climb.system(point)
+    told = told_directions(information)
+    slope = told.T @ gradient
+    return float(slope @ np.linalg.solve(told.T @ information @ told, slope))
+
+
+def _climb(
+    decays: Sequence[Decay],
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, Known],
+    typical: Mapping[str, float],
+) -> Climb:
+    names = next(iter(models.values())).names
+    likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
+    coordinates = Coordinates(names, np.array([_reference(name, typical) for name in names]))
+    return Climb(likelihood, Knowledge(coordinates, known))
 
 
 def _best(climb: Climb, ends: Sequence[Point], enough: float) -> Summit:

@@ -17,10 +17,12 @@ from sprung.identification import (
     ascend_from_contact,
     conclude,
     describe,
+    expected_gain,
     mode_estimates,
 )
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
+from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
 from sprung.prepare import Decay, Prepared, prepare
@@ -31,6 +33,9 @@ from sprung.vehicle import Tracks
 
 METHOD = "joint maximum likelihood"
 
+_UNLIKELY = 0.25
+"""Part of the gain that is asked of a larger model below which it is not even fitted."""
+
 _BEFORE_DECAY = 0.1
 """s from the release to the decay in a usual drop, for planning further ones."""
 
@@ -40,6 +45,7 @@ def identify(
     *,
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
+    profile: str | Sequence[str] = (),
     progress: Callable[[str], None] = lambda _: None,
 ) -> Result:
     """Identify every parameter of a vehicle from its drop tests.
@@ -52,6 +58,10 @@ def identify(
         ``shared``: one half-distance per axle; ``separate``: springs and dampers apart. Overrides the campaign.
     extras
         Exactly these extras beyond the paper's model, such as ``anti-roll``. Overrides the campaign.
+    profile
+        Parameters whose 95 % interval is to follow from the whole profile of the likelihood, not from its curvature at the
+        maximum: for those that are weakly determined, whose interval is not symmetric. Also derived quantities
+        (``total_mass``, ``front_axle_mass``, ``rear_axle_mass``, ``wheelbase``), or ``all`` for every parameter.
     progress
         Told in words what is being done.
 
@@ -62,7 +72,8 @@ def identify(
     Raises
     ------
     InputError
-        If no drop can be used, or what is known contradicts the model that is wanted.
+        If no drop can be used, what is known contradicts the model that is wanted, or a profile is wanted of something that
+        the model does not have.
 
     Examples
     --------
@@ -74,7 +85,8 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
-    return result_of(fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress))
+    asked = check_asked(profile, campaign, tracks, extras)
+    return result_of(fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress), asked, progress)
 
 
 class Fitted(NamedTuple):
@@ -88,14 +100,17 @@ class Fitted(NamedTuple):
         With which model, and what decided that.
     prepared
         Its decays, from where they were used.
+    summit
+        Where the fit ended.
     fit
-        The fit.
+        How sure it is.
     """
 
     campaign: Campaign
     choice: Choice
     why: str
     prepared: Prepared
+    summit: Summit
     fit: Fit
 
 
@@ -120,7 +135,7 @@ def fit_campaign(
         lambda decays, start, enough: _ascend(campaign, choice, decays, start, enough, progress),
     )
     progress("judging the fit")
-    return Fitted(campaign, choice, why, prepared._replace(decays=decays), describe(summit, decays))
+    return Fitted(campaign, choice, why, prepared._replace(decays=decays), summit, describe(summit, decays))
 
 
 def as_test(fitted: Fitted) -> PlannedTest:
@@ -171,11 +186,19 @@ def _choose_tracks(
     separate = choose_model(campaign, "separate", shared.extras)
     start = found.parameters
     start |= {f"t_{axle}{which}": start[f"t_{axle}"] for axle in "fr" for which in "12"}
+    asked = 2 * np.log(sum(decay.usable.sum() * decay.samples for decay in decays))
+    gain = expected_gain(decays, separate.models, campaign.sensors, separate.known, start) / found.disagreement
+    numbers = f"in 2 ln(likelihood) where {asked:.0f} is asked of two more parameters"
+    if gain < _UNLIKELY * asked:
+        return (
+            shared,
+            found,
+            f"springs and dampers share their half-distances: parting them would gain {gain:.0f} {numbers}",
+        )
     progress("springs and dampers apart")
     other = _ascend(campaign, separate, decays, start, NEAR, progress).after(found)
     gain = 2 * (other.loglikelihood - found.loglikelihood) / other.disagreement
-    asked = 2 * np.log(sum(decay.usable.sum() * decay.samples for decay in decays))
-    numbers = f"gains {max(gain, 0.0):.0f} in 2 ln(likelihood) where {asked:.0f} is asked of two more parameters"
+    numbers = f"gains {max(gain, 0.0):.0f} {numbers}"
     if gain > asked and other.converged:
         return separate, other, f"half-distances of springs and dampers apart: it {numbers}"
     return shared, found, f"springs and dampers share their half-distances: parting them {numbers}"
@@ -193,22 +216,24 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
     problems.raise_if_any()
 
 
-def result_of(fitted: Fitted) -> Result:
-    """Judge a fit, and put together what is said of it."""
-    campaign, choice, why, prepared, fit = fitted
+def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None) -> Result:
+    """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
+    campaign, choice, why, prepared, summit, fit = fitted
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
     estimates = conclude(fit, choice.known)
     misfit = judge_residuals(fit, decays)
     verdict = judge(fit, misfit, estimates.parameters, channels)
+    profiles = profiles_of(profile, summit, fit, choice.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     return Result(
         version=version("sprung"),
         vehicle=VehicleName(name=campaign.name),
         verdict=verdict,
         next_step=None if verdict.state == "reject" else next_step(as_test(fitted)).text,
-        parameters=estimates.parameters,
+        parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
+        derived={name: found for name, found in profiles.items() if name not in estimates.parameters},
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
@@ -236,6 +261,8 @@ def _fit_report(
         starts=fit.starts,
         starts_agreeing=fit.starts_agreeing,
         inflation=fit.inflation,
+        inflated_by=fit.inflated_by,
+        most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
         misfit=dict(zip(channels, misfit.relative.tolist(), strict=True)),
     )
 

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sprung.errors import Fault, Problem, ResultFileError
 from sprung.estimate import Estimate
-from sprung.identification import Correlation, ModeEstimate, Scale, Unidentifiable
+from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.check import DropReport
 from sprung.recording import write_whole
 from sprung.validation import Verdict
@@ -75,6 +75,10 @@ class FitReport(_Frozen):
         Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
     inflation
         By how much coloured residuals, or drops that contradict each other, enlarged every variance; 1 for neither.
+    inflated_by
+        Which of them; None where an older sprung wrote the result.
+    most_coloured
+        The channel whose residuals are most coloured, where they enlarged the variances.
     misfit
         Model error of each channel as a part of its signal; 0 where none is significant.
     """
@@ -91,6 +95,8 @@ class FitReport(_Frozen):
     starts: int
     starts_agreeing: int
     inflation: float
+    inflated_by: Inflater | None = None
+    most_coloured: str | None = None
     misfit: dict[str, float]
 
 
@@ -106,7 +112,9 @@ class Result(_Frozen):
     verdict
         ``state`` and ``reasons``.
     parameters
-        By name: value, std, interval95, unit, status.
+        By name: value, std, interval95, unit, status, interval_from.
+    derived
+        The same of derived quantities, such as ``total_mass``, whose profile was asked for.
     scale
         Whether absolute scale is known, and what is left without it.
     unidentifiable
@@ -130,6 +138,7 @@ class Result(_Frozen):
     vehicle: VehicleName
     verdict: Verdict
     parameters: dict[str, Estimate]
+    derived: dict[str, Estimate] = Field(default_factory=dict)
     scale: Scale
     unidentifiable: tuple[Unidentifiable, ...]
     correlation: Correlation

@@ -10,7 +10,7 @@ from rich.text import Text
 from sprung.errors import Fault
 from sprung.estimate import Estimate, round_by_uncertainty
 from sprung.identification import ModeEstimate
-from sprung.pipeline import Check, Result
+from sprung.pipeline import Check, FitReport, Result
 from sprung.report.layout import hanging, table
 from sprung.report.plan import next_line
 from sprung.vehicle import PARAMETERS
@@ -32,6 +32,8 @@ def result_view(result: Result) -> RenderableType:
         The result.
     """
     parts: list[RenderableType] = [parameter_table(result), Text()]
+    if profiles := _profiles(result):
+        parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
         parts += [Text("Not determined", style="bold")]
         parts += [*(hanging("  - ", item.text) for item in result.unidentifiable), Text()]
@@ -59,8 +61,37 @@ def parameter_table(result: Result) -> RenderableType:
     """Show every parameter with its uncertainty."""
     headers = ("parameter", "value", "±", "%", "unit", "status", "meaning")
     rows = [[name, *_value_cells(found), PARAMETERS[name].meaning] for name, found in result.parameters.items()]
+    rows += [[name, *_value_cells(found), "of the empty vehicle"] for name, found in result.derived.items()]
     title = f"{result.vehicle.name}: parameters, one standard uncertainty"
     return table(title, headers, rows, ("value", "±", "%"), ("meaning", "%", "status"))
+
+
+def interval_table(profiles: Mapping[str, Estimate]) -> RenderableType:
+    """Show the intervals that follow from profiles of the likelihood, by name."""
+    rows = [[name, *_interval_cells(found), _unit(found.unit)] for name, found in profiles.items()]
+    shown = table("95 % intervals from the whole likelihood", ("parameter", "from", "to", "unit"), rows, ("from", "to"))
+    if any(found.interval95 is not None and None in found.interval95 for found in profiles.values()):
+        return Group(shown, Text("< or >: open to the other side, where the recordings set no limit."))
+    return shown
+
+
+def _profiles(result: Result) -> dict[str, Estimate]:
+    everything = {**result.parameters, **result.derived}
+    return {name: found for name, found in everything.items() if found.interval_from == "profile"}
+
+
+def _interval_cells(estimate: Estimate) -> tuple[str, str]:
+    low, high = estimate.interval95 or (None, None)
+    before, after = "" if high is not None else "> ", "" if low is not None else "< "
+    return (
+        "" if low is None else f"{before}{_limit(low, estimate.std)}",
+        "" if high is None else f"{after}{_limit(high, estimate.std)}",
+    )
+
+
+def _limit(limit: float, std: float | None) -> str:
+    # A limit far below the standard uncertainty keeps two figures of its own.
+    return round_by_uncertainty(limit, min(std or abs(limit), abs(limit)) or 1.0)[0]
 
 
 def _value_cells(estimate: Estimate) -> list[str]:
@@ -122,10 +153,19 @@ def fit_line(result: Result) -> RenderableType:
     )
     if fit.inflation > 1:
         text += (
-            " Coloured residuals, or drops that contradict each other, enlarged every uncertainty by a factor of "
-            f"{fit.inflation**0.5:.2f}."
+            f"\nError bars are {fit.inflation**0.5:.2f} times as wide as white noise would make them{_because(fit)}."
         )
     return Text(f"{text}\nModel: {fit.why}.\nNoise, m/s² rms: {noise}.")
+
+
+def _because(fit: FitReport) -> str:
+    match fit.inflated_by:
+        case "coloured residuals":
+            return f": the residuals are coloured, most of all in {fit.most_coloured}"
+        case "drops that disagree":
+            return ": the drops disagree by more than their noise"
+        case _:
+            return ""
 
 
 def _count(number: int, thing: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -106,13 +106,13 @@ class _Moments(NamedTuple):
     samples: Real
 
 
-def _moments(records: Sequence[Real]) -> _Moments:
+def _moments(records: Iterable[Real]) -> _Moments:
     """Pool variance and covariance of neighbouring samples over records, by channel; NaN channels count nothing."""
-    variance, neighbour, samples = np.zeros((3, len(records[0])))
+    sums = []
     for record in records:
         clean = np.nan_to_num(record)
-        variance += np.sum(clean**2, axis=1)
-        neighbour += np.sum(clean[:, 1:] * clean[:, :-1], axis=1)
-        samples += np.sum(~np.isnan(record), axis=1)
+        neighbours = np.einsum("ct,ct->c", clean[:, 1:], clean[:, :-1])
+        sums.append([np.einsum("ct,ct->c", clean, clean), neighbours, np.sum(~np.isnan(record), axis=1)])
+    variance, neighbour, samples = np.sum(sums, axis=0)
     count = np.maximum(samples, 1.0)
     return _Moments(variance / count, neighbour / count, samples)

@@ -1,0 +1,92 @@
+"""The ten-drop campaign: the paper's car, empty and with ballast, eight channels, decays of 1500 samples."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+import sprung
+from sprung.estimate import Known
+from sprung.identification import Fit, fit_jointly
+from sprung.pipeline.choice import choose_model
+from sprung.prepare import Decay, prepare
+from sprung.vehicle import TABLE_1_CAR, LinearModel, Sensor
+
+Real = NDArray[np.float64]
+
+RATE = 500.0
+SAMPLES = 1500
+
+_LOAD = {
+    "name": "ballast",
+    "items": [
+        {"mass": 140.0, "position": (-1.0, 0.0, 0.55), "inertia": (10.0, 80.0)},
+        {"mass": 60.0, "position": (-2.9, 0.0, 0.55), "inertia": (5.0, 5.0)},
+    ],
+}
+_RECORDED = 3.4
+"""s after the release: of it, 3 s of free vibration are left."""
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What every contestant is given.
+
+    Attributes
+    ----------
+    campaign
+        As recorded: where the decays begin is not said.
+    decays, models, sensors, known
+        As for `sprung.identification.fit_jointly`.
+    """
+
+    campaign: sprung.Campaign
+    decays: tuple[Decay, ...]
+    models: Mapping[str, LinearModel]
+    sensors: tuple[Sensor, ...]
+    known: Mapping[str, Known]
+
+    @property
+    def nbytes(self) -> int:
+        """Size of the records, bytes."""
+        return sum(decay.values.nbytes for decay in self.decays)
+
+    @property
+    def stacked(self) -> Real:
+        """All records below each other, shape (drop · channel, time)."""
+        return np.concatenate([decay.values for decay in self.decays])
+
+    def fit(self, starts: int) -> Fit:
+        """Fit as `sprung` does: from starts of its own, to the error bars."""
+        return fit_jointly(self.decays, self.models, self.sensors, self.known, starts=starts)
+
+
+def ten_drops(times: int = 1) -> Task:
+    """Simulate the campaign, sampled so many times as often: 1500 samples in each decay, times that."""
+    campaign = _simulated(times)
+    choice = choose_model(campaign)
+    # Everybody fits from where free vibration begins, as found in a campaign of the usual rate.
+    drops = tuple(
+        drop.model_copy(update={"start": start}) for drop, start in zip(campaign.drops, _starts(), strict=True)
+    )
+    decays = tuple(
+        replace(decay, values=np.ascontiguousarray(decay.values[:, : times * SAMPLES]))
+        for decay in prepare(replace(campaign, drops=drops)).decays
+    )
+    if {decay.values.shape for decay in decays} != {(8, times * SAMPLES)}:
+        raise ValueError(f"decays of {[decay.values.shape for decay in decays]}; record for longer")
+    return Task(campaign, decays, choice.models, tuple(campaign.sensors), choice.known)
+
+
+def _simulated(times: int) -> sprung.Campaign:
+    return sprung.simulate(TABLE_1_CAR, loads=[_LOAD], rate=times * RATE, noise=0.02, seed=1, duration=_RECORDED)
+
+
+@cache
+def _starts() -> tuple[float, ...]:
+    found = [drop.start for drop in sprung.identify(_simulated(1)).drops]
+    return tuple(start for start in found if start is not None)

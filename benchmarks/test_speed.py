@@ -1,0 +1,128 @@
+"""The joint fit beside what others would write, beside the least it could cost, and with ever more samples.
+
+Run with `nox -s bench`. Every result is a ratio, in the ``extra_info`` of benchmarks/result.json.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sprung
+from measure import Run, Turns, peak_memory
+from plain import PlainFit
+from sprung.vehicle import TABLE_1_CAR
+from ten_drops import RATE, SAMPLES, Task, ten_drops
+
+TIMES = (1, 2, 4, 8, 16)
+"""How many times as many samples."""
+
+SAME = 1e-4
+"""Standard errors within which two fits have the same answer."""
+
+
+@pytest.fixture(scope="module")
+def task() -> Task:
+    return ten_drops()
+
+
+def exponentials(task: Task) -> np.ndarray[tuple[int, ...], np.dtype[np.complex128]]:
+    """Give the fourteen exponentials of the empty vehicle, shape (time, 14)."""
+    poles = np.linalg.eigvals(TABLE_1_CAR.matrices().state)
+    return np.exp(np.arange(task.decays[0].samples)[:, None] / task.decays[0].rate * poles)
+
+
+def test_beside_others(benchmark: Any, task: Task) -> None:
+    """SciPy and lmfit are given a start and our noise levels, so that all three have the same sum to minimise."""
+    ours = task.fit(starts=1)
+    plain = PlainFit(task, TABLE_1_CAR.wheelbase, ours.noise)
+    found: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.float64]]] = {}
+    turns = Turns(
+        {
+            "one start": (lambda: task.fit(starts=1), 15),
+            "SciPy": (lambda: found.update(scipy=plain.by_scipy()), 1),
+            "three starts": (lambda: task.fit(starts=3), 15),
+            "lmfit": (lambda: found.update(lmfit=plain.by_lmfit()), 1),
+            "identify": (lambda: sprung.identify(task.campaign), 5),
+        }
+    )
+    benchmark.pedantic(turns, rounds=7)
+
+    # The same sum once more, from our end on, with central differences and no tolerance: where its least really is.
+    finest = plain.by_scipy(ours.values, jac="3-point", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    std = np.sqrt(np.diag(ours.covariance))
+
+    def apart(one: Any, other: Any) -> float:
+        return float(np.abs((one - other) / std).max())
+
+    benchmark.extra_info["ratios"] = {
+        "plain SciPy fit / whole fit from its own start": turns.ratio("SciPy", "one start", least=100),
+        "plain SciPy fit / whole fit from three starts": turns.ratio("SciPy", "three starts"),
+        "plain SciPy fit / sprung.identify": turns.ratio("SciPy", "identify"),
+        "lmfit / whole fit from its own start": turns.ratio("lmfit", "one start"),
+        "whole fit from three starts / from one": turns.ratio("three starts", "one start"),
+        "sprung.identify / whole fit from its own start": turns.ratio("identify", "one start"),
+    }
+    benchmark.extra_info["standard_errors"] = distances = {
+        "SciPy, as timed": apart(found["scipy"], ours.values),
+        "lmfit, as timed": apart(found["lmfit"], ours.values),
+        "SciPy, polished": apart(finest, ours.values),
+        "SciPy, as timed, from SciPy, polished": apart(found["scipy"], finest),
+        "lmfit, as timed, from SciPy, polished": apart(found["lmfit"], finest),
+    }
+    assert distances["SciPy, as timed"] < SAME
+    assert distances["SciPy, polished"] < SAME
+
+
+def test_beside_the_floor(benchmark: Any, task: Task) -> None:
+    """No fit that looks at all samples is cheaper than one product of the records with the exponentials."""
+    records, waves = task.stacked, exponentials(task)
+    halves = waves.view(float)
+    assert (records.shape, waves.shape) == ((80, SAMPLES), (SAMPLES, 14))
+    turns = Turns(
+        {
+            "floor": (lambda: records @ waves, 60),
+            "ours": (lambda: task.fit(starts=1), 5),
+            "real floor": (lambda: records @ halves, 60),
+        }
+    )
+    benchmark.pedantic(turns, rounds=25, warmup_rounds=1)
+    benchmark.extra_info["ratios"] = {
+        "whole fit from its own start / floor": turns.ratio("ours", "floor", most=60),
+        "whole fit from its own start / floor in real arithmetic": turns.ratio("ours", "real floor"),
+    }
+
+
+def test_with_more_samples(benchmark: Any) -> None:
+    """The same three seconds, sampled more often."""
+    tasks = {times: ten_drops(times) for times in TIMES}
+    floors = {times: (tasks[times].stacked, exponentials(tasks[times])) for times in TIMES}
+    fits: dict[int, Run] = {times: partial(task.fit, 1) for times, task in tasks.items()}
+    contestants: dict[str, tuple[Run, int]] = {}
+    for times in TIMES:
+        contestants[f"ours {times}"] = fits[times], 3
+        contestants[f"floor {times}"] = partial(np.matmul, *floors[times]), 15
+    turns = Turns(contestants)
+    benchmark.pedantic(turns, rounds=9, warmup_rounds=1)
+
+    best = np.array([turns.best(f"ours {times}") for times in TIMES])
+    slopes = np.diff(np.log(best)) / np.diff(np.log(TIMES))
+    benchmark.extra_info["samples"] = {
+        str(times * SAMPLES): {
+            "rate": times * RATE,
+            "time": turns.ratio(f"ours {times}", "ours 1")["ratio"],
+            "floors": turns.ratio(f"ours {times}", f"floor {times}")["ratio"],
+            "memory": peak_memory(fits[times]) / tasks[times].nbytes,
+        }
+        for times in TIMES
+    }
+    slope = float(slopes[-1])
+    memory = benchmark.extra_info["samples"][str(TIMES[-1] * SAMPLES)]["memory"]
+    benchmark.extra_info["ratios"] = {
+        "growth of time with samples, as a power, at the longest": {"ratio": slope, "most": 1.1},
+        "memory of a fit / records, the longest": {"ratio": memory, "most": 3},
+    }
+    assert slope < 1.3  # on a busy machine, where 1.1 is what is wanted
