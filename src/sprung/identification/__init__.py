@@ -12,7 +12,7 @@ from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.profile import profiled
 from sprung.identification.structured import StructuredFit, structured_least_squares
-from sprung.identification.summit import NEAR, Summit, ascend, expected_gain
+from sprung.identification.summit import NEAR, Summit, ascend, expected_gain, look_around
 
 __all__ = [
     "NEAR",
@@ -38,6 +38,7 @@ __all__ = [
     "estimate_of",
     "expected_gain",
     "fit_jointly",
+    "look_around",
     "mode_estimates",
     "of_colour",
     "parameters_from_matrices",

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimate import Known
 from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.inflation import of_colour
-from sprung.identification.summit import STARTS, Summit, ascend
+from sprung.identification.summit import STARTS, Summit, ascend, look_around
 from sprung.prepare import Decay
 from sprung.vehicle import PARAMETERS, LinearModel, Sensor
 
@@ -141,7 +141,7 @@ def fit_jointly(
     -------
     Fit
     """
-    return describe(ascend(decays, models, sensors, known, start=start, starts=starts), decays)
+    return describe(look_around(ascend(decays, models, sensors, known, start=start, starts=starts)), decays)
 
 
 def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:

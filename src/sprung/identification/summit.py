@@ -10,7 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimate import Known
-from sprung.identification.climb import CLOSE_BY, CONVERGED, FAR, NEARER, Climb, Point, told_directions
+from sprung.identification.climb import (
+    CLOSE_BY,
+    CONVERGED,
+    FAR,
+    NEARER,
+    Climb,
+    Point,
+    least_information,
+    told_directions,
+)
 from sprung.identification.direct import direct_start
 from sprung.identification.inflation import of_disagreement
 from sprung.identification.knowledge import Coordinates, Knowledge
@@ -23,6 +32,15 @@ Real = NDArray[np.float64]
 
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
+
+_WELL_KNOWN = 1e4
+"""Information of a logarithm from which a direction needs no looking around: one percent of uncertainty."""
+
+_AROUND, _FARTHEST, _PROBED = (4.0, 8.0), 0.5, 2
+"""How far to look, in standard errors and in logarithms, and along how many directions."""
+
+_SHALLOW = 0.5
+"""Part of the fall that the curvature says, below which the likelihood is worth another climb."""
 
 STARTS = 3
 """How many starts are usually refined: enough to see whether they agree."""
@@ -158,6 +176,38 @@ def ascend(
         summit = min(ends, key=climb.cost, default=None)
         ends.append(climb.to_the_top(climb.knowledge.bind(u), summit, enough, damping))
     return _best(climb, ends, enough)
+
+
+def look_around(summit: Summit) -> Summit:
+    """Climb once more from both sides of a summit, along the directions that are known least.
+
+    Where the records say little of a direction, the likelihood may have two summits a few standard errors apart, and every
+    start may have ended on the lower one. It shows in a likelihood that falls less on that side than its curvature says.
+
+    Parameters
+    ----------
+    summit
+        Where the fit has ended.
+
+    Returns
+    -------
+    Summit
+        The highest that was found.
+    """
+    climb, best = summit.climb, summit.point
+    information, _, free = climb.system(best)
+    eigenvalues, vectors = np.linalg.eigh(information)
+    weak = np.flatnonzero((eigenvalues > least_information(eigenvalues)) & (eigenvalues < _WELL_KNOWN))[:_PROBED]
+    for which in weak:
+        direction = free @ vectors[:, which]
+        for distance in _AROUND:
+            step = min(distance / eigenvalues[which] ** 0.5, _FARTHEST / np.abs(direction).max())
+            for side in (-step, step):
+                u = climb.knowledge.bind(summit.point.u + side * direction)
+                fall = climb.cost(climb.at(u)) - climb.cost(summit.point)
+                if fall < _SHALLOW * eigenvalues[which] * step**2:
+                    best = min(best, climb.to_the_top(u, None, CONVERGED, NEARER), key=climb.cost)
+    return summit if best is summit.point else replace(summit, point=best, steps=summit.steps + best.steps)
 
 
 def expected_gain(

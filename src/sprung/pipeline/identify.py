@@ -18,6 +18,7 @@ from sprung.identification import (
     conclude,
     describe,
     expected_gain,
+    look_around,
     mode_estimates,
 )
 from sprung.pipeline.check import check_prepared
@@ -134,6 +135,7 @@ def fit_campaign(
         first,
         lambda decays, start, enough: _ascend(campaign, choice, decays, start, enough, progress),
     )
+    summit = look_around(summit)
     progress("judging the fit")
     return Fitted(campaign, choice, why, prepared._replace(decays=decays), summit, describe(summit, decays))
 
