@@ -20,7 +20,7 @@ from sprung.vehicle import LinearModel
 
 Real = NDArray[np.float64]
 
-_COMPRESSED = 0.05
+_COMPRESSED = 0.01
 """Part of its static compression below which a tyre may have left the ground, the fit being what it is."""
 
 _PASSES = 4

@@ -31,6 +31,9 @@ _JUMP = 0.015
 _IMPACT = 0.5
 """s after the release within which every wheel has met the ground: a fall from 0.3 m, and the tyre's compression."""
 
+_EARLIER = 0.008
+"""s by which the landing may have been before the steepest rise of a wheel's reading."""
+
 _SPIKE = 0.02
 """s: what is shorter is taken for a spike, not for a wheel that has left the ground again."""
 
@@ -144,7 +147,11 @@ def find_decay(
             last = max(last, release.sample + int(low[-1]) + 1)
         if sensor.on in dropped:
             first = max(first, _steepest_rise(reading[channel, : release.sample + impact], release.sample))
-    return Landing(first or last, max(first, last)) if first or last else None
+    if not (first or last):
+        return None
+    # The rise tells the landing to a few samples; what lies before it costs nothing, for the fit will say where it was.
+    possible = max((first or last) - int(np.ceil(_EARLIER * rate)), release.sample)
+    return Landing(possible, max(first, last))
 
 
 def _steepest_rise(reading: Real, release: int) -> int:
