@@ -74,6 +74,14 @@ def test_ac_coupled_sensors(corner: float) -> None:
     assert worst_score(result) < 4
 
 
+def test_ac_coupled_sensors_that_clip() -> None:
+    """Within their range as they were recorded, beyond it once the high-pass is undone, and the other way round."""
+    result = sprung.identify(campaign({"high_pass": 0.5, "unit": "g", "range": 4.0}))
+    assert {fault.code for fault in result.faults} == {"clipped"}
+    assert result.verdict.state == "accept"
+    assert worst_score(result) < 4
+
+
 def test_a_spike_does_not_pass_for_the_landing() -> None:
     clean = campaign({})
     spiked = []

@@ -67,6 +67,8 @@ def prepare(campaign: Campaign) -> Prepared:
     """
     campaign = replace(campaign, recordings=_alive(campaign.recordings))
     releases = [_release(recording) for recording in campaign.recordings]
+    # A sensor clips before its high-pass is undone: what it read then is no longer within its range.
+    clipped = [clipped_samples(recording.values, campaign.sensors) for recording in campaign.recordings]
     recordings = [
         recording if release is None else direct_coupled(recording, release, campaign.sensors)
         for recording, release in zip(campaign.recordings, releases, strict=True)
@@ -74,8 +76,8 @@ def prepare(campaign: Campaign) -> Prepared:
     campaign = replace(campaign, recordings=tuple(recordings))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
-    for drop, recording, release in zip(campaign.drops, campaign.recordings, releases, strict=True):
-        decay = _decay(campaign, drop, recording, release, suspension)
+    for drop, recording, release, over in zip(campaign.drops, campaign.recordings, releases, clipped, strict=True):
+        decay = _decay(campaign, drop, recording, release, suspension, over)
         if isinstance(decay, Decay):
             decays.append(decay)
         else:
@@ -141,13 +143,17 @@ def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[W
 
 
 def _decay(
-    campaign: Campaign, drop: Drop, recording: Recording, release: Release | None, suspension: dict[Wheel, float]
+    campaign: Campaign,
+    drop: Drop,
+    recording: Recording,
+    release: Release | None,
+    suspension: dict[Wheel, float],
+    clipped: NDArray[np.bool_],
 ) -> Decay | Fault:
     where = recording.name
     if not recording.usable.any():
         return Fault("missing", where, "no channel of this drop can be used; it is left out", "Record the drop again.")
     faults = list(recording.faults)
-    clipped = clipped_samples(recording.values, campaign.sensors)
     landing = _landing(campaign, drop, recording, release, suspension, clipped, faults)
     first = landing.certain
     recording = _without_clipped(recording, clipped, landing.possible, faults)
