@@ -13,6 +13,7 @@ from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.profile import profiled
 from sprung.identification.structured import StructuredFit, structured_least_squares
 from sprung.identification.summit import NEAR, Summit, ascend, expected_gain, look_around
+from sprung.identification.suspects import Suspect, suspects
 
 __all__ = [
     "NEAR",
@@ -29,6 +30,7 @@ __all__ = [
     "Scale",
     "StructuredFit",
     "Summit",
+    "Suspect",
     "Unidentifiable",
     "added_mass",
     "ascend",
@@ -45,4 +47,5 @@ __all__ = [
     "profiled",
     "residual_records",
     "structured_least_squares",
+    "suspects",
 ]

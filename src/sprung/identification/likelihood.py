@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from sprung.identification.amplitudes import Amplitudes, Sums
 from sprung.identification.longhand import Longhand, evaluate_drop
 from sprung.identification.records import Records
-from sprung.identification.solution import ModalSolution, differentiate_modes, solve_modes
+from sprung.identification.solution import ModalSlopes, ModalSolution, differentiate_modes, solve_modes
 from sprung.prepare import Decay
 from sprung.vehicle import LinearModel, Rows
 
@@ -99,6 +99,11 @@ class Likelihood:
         """The models of all loads side by side."""
         return LinearModel.side_by_side(self.models)
 
+    @cached_property
+    def span(self) -> float:
+        """Length of the longest record, s."""
+        return max(float((run.samples * run.step[run.group]).max()) for run in self.records.runs)
+
     def at(self, values: Real) -> Place:
         """Go to parameter values, SI, shape (parameter,)."""
         return Place(self, values)
@@ -132,12 +137,14 @@ class Place:
     @cached_property
     def _slopes(self) -> list[Complex]:
         """σ and τ of every run beside each other, τ per sample; each of shape (group, channel, parameter, 28)."""
-        likelihood, runs = self.likelihood, self.likelihood.records.runs
-        span = max(float((run.samples * run.step[run.group]).max()) for run in runs)
-        slopes = differentiate_modes(likelihood.loads, likelihood.sensors, self.values, self.modes, span)
+        likelihood = self.likelihood
+        slopes = differentiate_modes(likelihood.loads, likelihood.sensors, self.values, self.modes, likelihood.span)
+        return self._of_runs(slopes)
+
+    def _of_runs(self, slopes: ModalSlopes) -> list[Complex]:
         return [
             np.concatenate([slopes.shapes[run.load], slopes.secular[run.load] * run.step[:, None, None, None]], axis=-1)
-            for run in runs
+            for run in self.likelihood.records.runs
         ]
 
     @cached_property
@@ -176,6 +183,29 @@ class Place:
         in_order = self.likelihood.records.in_order
         gradients = in_order([solved.gradient(slopes) for solved, slopes in pairs])
         return gradients, in_order([solved.information(slopes, apart=True) for solved, slopes in pairs])
+
+    def beside(self, weights: Real, more: ModalSlopes) -> tuple[Real, Real] | None:
+        """Give gradient and information of the parameters and of other changes beside them.
+
+        Parameters
+        ----------
+        weights
+            1/σ².
+        more
+            What the other changes do to the response of each load.
+
+        Returns
+        -------
+        gradient, information
+            Shapes (parameter + change,) and its square; None where modal coordinates do not exist.
+        """
+        if self._defective:
+            return None
+        pairs = zip(self._slopes, self._of_runs(more), strict=True)
+        slopes = [np.ascontiguousarray(np.concatenate([own, other], axis=2)) for own, other in pairs]
+        solved = list(zip(self._solve(weights), slopes, strict=True))
+        gradient = np.sum([one.gradient(those).sum(axis=0) for one, those in solved], axis=0)
+        return gradient, np.sum([one.information(those).sum(axis=0) for one, those in solved], axis=0)
 
     def feigned(self, weights: Real) -> Real:
         """Give the information that noise alone feigns.

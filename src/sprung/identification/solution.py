@@ -46,6 +46,11 @@ class ModalSolution:
         return np.asarray(np.linalg.inv(self.right), dtype=np.complex128)
 
     @property
+    def accelerations(self) -> Complex:
+        """Accelerations of the seven coordinates in each mode, shape (..., 7, 14)."""
+        return self.right[..., 7:, :] * self.poles[..., None, :]
+
+    @property
     def condition(self) -> float:
         """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
         # Displacements and velocities are made comparable by a mean frequency.
@@ -124,16 +129,38 @@ def differentiate_modes(
 
     With motions v, λv, λ²v of a mode, dA V is -M⁻¹ (dM λ²v + dC λv + dK v).
     """
-    lead, channels, parameters = modes.poles.shape[:-1], len(sensors.affine), len(values)
     displacements = modes.right[..., :7, :]
-    accelerations = modes.right[..., 7:, :] * modes.poles[..., None, :]
-    motions = np.concatenate([accelerations, modes.right[..., 7:, :], displacements], axis=-2)
+    motions = np.concatenate([modes.accelerations, modes.right[..., 7:, :], displacements], axis=-2)
     # The rows of dM, dC and dK beside each other: (..., 7 rows of every parameter, 21).
     slopes = np.moveaxis(np.concatenate(model.slopes(values), axis=-1), 0, -2)
-    forces = (slopes.reshape(*lead, -1, 21) @ motions).reshape(*lead, 7, -1)
+    lead = modes.poles.shape[:-1]
+    forces = (slopes.reshape(*lead, -1, 21) @ motions).reshape(*lead, 7, len(values), 14)
+    changed = respond(model, sensors, values, modes, forces, span)
+    moved = (sensors.slopes.reshape(-1, 7) @ modes.accelerations).reshape(*changed.shapes.shape)
+    return changed._replace(shapes=changed.shapes + moved)
+
+
+def respond(
+    model: LinearModel, sensors: Rows, values: Real, modes: ModalSolution, forces: Complex, span: float
+) -> ModalSlopes:
+    """Give what forces that grow with the motion change in the response.
+
+    Parameters
+    ----------
+    model, sensors, values, modes, span
+        As for `differentiate_modes`.
+    forces
+        (dM λ² + dC λ + dK) v of every mode v, for several changes; shape (..., 7, change, 14).
+
+    Returns
+    -------
+    ModalSlopes
+        By change instead of by parameter.
+    """
+    lead, channels, changes = modes.poles.shape[:-1], len(sensors.affine), forces.shape[-2]
     S = np.broadcast_to(sensors.at(values), (*lead, channels, 7))
     both = np.concatenate([modes.left[..., 7:], S], axis=-2) @ -np.linalg.inv(model.matrices(values).M)
-    changed = (both @ forces).reshape(*lead, 14 + channels, parameters, 14)
+    changed = (both @ forces.reshape(*lead, 7, -1)).reshape(*lead, 14 + channels, changes, 14)
     D, of_sensors = changed[..., :14, :, :], changed[..., 14:, :, :]
 
     difference = modes.poles[..., None, :] - modes.poles[..., :, None]
@@ -142,12 +169,11 @@ def differentiate_modes(
 
     def seen(mixed: Complex) -> Complex:
         by_channel: Complex = modes.shapes @ mixed.reshape(*lead, 14, -1)
-        return by_channel.reshape(*lead, channels, parameters, 14)
+        return by_channel.reshape(*lead, channels, changes, 14)
 
-    moved = (sensors.slopes.reshape(-1, 7) @ accelerations).reshape(*lead, channels, parameters, 14)
     return ModalSlopes(
         np.diagonal(D, axis1=-3, axis2=-1),
-        of_sensors + moved + seen(D * mixing[..., :, None, :]),
+        of_sensors + seen(D * mixing[..., :, None, :]),
         seen(D * close[..., :, None, :]),
     )
 

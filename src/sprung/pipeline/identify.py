@@ -21,6 +21,7 @@ from sprung.identification import (
     look_around,
     mode_estimates,
 )
+from sprung.pipeline.accusation import accuse
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.profiles import check_asked, profiles_of
@@ -226,7 +227,8 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
     looked_at = check_prepared(campaign, prepared)
     estimates = conclude(fit, choice.known)
     misfit = judge_residuals(fit, decays)
-    verdict = judge(fit, misfit, estimates.parameters, channels)
+    accused = accuse(campaign, decays, summit, misfit, fit.inflation)
+    verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused])
     profiles = profiles_of(profile, summit, fit, choice.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     return Result(
@@ -242,7 +244,7 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
         modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
         fit=_fit_report(choice, why, fit, decays, channels, misfit),
         drops=looked_at.drops,
-        faults=looked_at.faults,
+        faults=(*looked_at.faults, *accused),
         series={decay.name: _series(decay, fitted, channels) for decay, fitted in zip(decays, fit.fitted, strict=True)},
     )
 

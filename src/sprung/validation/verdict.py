@@ -44,7 +44,13 @@ class Verdict:
     reasons: tuple[str, ...]
 
 
-def judge(fit: Fit, misfit: Misfit, parameters: Mapping[str, Estimate], channels: Sequence[str]) -> Verdict:
+def judge(
+    fit: Fit,
+    misfit: Misfit,
+    parameters: Mapping[str, Estimate],
+    channels: Sequence[str],
+    accused: Sequence[str] = (),
+) -> Verdict:
     """Come to a verdict.
 
     Parameters
@@ -57,12 +63,19 @@ def judge(fit: Fit, misfit: Misfit, parameters: Mapping[str, Estimate], channels
         The estimates.
     channels
         Channel names.
+    accused
+        What is probably wrong with the campaign file or an instrument.
     """
     worst = int(np.argmax(misfit.relative))
     size = float(misfit.relative[worst])
     unexplained = list(_unexplained(size, float(misfit.ratio[worst]), channels[worst]))
     reject = [*(unexplained if size > UNUSABLE else ()), *_no_fit(fit, parameters)]
-    doubt = [*(unexplained if size <= UNUSABLE else ()), *_contradictions(fit), *_undetermined(parameters)]
+    doubt = [
+        *accused,
+        *(unexplained if size <= UNUSABLE else ()),
+        *_contradictions(fit),
+        *_undetermined(parameters),
+    ]
     if reject:
         return Verdict("reject", (*reject, *doubt))
     if doubt:

@@ -1,0 +1,162 @@
+"""Suspects: what in the campaign file or the instruments, if it were otherwise, would explain the records better.
+
+A gain, a delay, a place: each is one more unknown of the same likelihood, and its score at the summit tells what it would
+gain and which value it would take (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50), without any further fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification.climb import told_directions
+from sprung.identification.solution import ModalSlopes, respond
+from sprung.identification.summit import Summit
+from sprung.vehicle import LinearModel, Load, Rows, Sensor
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+Kind = Literal["gain", "late", "position", "load-position"]
+
+_NUDGE = 0.01
+"""m by which an item is moved to see what that does; its mass is quadratic in its place, so that any step is exact."""
+
+
+class Suspect(NamedTuple):
+    """One thing that may be otherwise.
+
+    Attributes
+    ----------
+    kind
+        ``gain``: a channel reads too much, as a part; ``late``: a channel is late, s; ``position``: a sensor, and
+        ``load-position``: an item of a load sits further forward or left than stated, m.
+    where
+        The channel, or the load's name.
+    axis
+        0 forward, 1 left; for positions.
+    item
+        Which item of the load, from 0.
+    value
+        By how much, in that unit.
+    std
+        Standard uncertainty of that in white noise.
+    """
+
+    kind: Kind
+    where: str
+    axis: int
+    item: int
+    value: float
+    std: float
+
+    @property
+    def gain(self) -> float:
+        """What twice the log-likelihood would gain."""
+        return (self.value / self.std) ** 2 if self.std > 0 else 0.0
+
+
+def suspects(
+    summit: Summit, sensors: Sequence[Sensor], loads: Mapping[str, Load], cg_height: float | None
+) -> tuple[Suspect, ...]:
+    """List everything that may be otherwise, what would gain most first.
+
+    Parameters
+    ----------
+    summit
+        Where the fit ended.
+    sensors
+        The sensors.
+    loads
+        The loads by name.
+    cg_height
+        Height of the body's centre of gravity, m, where it is known.
+
+    Returns
+    -------
+    tuple of Suspect
+        Those of which the records say anything; none where modal coordinates do not exist.
+    """
+    place, climb = summit.point.place, summit.climb
+    changes = list(_changes(summit, sensors, loads, cg_height))
+    accused, slopes = [who for who, _ in changes], [slope for _, slope in changes]
+    more = ModalSlopes(
+        np.zeros((*place.modes.poles.shape[:-1], len(slopes), 14), dtype=np.complex128),
+        np.stack([one.shapes[:, :, 0] for one in slopes], axis=2),
+        np.stack([one.secular[:, :, 0] for one in slopes], axis=2),
+    )
+    found = place.beside(summit.point.weights, more)
+    if found is None:
+        return ()
+    gradient, information = found
+    parameters = len(summit.names)
+    system, own, free = climb.system(summit.point)
+    told = told_directions(system)
+    seen = (climb.knowledge.coordinates.slopes(summit.point.u)[:, None] * free) @ told
+    inverse = np.linalg.inv(told.T @ system @ told)
+    across = seen.T @ information[:parameters, parameters:]
+    left = np.diag(information)[parameters:] - np.einsum("pe,pq,qe->e", across, inverse, across)
+    score = gradient[parameters:] - across.T @ inverse @ (told.T @ own)
+    alone = np.diag(information)[parameters:]
+    known = left > 1e-9 * np.maximum(alone, np.finfo(float).tiny)
+    named = [
+        Suspect(kind, where, axis, item, float(score[i] / left[i]), float(left[i] ** -0.5))
+        for i, (kind, where, axis, item) in enumerate(accused)
+        if known[i]
+    ]
+    return tuple(sorted(named, key=lambda one: one.gain, reverse=True))
+
+
+_Who = tuple[Kind, str, int, int]
+
+
+def _changes(
+    summit: Summit, sensors: Sequence[Sensor], loads: Mapping[str, Load], cg_height: float | None
+) -> Iterator[tuple[_Who, ModalSlopes]]:
+    """Give what each change does to the response of every load."""
+    place = summit.point.place
+    modes, likelihood = place.modes, place.likelihood
+    nothing = np.zeros((*modes.shapes.shape[:2], 1, 14), dtype=np.complex128)
+    no_poles = np.zeros((len(modes.poles), 1, 14), dtype=np.complex128)
+    for channel, sensor in enumerate(sensors):
+        more: tuple[tuple[Kind, Complex], ...] = (("gain", np.ones_like(modes.poles)), ("late", -modes.poles))
+        for kind, factor in more:
+            shapes = nothing.copy()
+            shapes[:, channel, 0] = modes.shapes[:, channel] * factor
+            yield (kind, sensor.channel, 0, 0), ModalSlopes(no_poles, shapes, nothing)
+        if sensor.position is not None:
+            for axis, row in enumerate(_along(sensor, summit.names)):
+                shapes = nothing.copy()
+                shapes[:, channel, 0] = row @ modes.accelerations
+                yield ("position", sensor.channel, axis, 0), ModalSlopes(no_poles, shapes, nothing)
+    for number, name in enumerate(likelihood.records.loads):
+        for item, piece in enumerate(loads[name].items):
+            for axis in (0, 1) if piece.position is not None else ():
+                forces = np.zeros((len(modes.poles), 7, 1, 14), dtype=np.complex128)
+                forces[number, :, 0] = _moved(loads[name], item, axis, cg_height, summit) @ modes.accelerations[number]
+                changed = respond(likelihood.loads, likelihood.sensors, place.values, modes, forces, likelihood.span)
+                yield ("load-position", name, axis, item), changed
+
+
+def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
+    """Give what a body sensor's row changes by, per metre forward and left; each of shape (7,)."""
+    assert sensor.position is not None  # noqa: S101 (asked by the caller; for the type checker)
+    x, y, z = sensor.position
+    places = [(x, y, z), (x + 1, y, z), (x, y + 1, z)]
+    rows = Rows.of([sensor.model_copy(update={"position": one}).row for one in places], names).affine[:, :, 0]
+    return rows[1] - rows[0], rows[2] - rows[0]
+
+
+def _moved(load: Load, item: int, axis: int, cg_height: float | None, summit: Summit) -> Real:
+    """Give what M changes by, per metre that an item is moved; shape (7, 7)."""
+    sides = []
+    for step in (-_NUDGE, _NUDGE):
+        place = list(load.items[item].position or ())
+        place[axis] += step
+        there = load.items[item].model_copy(update={"position": tuple(place)})
+        model = LinearModel.of(list(there.elements(cg_height)), summit.names)
+        sides.append(model.matrices(summit.values).M)
+    return (sides[1] - sides[0]) / (2 * _NUDGE)
