@@ -14,6 +14,7 @@ from sprung.errors import Fault
 from sprung.prepare.clipping import clipped_samples
 from sprung.prepare.coupling import direct_coupled
 from sprung.prepare.decay import Decay
+from sprung.prepare.gravity import put_right
 from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
 from sprung.recording import Campaign, Drop, Recording
@@ -67,6 +68,8 @@ def prepare(campaign: Campaign) -> Prepared:
     """
     campaign = replace(campaign, recordings=_alive(campaign.recordings))
     releases = [_release(recording) for recording in campaign.recordings]
+    righted, releases = put_right(campaign.recordings, releases)
+    campaign = replace(campaign, recordings=tuple(righted))
     # A sensor clips before its high-pass is undone: what it read then is no longer within its range.
     clipped = [clipped_samples(recording.values, campaign.sensors) for recording in campaign.recordings]
     recordings = [
