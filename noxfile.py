@@ -46,9 +46,10 @@ def imports(session: nox.Session) -> None:
 
 @nox.session
 def bench(session: nox.Session) -> None:
-    """Measure speed as ratios, side by side; the result is kept in benchmarks/."""
+    """Measure speed as ratios, side by side; the result is kept in benchmarks/, and fails where one is not as wanted."""
     session.install(".[dev,all]")
     session.run("pytest", "benchmarks", "--benchmark-json=benchmarks/result.json", *session.posargs)
+    session.run("python", "benchmarks/table.py")
 
 
 @nox.session
@@ -56,3 +57,11 @@ def picture(session: nox.Session) -> None:
     """Draw the README's picture."""
     session.install(".[dev,all]", "matplotlib")
     session.run("python", "docs/picture.py")
+
+
+@nox.session
+def studies(session: nox.Session) -> None:
+    """Write the pages of docs/studies anew: thousands of campaigns, an hour or so; `-- --campaigns 40` for a look."""
+    session.install(".[all]", "matplotlib")
+    for study in ("at_the_bound", "coloured", "no_guess"):
+        session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

@@ -12,13 +12,14 @@ from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.profile import profiled
 from sprung.identification.structured import StructuredFit, structured_least_squares
-from sprung.identification.summit import NEAR, Summit, ascend, expected_gain, look_around
+from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around
 from sprung.identification.suspects import Suspect, suspects
 
 __all__ = [
     "NEAR",
     "NO_INFORMATION",
     "RANK",
+    "STARTS",
     "Coordinates",
     "Correlation",
     "Estimates",

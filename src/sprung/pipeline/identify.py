@@ -11,6 +11,7 @@ import numpy as np
 from sprung.errors import Problems
 from sprung.identification import (
     NEAR,
+    STARTS,
     Fit,
     Summit,
     ascend,
@@ -24,6 +25,7 @@ from sprung.identification import (
 from sprung.pipeline.accusation import accuse
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
+from sprung.pipeline.exchange import undo_exchange
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
@@ -129,6 +131,13 @@ def fit_campaign(
     prepared = prepare(campaign)
     _need_decays(campaign, prepared)
     first = _ascend(campaign, choice, prepared.decays, None, NEAR, progress)
+    as_they_are, first = undo_exchange(
+        prepared.decays,
+        [sensor.channel for sensor in campaign.sensors],
+        first,
+        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, 1),
+    )
+    prepared = prepared._replace(decays=as_they_are)
     choice, first, why = _choose_tracks(campaign, choice, prepared.decays, first, progress)
     decays, summit = ascend_from_contact(
         prepared.decays,
@@ -171,9 +180,10 @@ def _ascend(
     start: Mapping[str, float] | None,
     enough: float,
     progress: Callable[[str], None],
+    starts: int = STARTS,
 ) -> Summit:
     models, sensors, known = choice.models, campaign.sensors, choice.known
-    return ascend(decays, models, sensors, known, start=start, enough=enough, progress=progress)
+    return ascend(decays, models, sensors, known, start=start, starts=starts, enough=enough, progress=progress)
 
 
 def _choose_tracks(

@@ -1,0 +1,238 @@
+"""Noisy campaigns by the thousand: what the studies have in common.
+
+A case is one vehicle, one test of it and one noise. Its records are simulated once without noise; every campaign is those
+records with noise of its own, the very samples that `sprung.simulate` would give, and everything that was weighed is drawn
+from its own uncertainty. Each goes through the whole of `sprung.identify`, and errors are counted in units of the
+Cramér-Rao bound of the drops that were used.
+"""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import sprung
+from sprung.estimate import NORMAL_95, Known
+from sprung.planning import Bound, PlannedDrop, PlannedTest, Subject
+from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, quantity
+
+Real = NDArray[np.float64]
+
+RATE, REST, DURATION = 500.0, 0.4, 3.2
+"""Samples per second, and seconds recorded before and after the release."""
+
+LOAD = 0.1
+"""Mass of the load, as a part of the vehicle's."""
+
+WEIGHING = 0.001
+"""Standard uncertainty of everything weighed, as a part of the vehicle's mass."""
+
+AXLES = ("front_axle_mass", "rear_axle_mass")
+
+WITH_LOAD = ", with and without load"
+
+Measure = Callable[[Real, float, np.random.Generator], Real]
+"""What sensors make of a record without noise: record (channel, time), noise level, m/s², and where noise comes from."""
+
+
+def white(record: Real, level: float, random: np.random.Generator) -> Real:
+    """Add white noise, drawn as `sprung.simulate` draws it."""
+    random.standard_normal(len(record))  # the zero-g offsets, of which there are none
+    return record + level * random.standard_normal(record.shape)
+
+
+def ballast(vehicle: Vehicle) -> Load:
+    """Put a tenth of the vehicle's mass on it: more of it ahead and left, the rest behind and right."""
+    mass, wheelbase, side = LOAD * vehicle.total_mass, vehicle.wheelbase, 0.4 * float(vehicle.t_f1 or 0)
+    items = (
+        Item(mass=0.6 * mass, position=(-0.4 * wheelbase, side, 0.5)),
+        Item(mass=0.4 * mass, position=(-0.75 * wheelbase, -side, 0.5)),
+    )
+    return Load(name="ballast", items=items)
+
+
+@lru_cache(maxsize=32)
+def _without_noise(vehicle: Vehicle, loaded: bool) -> sprung.Campaign:
+    loads = [ballast(vehicle)] if loaded else []
+    return sprung.simulate(vehicle, loads=loads, rate=RATE, noise=0.0, duration=DURATION, rest=REST)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One vehicle, one test of it and one noise.
+
+    Attributes
+    ----------
+    vehicle
+        What is dropped, five ways: on all wheels, front, rear, left and right ones.
+    loaded
+        Whether it is dropped the same ways again with a load.
+    weighed
+        What is known of it beside the wheelbase, each with an uncertainty of `WEIGHING`.
+    noise
+        m/s² root-mean-square.
+    measure
+        What sensors make of a record.
+    """
+
+    vehicle: Vehicle
+    loaded: bool
+    weighed: tuple[str, ...]
+    noise: float
+    measure: Measure = white
+
+    @property
+    def test(self) -> str:
+        """The test in words."""
+        scales = {(): "nothing weighed", ("total_mass",): "total mass weighed", AXLES: "axles weighed"}
+        return f"{f'ten drops{WITH_LOAD}' if self.loaded else 'five drops'}, {scales[self.weighed]}"
+
+    @property
+    def label(self) -> str:
+        """All of it in words."""
+        return f"{self.vehicle.name}, {self.test}, {self.noise:g} m/s², {self.measure.__name__}"
+
+    @property
+    def drops(self) -> int:
+        """How many drops there are."""
+        return len(_without_noise(self.vehicle, self.loaded).drops)
+
+    @property
+    def scaled(self) -> bool:
+        """Whether load or scales fix masses and rates absolutely; else they are judged per total mass."""
+        return self.loaded or bool(self.weighed)
+
+    def known(self, random: np.random.Generator | None = None) -> dict[str, Known]:
+        """Give what was weighed: what the scales show this time, or the truth if there is no randomness."""
+        names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))
+        std = WEIGHING * self.vehicle.total_mass
+        draws = np.zeros(len(self.weighed)) if random is None else random.standard_normal(len(self.weighed))
+        truth = [quantity(name, names, values)[0] for name in self.weighed]
+        return {name: Known(x + std * z, std) for name, x, z in zip(self.weighed, truth, draws.tolist(), strict=True)}
+
+    def seed(self, number: int) -> int:
+        """Give the seed of a campaign: another one in every case."""
+        mixed = np.random.SeedSequence([zlib.crc32(self.label.encode()), number])
+        return int(mixed.generate_state(1, np.uint64)[0])
+
+    def campaign(self, number: int) -> sprung.Campaign:
+        """Give one noisy campaign."""
+        clean, seed = _without_noise(self.vehicle, self.loaded), self.seed(number)
+        random = np.random.default_rng(seed)
+        recordings = tuple(
+            replace(one, values=self.measure(one.values, self.noise, random)) for one in clean.recordings
+        )
+        return replace(clean, recordings=recordings, known=self.known(np.random.default_rng([seed, 1])))
+
+    @cached_property
+    def truth(self) -> dict[str, float]:
+        """What is to be found: parameters, SI; where nothing fixes the scale, per total mass where they scale."""
+        total = 1.0 if self.scaled else self.vehicle.total_mass
+        return {n: x / total if PARAMETERS[n].scales else x for n, x in self.vehicle.parameters.items()}
+
+    def bound(self, used: Sequence[int]) -> Real:
+        """Give the Cramér-Rao bound of everything in `truth`, relative, from the drops used; shape (quantity,).
+
+        Decays start where the last tyre last touches; what was weighed counts as one more measurement.
+        """
+        return _bound(self, tuple(used))
+
+    def identify(self, number: int) -> Trial:
+        """Identify the vehicle from one noisy campaign."""
+        return self.judge(sprung.identify(self.campaign(number)))
+
+    def judge(self, result: sprung.Result) -> Trial:
+        """Hold a result against the truth."""
+        stated = _statements(result, self.scaled)
+        used = tuple(i for i, drop in enumerate(result.drops) if drop.start is not None)
+        held = np.array([_held(stated.get(name), truth) for name, truth in self.truth.items()]).T
+        error, spread = held[:2] / self.bound(used)
+        right = result.fit.tracks == self.vehicle.tracks
+        return Trial(error, spread, held[2], result.verdict.state, result.fit.inflation, right, len(used))
+
+
+Statement = tuple[float, float, float, float]
+"""Value, standard uncertainty, and the limits of the 95 % interval."""
+
+
+def _statements(result: sprung.Result, scaled: bool) -> dict[str, Statement]:
+    """Give everything that a result states a value of; without scale, per total mass what scales."""
+    found: dict[str, Statement] = {}
+    for name, one in result.parameters.items():
+        if one.value is not None and one.std is not None and one.interval95 is not None:
+            low, high = one.interval95
+            found[name] = (one.value, one.std, -np.inf if low is None else low, np.inf if high is None else high)
+    if not scaled:
+        for name, ratio in result.scale.per_total_mass.items():
+            half = NORMAL_95 * ratio.std
+            found[name] = (ratio.value, ratio.std, ratio.value - half, ratio.value + half)
+    return found
+
+
+def _held(stated: Statement | None, truth: float) -> tuple[float, float, float]:
+    """Give relative error, relative standard uncertainty, and whether the interval holds the truth; NaN for nothing."""
+    if stated is None:
+        return np.nan, np.nan, np.nan
+    value, std, low, high = stated
+    return value / truth - 1, std / truth, float(low <= truth <= high)
+
+
+class Trial(NamedTuple):
+    """What came of one campaign.
+
+    Attributes
+    ----------
+    error, stated
+        Error and stated standard uncertainty in units of the bound; NaN where nothing was stated. Shape (quantity,).
+    covered
+        Whether the 95 % interval holds the truth, NaN where there is none; shape (quantity,).
+    verdict, inflation
+        Of the result.
+    right_model
+        Whether the half-distances were rightly taken to be shared or separate.
+    drops
+        How many were used.
+    """
+
+    error: Real
+    stated: Real
+    covered: Real
+    verdict: str
+    inflation: float
+    right_model: bool
+    drops: int
+
+
+def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, Known]) -> Subject:
+    sensors = _without_noise(vehicle, False).sensors
+    everything = {"wheelbase": Known(vehicle.wheelbase), **known}
+    return Subject(vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION)
+
+
+@lru_cache(maxsize=256)
+def _information(vehicle: Vehicle, loaded: bool, noise: float, used: tuple[int, ...]) -> Real:
+    """Give what some drops tell, whatever is weighed beside them; shape (direction, direction)."""
+    clean = _without_noise(vehicle, loaded)
+    drops = (clean.drops[i] for i in used)
+    planned = tuple(PlannedDrop(clean.load(one.load), one.wheels, float(one.height or 0)) for one in drops)
+    return PlannedTest(_subject(vehicle, noise, {}), planned).data
+
+
+@lru_cache(maxsize=1024)
+def _bound(case: Case, used: tuple[int, ...]) -> Real:
+    subject = _subject(case.vehicle, case.noise, case.known())
+    told = _information(case.vehicle, case.loaded, case.noise, used)
+    covariance = Bound(subject, told + PlannedTest(subject, ()).prior).covariance
+    gradients = np.eye(len(subject.names))
+    if not case.scaled:
+        total, gradient = quantity("total_mass", subject.names, subject.values)
+        scales = np.array([PARAMETERS[name].scales for name in subject.names])
+        gradients[scales] -= gradient * subject.slopes / total
+    spread: Real = np.sqrt(np.einsum("ij,jk,ik->i", gradients, covariance, gradients))
+    return spread
