@@ -124,7 +124,7 @@ REFUSED: dict[str, tuple[str | bytes, str]] = {
     "empty": ("", "x.csv: found an empty file"),
     "blank": ("\n \n", "x.csv: found an empty file"),
     "header only": ("time,a,b\n", "x.csv: found a header and no samples"),
-    "one column": ("time|a\n1|2\n", "line 1: found a single column, 'time|a'"),
+    "one column": ("time/a\n1/2\n", "line 1: found a single column, 'time/a'"),
     "no header": ("0,1,2\n1,2,3\n", "line 1: found numbers in the first line; expected the names of the columns"),
     "too many cells": ("time,a\n0,1\n1,2,3\n", "x.csv: line 3: found 3 cells; expected 2, as many as the header"),
     "decimal comma": ("time,a\n0,5,1,5\n", "found 4 cells; expected 2"),

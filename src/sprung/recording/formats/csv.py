@@ -1,57 +1,34 @@
-"""Text tables: one header line with the names of the columns, then one line per sample."""
+"""Text tables of every dialect: whatever stands above, then names, perhaps units, then one line per sample."""
 
 from __future__ import annotations
 
-import csv
-import io
-import re
-from dataclasses import dataclass
+import codecs
+from array import array
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sprung.errors import InputError, Problem, Problems, did_you_mean
+from sprung.errors import InputError, Problem
+from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS, Columns, Rate, clock_of, rate_of, seconds_of_day
+from sprung.recording.formats.dialect import COLUMNS, EMPTY, NUMBER, Layout, cells_of, layout_of, lines_of, text_of
 from sprung.recording.formats.table import Table, split_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import pandas as pd
+__all__ = ["TIME_NAMES", "TIME_UNITS", "CsvFormat"]
 
-TIME_NAMES = frozenset(("t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "tid", "timestamp", "seconds"))
-TIME_UNITS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6, "ns": 1e-9}
-_DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma"}
-_WITH_UNIT = re.compile(r"(.*?)\s*[\[(](.*)[\])]")
-
-
-@dataclass(frozen=True, slots=True)
-class Dialect:
-    """How one file is written.
-
-    Attributes
-    ----------
-    delimiter
-        What separates columns.
-    decimal
-        The decimal mark.
-    header
-        Index of the line that holds the names.
-    names
-        The names, units and all.
-    """
-
-    delimiter: str
-    decimal: str
-    header: int
-    names: tuple[str, ...]
+_BLANK = " \t,;|"
 
 
 class CsvFormat:
-    """Text tables separated by comma, semicolon or tab, with decimal point or comma, in UTF-8 or Latin-1."""
+    """Text tables: comma, semicolon, tab, pipe or spaces; decimal point or comma; UTF-8, UTF-16 or Windows letters."""
 
     def claims(self, path: Path, head: bytes) -> bool:
-        """Claim text by its ending; binary files hold null bytes, text does not."""
-        return path.suffix.lower() in {".csv", ".tsv", ".txt"} and b"\0" not in head
+        """Claim text by its ending; binary files hold null bytes, text does not, UTF-16 with its mark apart."""
+        marked = head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        return path.suffix.lower() in {".csv", ".tsv", ".txt", ".dat", ".asc"} and (marked or b"\0" not in head)
 
     def read(self, path: Path) -> Table:
         """Read one file.
@@ -61,179 +38,210 @@ class CsvFormat:
         InputError
             If it holds no samples, no time column, or columns that the header does not name.
         """
-        lines = _text(path.read_bytes()).split("\n")
-        while lines and not lines[-1].strip(" \t,;"):
-            lines.pop()
+        file = path.name
         try:
-            return _table(lines, _dialect(lines, path.name), path.name)
-        except csv.Error as error:
-            do = "Open it in a text editor: it should show one line per sample."
-            raise _refuse(path.name, f"lines that are no table ({error})", "one line per sample", do) from error
+            text = text_of(path.read_bytes())
+        except UnicodeDecodeError as error:
+            do = "Export the recording again, as UTF-8."
+            raise _refuse(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
+        end = _end(text)
+        if not text[:end].strip():
+            expected = "a line with the names of the columns, then the samples"
+            raise _refuse(file, "an empty file", expected, "Export it again.")
+        layout = layout_of(text, end)
+        rate = _rate(text, layout, file)
+        _check(layout, rate, end, file)
+        return _table(text, end, layout, rate, file)
 
 
-def _text(content: bytes) -> str:
+@dataclass(slots=True)
+class _Cells:
+    """The cells of the samples: numbers row by row, and by column what is no number."""
+
+    numbers: array[float] = field(default_factory=lambda: array("d"))
+    lines: array[int] = field(default_factory=lambda: array("q"))
+    text: dict[int, tuple[int, str, int]] = field(default_factory=dict)
+    clocks: dict[int, tuple[array[int], array[float]]] = field(default_factory=dict)
+    clock_cells: dict[int, tuple[int, str]] = field(default_factory=dict)
+
+
+def _end(text: str) -> int:
+    """Find where the last line ends that holds anything."""
+    end = len(text)
+    while end:
+        start = text.rfind("\n", 0, end) + 1
+        if text[start:end].strip(_BLANK):
+            break
+        end = max(start - 1, 0)
+    return end
+
+
+def _rate(text: str, layout: Layout, file: str) -> Rate | None:
+    lines = text[: layout.start].split("\n") if layout.line < 10_000 else text[: layout.start].split("\n")[:10_000]
     try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("latin-1")  # every byte is a character of it, and loggers of that age write it
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+        return rate_of(lines, layout.decimal)
+    except ValueError as error:
+        where, _, found = str(error).partition("|")
+        expected = "a number that can be read in one way"
+        raise _refuse(f"{file}: {where}", found, expected, "Write it without a thousands separator.") from None
 
 
-def _cells(line: str, delimiter: str) -> list[str]:
-    return [cell.strip() for cell in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])]
-
-
-def _dialect(lines: list[str], file: str) -> Dialect:
-    filled = [index for index, line in enumerate(lines) if line.strip()]
-    if not filled:
-        raise _refuse(
-            file, "an empty file", "a line with the names of the columns, then the samples", "Export it again."
-        )
-    header, first = filled[0], lines[filled[1]] if len(filled) > 1 else ""
-    widths = {d: (len(_cells(lines[header], d)), len(_cells(first, d))) for d in _DELIMITERS}
-    # The names tell the delimiter; where a name holds another one, the first sample decides.
-    delimiter = max(widths, key=lambda d: (widths[d][0] > 1, widths[d][0] == widths[d][1], widths[d][0]))
-    names = _cells(lines[header], delimiter)
-    if any(not character.isprintable() for name in names for character in name):
-        found, do = "characters that nobody can read", "Export the recording as text; this file may be of another kind."
-        raise _refuse(f"{file}: line {header + 1}", found, "the names of the columns", do)
-    if len(names) < 2:
-        expected = "the time and at least one channel, separated by comma, semicolon or tab"
-        raise _refuse(
-            f"{file}: line {header + 1}", f"a single column, '{names[0]}'", expected, "Export it with separators."
-        )
-    if all(_is_number(name) for name in names):
+def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
+    """Refuse what is no table with names."""
+    where = f"{file}: line {layout.header or layout.line}"
+    if not layout.header:
         found, do = "numbers in the first line", "Add a line with the names of the columns above them."
-        raise _refuse(f"{file}: line {header + 1}", found, "the names of the columns", do)
-    if len(filled) == 1:
+        if layout.line > 1:
+            found = "numbers without names above them"
+        raise _refuse(where, found, "the names of the columns", do)
+    if any(not character.isprintable() for name in layout.names for character in name):
+        found, do = "characters that nobody can read", "Export the recording as text; this file may be of another kind."
+        raise _refuse(where, found, "the names of the columns", do)
+    if len(layout.names) < 2 and rate is None:
+        expected = "the time and at least one channel, separated by comma, semicolon, tab, pipe or spaces"
+        do = "Export it with separators, or add a line such as 'Sample rate: 500 Hz' above the names."
+        raise _refuse(where, f"a single column, '{_short(layout.names[0])}'", expected, do)
+    if layout.start >= end:
         raise _refuse(file, "a header and no samples", "one line per sample below the names", "Export it again.")
-    return Dialect(delimiter, _decimal(lines[header + 1 :], delimiter), header, tuple(names))
 
 
-def _decimal(lines: list[str], delimiter: str) -> str:
-    quote = '"' if delimiter == "," else '"?'
-    number = rf"(?:^|{delimiter})\s*{quote}[+-]?\d*,\d+(?:[eE][+-]?\d+)?{quote}\s*(?:{delimiter}|$)"
-    return "," if re.search(number, "\n".join(lines), re.MULTILINE) else "."
-
-
-def _is_number(text: str) -> bool:
-    return re.fullmatch(r"[+-]?[\d.,]*\d[\d.,]*(?:[eE][+-]?\d+)?", text) is not None
-
-
-def _table(lines: list[str], dialect: Dialect, file: str) -> Table:
-    import pandas as pd  # noqa: PLC0415 (heavy, and needed only once a text table is met)
-
-    body = lines[dialect.header + 1 :]
-    notes: tuple[str, ...] = ()
-    if _cut_short(body, dialect):
-        notes = (f"line {len(lines)}, the last, is cut short and was left out",)
-        body = body[:-1]
-    width = 1 + max(line.count(dialect.delimiter) for line in [lines[dialect.header], *body])
-    try:
-        frame = pd.read_csv(
-            io.StringIO("\n".join(body)),
-            sep=dialect.delimiter,
-            decimal=dialect.decimal,
-            header=None,
-            names=list(range(width)),
-            index_col=False,
-            skip_blank_lines=False,
-            skipinitialspace=True,
-            low_memory=False,
-        )
-    except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
-        do = "Look for a quotation mark that is not closed."
-        raise _refuse(file, f"lines that are no table ({error})", "one line per sample", do) from error
-    frame.index = pd.RangeIndex(dialect.header + 2, dialect.header + 2 + len(frame))  # the lines of the file
-    frame = frame.dropna(how="all")
-    _refuse_unnamed(frame, dialect, file)
-
-    spoilt: dict[int, Problem] = {}
-    columns = np.empty((len(dialect.names), len(frame)))
-    for index, name in enumerate(dialect.names):
-        columns[index], problem = _numbers(frame[index], dialect, f"{file}: column '{name}'")
-        if problem is not None:
-            spoilt[index] = problem
-    time, factor = _time_column(dialect.names, columns, file)
-    if time in spoilt:
-        raise InputError([spoilt[time]])
-    if np.isnan(columns[time]).any():
-        line = frame.index[int(np.isnan(columns[time]).argmax())]
-        found = f"no time beside the samples of line {line}"
-        raise _refuse(
-            f"{file}: line {line}, column '{dialect.names[time]}'", found, "the time in every line", "Fill it in."
-        )
-    channels = [index for index in range(len(dialect.names)) if index != time]
-    named = {index: split_unit(dialect.names[index]) for index in channels}
+def _table(text: str, end: int, layout: Layout, rate: Rate | None, file: str) -> Table:
+    notes = [f"line {line}, between names and samples, was passed over" for line in layout.passed]
+    cut = _cut_short(text, layout, end)
+    if cut is not None:
+        notes.append(f"line {text.count(chr(10), 0, end) + 1}, the last, is cut short and was left out")
+        end = cut
+    cells = _read(text, end, layout, file)
+    count, width = len(cells.lines), len(layout.names)
+    values = np.frombuffer(cells.numbers, dtype=float).reshape(count, width).T
+    lines = np.frombuffer(cells.lines, dtype=np.int64)
+    used = [index for index, name in enumerate(layout.names) if name or not _is_empty(index, values, cells)]
+    clocks: dict[int, np.ndarray] = {}
+    for index, (rows, seconds) in cells.clocks.items():
+        clocks[used.index(index)] = np.full(count, np.nan)
+        clocks[used.index(index)][np.frombuffer(rows, dtype=np.int64)] = np.frombuffer(seconds, dtype=float)
+    columns = Columns(
+        names=tuple(layout.names[index] for index in used),
+        units=tuple(layout.units[index] if index < len(layout.units) else "" for index in used),
+        values=values[used] if len(used) < width else values,
+        clocks=clocks,
+        wrong={used.index(index): _problem(index, cells.text[index], layout, file) for index in cells.text},
+        lines=lines,
+    )
+    clock = clock_of(columns, rate, file)
+    channels = [index for index in range(len(used)) if index != clock.column]
+    named = [split_unit(columns.names[index]) for index in channels]
+    # As channels, columns of clock times are spoilt too.
+    days = {
+        used.index(index): _problem(index, (*cells.clock_cells[index], len(rows)), layout, file)
+        for index, (rows, _) in cells.clocks.items()
+    }
+    spoilt = {**days, **columns.wrong}
     return Table(
-        channels=tuple(named[index][0] for index in channels),
-        units=tuple(named[index][1] for index in channels),
-        values=columns[channels],
-        clock=factor * columns[time],
-        lines=frame.index.to_numpy(dtype=np.int64),
-        spoilt={named[index][0]: problem for index, problem in spoilt.items()},
-        notes=notes,
+        channels=tuple(name for name, _ in named),
+        units=tuple(
+            unit if unit is not None else columns.units[index] or None
+            for (_, unit), index in zip(named, channels, strict=True)
+        ),
+        values=columns.values[channels],
+        clock=clock.time,
+        lines=lines,
+        spoilt={name: spoilt[index] for (name, _), index in zip(named, channels, strict=True) if index in spoilt},
+        notes=(*notes, *clock.notes),
     )
 
 
-def _cut_short(body: list[str], dialect: Dialect) -> bool:
-    """Say whether recording stopped within the last line, as it does when a logger loses its power."""
-    if len(body) < 3:
-        return False
-    last, before = (len(_cells(line, dialect.delimiter)) for line in (body[-1], body[-2]))
-    return last < len(dialect.names) <= before
+def _is_empty(index: int, values: np.ndarray, cells: _Cells) -> bool:
+    return index not in cells.text and index not in cells.clocks and bool(np.isnan(values[index]).all())
 
 
-def _refuse_unnamed(frame: pd.DataFrame, dialect: Dialect, file: str) -> None:
-    filled = frame.notna().to_numpy()
-    unnamed = filled[:, len(dialect.names) :].any(axis=1)
-    if unnamed.any():
-        row = int(unnamed.argmax())
-        do = "Name every column in the first line."
-        if dialect.delimiter == ",":
+def _cut_short(text: str, layout: Layout, end: int) -> int | None:
+    """Say where the line before the last ends, if recording stopped within the last, as when a logger loses power."""
+    last = text.rfind("\n", layout.start, end)
+    before = text.rfind("\n", layout.start, last) if last > 0 else -1
+    if last < 0 or before < 0:
+        return None
+    cells, full = (len(cells_of(line, layout.delimiter)) for line in (text[last + 1 : end], text[before + 1 : last]))
+    return last if cells < len(layout.names) <= full else None
+
+
+def _read(text: str, end: int, layout: Layout, file: str) -> _Cells:
+    """Read the samples: a line of nothing but numbers at once, any other cell by cell."""
+    cells, width, missing = _Cells(), len(layout.names), 0
+    numbers, lines = cells.numbers, cells.lines
+    separator = None if layout.delimiter == " " else layout.delimiter
+    other, comma = (".", True) if layout.decimal == "," else ("_", False)
+    for number, line in enumerate(lines_of(text, layout.start, end), layout.line):
+        # float takes 1_000 and the digits of other alphabets as well; no logger means these.
+        if line.isascii() and other not in line and "_" not in line:
+            split = (line.replace(",", ".") if comma else line).split(separator)
+            if len(split) == width:
+                try:
+                    numbers.extend(map(float, split))
+                except ValueError:
+                    del numbers[len(lines) * width :]
+                else:
+                    lines.append(number)
+                    continue
+        if line.count('"') % 2:
+            do = "Look for a quotation mark that is not closed."
+            raise _refuse(f"{file}: line {number}", "a line that is no table", "one line per sample", do)
+        row = cells_of(line, layout.delimiter) if line.count(layout.delimiter) <= COLUMNS else line.split(separator)
+        if not any(row):
+            continue
+        _refuse_unnamed(row, layout, f"{file}: line {number}")
+        missing += max(width - len(row), 0)
+        if missing > len(text):
+            found = f"{len(row)} cells, and few in many lines before"
+            expected = f"{width}, as many as the header has names"
+            raise _refuse(f"{file}: line {number}", found, expected, "Export it again.")
+        numbers.extend(_number(cell, index, number, layout.decimal, cells) for index, cell in enumerate(row[:width]))
+        numbers.extend([np.nan] * (width - len(row)))
+        lines.append(number)
+    return cells
+
+
+def _refuse_unnamed(row: list[str], layout: Layout, where: str) -> None:
+    filled = max(index for index, cell in enumerate(row, 1) if cell)
+    if filled > len(layout.names):
+        do = f"Name every column in {'the first line' if layout.header == 1 else f'line {layout.header}'}."
+        if layout.delimiter == ",":
             do += " If the commas are decimal marks, export with semicolons or tabs between the columns."
-        found = f"{np.flatnonzero(filled[row])[-1] + 1} cells"
-        expected = f"{len(dialect.names)}, as many as the header has names"
-        raise _refuse(f"{file}: line {frame.index[row]}", found, expected, do)
+        expected = f"{len(layout.names)}, as many as the header has names"
+        raise _refuse(where, f"{filled} cells", expected, do)
 
 
-def _numbers(column: pd.Series, dialect: Dialect, where: str) -> tuple[np.ndarray, Problem | None]:
-    """Give a column's numbers, NaN for empty cells and text, and a problem if there is text."""
-    import pandas as pd  # noqa: PLC0415 (see above)
+def _number(cell: str, column: int, line: int, decimal: str, cells: _Cells) -> float:
+    """Give the number in a cell, NaN where there is none; keep the first text of every column, and all clock times."""
+    if cell.lower() in EMPTY:
+        return float(cell) if cell.lower().endswith("inf") else np.nan
+    if NUMBER.fullmatch(cell) and cell.isascii() and ("." if decimal == "," else ",") not in cell:
+        return float(cell.replace(",", "."))
+    seconds = seconds_of_day(cell) if ":" in cell else None
+    if seconds is not None:
+        rows, times = cells.clocks.setdefault(column, (array("q"), array("d")))
+        rows.append(len(cells.lines))
+        times.append(seconds)
+        cells.clock_cells.setdefault(column, (line, cell))
+    else:
+        first, text, count = cells.text.get(column, (line, cell, 0))
+        cells.text[column] = (first, text, count + 1)
+    return np.nan
 
-    if column.dtype.kind in "fiu":
-        return column.to_numpy(dtype=float), None
-    text = column.astype(str).str.strip()
-    numbers = pd.to_numeric(text.str.replace(dialect.decimal, ".", regex=False), errors="coerce")
-    wrong = (numbers.isna() & column.notna() & (text != "")).to_numpy(dtype=bool)
-    if not wrong.any():
-        return numbers.to_numpy(dtype=float), None
-    row = int(wrong.argmax())
-    more = f" (the first of {wrong.sum()} such cells)" if wrong.sum() > 1 else ""
-    file, name = where.split(": ", 1)
+
+def _problem(column: int, text: tuple[int, str, int], layout: Layout, file: str) -> Problem:
+    line, cell, count = text
+    more = f" (the first of {count} such cells)" if count > 1 else ""
     do = "Correct or empty that cell, or export the recording again."
-    problem = Problem(f"{file}: line {column.index[row]}, {name}", f"'{text.iloc[row]}'{more}", "a number", do)
-    return numbers.to_numpy(dtype=float), problem
+    if NUMBER.fullmatch(cell.replace(",", "").replace(".", "")):
+        do = f"Export it without thousands separators, with '{layout.decimal}' as the only decimal mark."
+    where = f"{file}: line {line}, column '{layout.names[column]}'"
+    return Problem(where, f"'{_short(cell)}'{more}", "a number", do)
 
 
-def _time_column(names: tuple[str, ...], columns: np.ndarray, file: str) -> tuple[int, float]:
-    """Find the time column and the factor that makes it seconds."""
-    matches = [_WITH_UNIT.fullmatch(name) for name in names]
-    units = [match[2].strip().lower() if match else "s" for match in matches]
-    for index, (name, match, unit) in enumerate(zip(names, matches, units, strict=True)):
-        if (match[1] if match else name).lower() in TIME_NAMES:
-            if unit not in TIME_UNITS:
-                do = did_you_mean(unit, TIME_UNITS)
-                raise _refuse(f"{file}: column '{name}'", f"'{unit}'", "a unit of time", do)
-            return index, TIME_UNITS[unit]
-    if bool((np.diff(columns[0]) > 0).all()) and units[0] in TIME_UNITS:
-        return 0, TIME_UNITS[units[0]]
-    found = f"no column named time among {', '.join(repr(name) for name in names)}"
-    expected = "a column named time, in s, or a first column that increases from line to line"
-    raise _refuse(file, found, expected, "Name the time column 'time'.")
+def _short(text: str) -> str:
+    return text if len(text) <= 80 else f"{text[:77]}..."
 
 
 def _refuse(where: str, found: str, expected: str, do: str) -> InputError:
-    problems = Problems()
-    problems.add(where, found, expected, do)
-    return InputError(problems)
+    return InputError([Problem(where, found, expected, do)])

@@ -17,7 +17,21 @@ GROUP = "sprung.formats"
 HEAD = 8192
 
 # Known even where no package metadata is installed, as when running from the sources.
-_OWN = (EntryPoint("csv", "sprung.recording.formats.csv:CsvFormat", GROUP),)
+_OWN = tuple(
+    EntryPoint(name, f"sprung.recording.formats.{name}:{format_}", GROUP)
+    for name, format_ in (
+        ("csv", "CsvFormat"),
+        ("hdf5", "Hdf5Format"),
+        ("iso_mme", "IsoMmeFormat"),
+        ("mat", "MatFormat"),
+        ("mdf", "MdfFormat"),
+        ("parquet", "ParquetFormat"),
+        ("rpc", "RpcFormat"),
+        ("tdms", "TdmsFormat"),
+        ("uff", "UffFormat"),
+        ("wav", "WavFormat"),
+    )
+)
 
 
 class Format(Protocol):

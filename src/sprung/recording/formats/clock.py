@@ -1,0 +1,281 @@
+"""The clock of a text table: a column of times, of clock times, or a rate written above the samples."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sprung.errors import InputError, Problem, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+TIME_NAMES = frozenset(
+    (
+        *("t", "time", "zeit", "temps", "tiempo", "tempo", "tijd", "tid", "timestamp", "seconds"),
+        *("uhrzeit", "zeitstempel", "messzeit", "datetime", "heure", "hora", "ora", "sekunden"),
+    )
+)
+TIME_UNITS = {
+    **dict.fromkeys(("s", "sec", "sec.", "seconds", "second", "sekunden", "sek"), 1.0),
+    **dict.fromkeys(("ms", "msec", "milliseconds", "millisekunden"), 1e-3),
+    **dict.fromkeys(("us", "µs", "μs", "usec", "microseconds", "mikrosekunden"), 1e-6),
+    **dict.fromkeys(("ns", "nsec", "nanoseconds"), 1e-9),
+}
+CLOCK = re.compile(
+    r"(?:\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T_ ,]{1,2})?(?:(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,:_]\d{1,12})?)"
+    r"|(?P<minute>\d{1,3}):(?P<second>\d{2}[.,]\d{1,12}))(?: ?(?P<noon>[AaPp])\.?[Mm]\.?)?"
+    r"(?: ?(?:Z|UTC|[+-]\d{2}:?\d{2}))?"
+)
+"""A time of day, with or without its date and time zone: 14:03:22.125, 2025-04-11T14:03:22,125Z, 03:22.125."""
+
+WRAP = 2.0**32
+"""Where counters of 32 bits begin again."""
+
+_DAY = 86400.0
+_OWN_UNIT = {"sampletimefine": 1e-6}  # names that say their unit without naming it: Movella's sensors count µs
+_WITH_UNIT = re.compile(r"(.{0,200}?)\s{0,20}[\[(](.{0,200})[\])]", re.DOTALL)
+_LOOSE_UNIT = re.compile(r"(?i)(.{1,200}?)(?:[_/,]|\s{1,20}|\s?in\s)\s?(s|sec|ms|msec|us|µs|μs|usec|ns)")
+_SAMPLING = r"(?:sampl\w{0,4}|abtast|mess|scan|d?['’ ]?[eé]chantillon\w{0,4}|muestr\w{0,3}|campionamento|amostragem)"
+_FREQUENCY = r"(?:rate|fr[eéè][qc]\w{0,8}|tasa)"
+_INTERVAL = r"(?:interval\w{0,3}|p[eé]r[ií]od\w{0,2}|time|zeit|step|schritt)"
+_OF = r"[ _-]{0,2}(?:d[eia]{0,2}\s)?"
+_RATE_WORDS = re.compile(
+    rf"(?i)\bf_?s\b|@|{_SAMPLING}{_OF}{_FREQUENCY}|{_FREQUENCY}{_OF}{_SAMPLING}"
+    rf"|(?P<step>\b(?:dt|Δt|delta[ _]?t)\b|{_SAMPLING}{_OF}{_INTERVAL}|{_INTERVAL}{_OF}{_SAMPLING}"
+    r"|time[ _-]?step|zeitschritt|schrittweite)"
+)
+_RATE_VALUE = re.compile(
+    r"(?i)(?P<between>[^\d\n+-]{0,40}?)(?P<value>\d*[.,]?\d+(?:e[+-]?\d{1,3})?)(?![\d.,:])"
+    r"[\s,;\"|]{0,4}(?P<unit>(?:[kM]?Hz|S/s|1/s|sps|m?sec|[mnuµμ]?s)\b)?"
+)
+_RATE_UNITS = {"hz": 1.0, "khz": 1e3, "mhz": 1e6, "s/s": 1.0, "1/s": 1.0, "sps": 1.0}
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """A rate or a sampling interval written above the samples.
+
+    Attributes
+    ----------
+    hertz
+        Samples per second.
+    line
+        Where it stands.
+    written
+        As the file has it.
+    """
+
+    hertz: float
+    line: int
+    written: str
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """The cells of a table as numbers.
+
+    Attributes
+    ----------
+    names, units
+        Of the columns; what the header and a row of units say.
+    values
+        Shape (column, time); NaN where the file holds no number.
+    clocks
+        By column that holds clock times: seconds since midnight, NaN where there is none, shape (time,).
+    wrong
+        By column, what stands there that is neither a number nor a clock time.
+    lines
+        Line of the file in which each sample stands, shape (time,).
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    values: NDArray[np.float64]
+    clocks: Mapping[int, NDArray[np.float64]]
+    wrong: Mapping[int, Problem]
+    lines: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """Which column is the time, and the time of every sample in s, or the samples per second where no column is."""
+
+    column: int | None
+    time: NDArray[np.float64] | float
+    notes: tuple[str, ...] = ()
+
+
+def is_time_name(name: str) -> bool:
+    """Say whether a column's name is one of a time, its unit apart."""
+    return _base(name)[0].lower() in TIME_NAMES
+
+
+def seconds_of_day(cell: str) -> float | None:
+    """Give a clock time in seconds since midnight, or None if it is none; dates do not matter to what lasts seconds."""
+    match = CLOCK.fullmatch(cell)
+    if match is None:
+        return None
+    hour, minute, second = match["h"] or "0", match["m"] or match["minute"], match["s"] or match["second"]
+    hours = int(hour) % 12 + 12 * (match["noon"] in ("p", "P")) if match["noon"] else int(hour)
+    return 3600.0 * hours + 60.0 * int(minute) + float(re.sub("[,:_]", ".", second))
+
+
+def rate_of(lines: Sequence[str], decimal: str) -> Rate | None:
+    """Find a rate or a sampling interval in the lines above the samples.
+
+    Parameters
+    ----------
+    lines
+        Those lines.
+    decimal
+        The decimal mark of the samples: the other one may be a thousands separator.
+
+    Raises
+    ------
+    ValueError
+        If it may be read in two ways; says what was found.
+    """
+    for index, line in enumerate(lines):
+        words = _RATE_WORDS.search(line)
+        value = _RATE_VALUE.match(line, words.end()) if words else None
+        if words is None or value is None:
+            continue
+        unit = (value["unit"] or "").lower()
+        if not unit:
+            bracketed = re.search(r"[\[(]\s?([^\])]{1,12}?)\s?[\])]", value["between"])
+            unit = bracketed[1].lower() if bracketed else ""
+        written = f"{value['value']} {value['unit'] or unit}".strip()
+        if re.fullmatch(rf"[1-9]\d{{0,2}}[{'.' if decimal == ',' else ','}]\d{{3}}", value["value"]):
+            message = f"line {index + 1}|the rate '{written}'"
+            raise ValueError(message)
+        number = float(value["value"].replace(",", "."))
+        number *= TIME_UNITS.get(unit, 1.0) if unit in TIME_UNITS else _RATE_UNITS.get(unit, 1.0)
+        is_step = unit in TIME_UNITS or (words["step"] is not None and unit not in _RATE_UNITS)
+        hertz = (1 / number if number else 0.0) if is_step else number
+        if 0 < hertz < 1e9:
+            return Rate(hertz, index + 1, written)
+    return None
+
+
+def clock_of(columns: Columns, rate: Rate | None, file: str) -> Clock:
+    """Find the time of every sample.
+
+    Parameters
+    ----------
+    columns
+        The table.
+    rate
+        What stands above it.
+    file
+        Its name, for messages.
+
+    Returns
+    -------
+    Clock
+        From the column named as a time, in whatever unit it or the rate says; or one whose name holds such a word; or
+        one of clock times; or the first one, if it increases; or the rate.
+
+    Raises
+    ------
+    InputError
+        If none of these is there, or the time has gaps or text in it.
+    """
+    names = columns.names
+    column = next((index for index, name in enumerate(names) if is_time_name(name)), None)
+    if column is None:
+        column = next((index for index in range(len(names)) if _is_time_in_other_words(columns, index)), None)
+    if column is None:
+        column = next(iter(columns.clocks), None)
+    if column is None and _first_is_time(columns, rate):
+        column = 0
+    if column is not None:
+        return _from_column(columns, column, rate, file)
+    if rate is not None:
+        return Clock(None, rate.hertz, (f"time from a rate of {rate.hertz:.9g} Hz in line {rate.line}",))
+    listed = ", ".join(repr(name[:40]) for name in names[:20]) + (", ..." if len(names) > 20 else "")
+    found = f"no column named time among {listed}"
+    expected = "a column named time, in s, or a first column that increases from line to line"
+    do = "Name the time column 'time', or add a line such as 'Sample rate: 500 Hz' above the names."
+    raise InputError([Problem(file, found, expected, do)])
+
+
+def _base(name: str) -> tuple[str, str | None]:
+    """Split a time's name and unit: ``time [ms]``, ``Zeit/s``, ``t_us``."""
+    match = _WITH_UNIT.fullmatch(name) or _LOOSE_UNIT.fullmatch(name)
+    return (match[1].strip(), match[2].strip().lower()) if match else (name.strip(), None)
+
+
+def _is_time_in_other_words(columns: Columns, index: int) -> bool:
+    """Say whether a name holds the word time among others, as SampleTimeFine, and its numbers mostly increase."""
+    base, unit = _base(columns.names[index][:200])
+    words = re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])", " ", base).lower())
+    if not TIME_NAMES - {"t"} & set(words) or index in columns.wrong or (unit is not None and unit not in TIME_UNITS):
+        return False
+    with np.errstate(all="ignore"):
+        time, _ = _unwrapped(columns.clocks.get(index, columns.values[index]), columns.lines)
+    return bool(np.mean(np.diff(time) > 0) > 0.9) if len(time) > 1 else True
+
+
+def _first_is_time(columns: Columns, rate: Rate | None) -> bool:
+    time, unit = columns.values[0], _base(columns.names[0])[1] or columns.units[0].lower() or "s"
+    with np.errstate(all="ignore"):
+        increases = 0 not in columns.wrong and bool((np.diff(time) > 0).all()) and unit in TIME_UNITS
+    return increases and (rate is None or _unit_from(rate, time) is not None)
+
+
+def _unit_from(rate: Rate, time: NDArray[np.float64]) -> float | None:
+    """Give the unit, s, in which the usual step of a time is that of the rate; None where there is no such unit."""
+    with np.errstate(all="ignore"):
+        step = float(np.median(np.diff(time))) * rate.hertz if len(time) > 1 else np.nan
+    return next((unit for unit in (1.0, 1e-3, 1e-6, 1e-9) if abs(step * unit - 1) < 0.05), None)
+
+
+def _from_column(columns: Columns, column: int, rate: Rate | None, file: str) -> Clock:
+    name = columns.names[column]
+    if column in columns.wrong:
+        raise InputError([columns.wrong[column]])
+    time = columns.clocks.get(column, columns.values[column])
+    gaps = np.isnan(time)
+    if gaps.any():
+        line = columns.lines[int(gaps.argmax())]
+        where, found = f"{file}: line {line}, column '{name}'", f"no time beside the samples of line {line}"
+        raise InputError([Problem(where, found, "the time in every line", "Fill it in.")])
+    with np.errstate(all="ignore"):
+        if column in columns.clocks:
+            days = np.cumsum(np.diff(time, prepend=time[:1]) < -_DAY / 2)
+            return Clock(column, time - time[:1] + _DAY * days, (f"time from the clock times in column '{name}'",))
+        unit = _base(name)[1]
+        unit = columns.units[column].lower() or None if unit is None else unit
+        if unit is not None and unit not in TIME_UNITS:
+            raise InputError([Problem(f"{file}: column '{name}'", f"'{unit}'", "a unit of time", _unit_meant(unit))])
+        time, notes = _unwrapped(time, columns.lines)
+        if unit is not None:
+            return Clock(column, TIME_UNITS[unit] * time, notes)
+        if name.lower() in _OWN_UNIT:
+            return Clock(column, _OWN_UNIT[name.lower()] * time, (*notes, f"time from column '{name}', in µs"))
+        factor = _unit_from(rate, time) if rate is not None else None
+        if rate is not None and factor not in (None, 1.0):
+            notes = (*notes, f"unit of time, {factor:g} s, from the rate of {rate.hertz:.9g} Hz in line {rate.line}")
+        return Clock(column, (factor or 1.0) * time, notes)
+
+
+def _unit_meant(unit: str) -> str:
+    return did_you_mean(unit[:40], TIME_UNITS)
+
+
+def _unwrapped(time: NDArray[np.float64], lines: NDArray[np.int64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Join the parts of a counter of 32 bits that began again."""
+    if len(time) < 3 or not (np.abs(time) < WRAP).all():
+        return time, ()
+    steps = np.diff(time)
+    again = (steps < 0) & (steps + WRAP > 0) & (steps + WRAP < 1000 * np.median(steps))
+    if not again.any():
+        return time, ()
+    note = f"the time begins again at 2^32 in line {lines[int(again.argmax()) + 1]}, and was joined"
+    return time + WRAP * np.concatenate(([0], np.cumsum(again))), (note,)

@@ -1,0 +1,121 @@
+"""MATLAB's files: version 4 by SciPy, versions 5 to 7 by `mat5`, version 7.3, which is HDF5 inside, by h5py."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sprung.recording.formats.damage import Allowance, reading
+from sprung.recording.formats.hdf5 import PER_OBJECT, SIGNATURE, named, numbers_in
+from sprung.recording.formats.mat5 import HEADER, variables
+from sprung.recording.formats.nested import DEEPEST, Foreign, Node
+from sprung.recording.formats.optional import library
+from sprung.recording.formats.vectors import table_of
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from sprung.recording.formats.table import Table
+
+_KIND = "a MATLAB file of vectors"
+_DO = "In MATLAB, save the time in s and the channels as plain vectors, such as t = seconds(tt.Time); a = tt.a;"
+_BYTE_ORDERS = frozenset((b"IM", b"MI"))
+_KINDS = frozenset(("", "double", "single", "logical", "int8", "int16", "int32", "int64", "uint8", "uint16"))
+_KINDS |= {"uint32", "uint64", "char", "cell", "struct"}
+
+
+class MatFormat:
+    """MATLAB's files of every version; version 7.3 needs h5py."""
+
+    def claims(self, path: Path, head: bytes) -> bool:
+        """Claim by the ending and either MATLAB's header or, of version 4, which has none, a sound first number."""
+        version = int.from_bytes(head[:4], "little"), int.from_bytes(head[:4], "big")
+        old = len(head) >= 20 and any(number < 5000 and number % 10 < 3 for number in version)
+        named = head.startswith(b"MATLAB") or head[126:128] in _BYTE_ORDERS
+        signed = head.startswith(SIGNATURE)
+        return path.suffix.lower() == ".mat" and (named or old) and not signed
+
+    def read(self, path: Path) -> Table:
+        """Read one file.
+
+        Raises
+        ------
+        InputError
+            If it is damaged, holds no recording, or is of version 7.3 and h5py is missing.
+        """
+        with path.open("rb") as file:
+            head = file.read(HEADER)
+        if head[126:128] not in _BYTE_ORDERS:
+            return table_of(_read_4(path), path, _DO)
+        new = head[124:126] in {b"\0\x02", b"\x02\0"}
+        return table_of(_read_7_3(path) if new else _read_5(path), path, _DO)
+
+
+def _read_4(path: Path) -> Node:
+    from scipy.io import loadmat  # noqa: PLC0415 (heavy, and needed only once such a file is met)
+
+    with reading(path, _KIND), path.open("rb") as file, warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of variables that it does not know
+        read: Any = loadmat  # which its annotations do not allow to read an open file
+        found: dict[str, Any] = read(file)
+    return {name: _plain(value) for name, value in found.items() if not name.startswith("__")}
+
+
+def _plain(value: Any) -> Node:
+    if not isinstance(value, np.ndarray):
+        return Foreign("a sparse matrix")
+    return _words([str(word) for word in value.flat]) if value.dtype.kind == "U" else value
+
+
+def _read_5(path: Path) -> Node:
+    allowance = Allowance(path)
+    with reading(path, _KIND):
+        return variables(path.read_bytes(), allowance)
+
+
+def _words(rows: list[str]) -> Node:
+    return rows[0].strip() if len(rows) == 1 else [row.strip() for row in rows]
+
+
+def _read_7_3(path: Path) -> Node:
+    h5py = library("h5py", "hdf5", path)
+    allowance = Allowance(path)
+    with reading(path, _KIND), h5py.File(path, "r") as file:
+        return {name: _item(h5py, file, file[name], allowance, 0) for name in named(file) if not name.startswith("#")}
+
+
+def _item(h5py: Any, file: Any, item: Any, allowance: Allowance, depth: int) -> Node:
+    """Bring what h5py gives into plain form: what MATLAB calls it stands in an attribute."""
+    allowance.take(PER_OBJECT)
+    said = item.attrs.get("MATLAB_class", b"")
+    kind = said.decode("utf-8", "replace") if isinstance(said, bytes) else str(said)
+    foreign = "MATLAB_object_decode" in item.attrs or "MATLAB_sparse" in item.attrs or kind not in _KINDS
+    if foreign or depth > DEEPEST:
+        return Foreign(f"an object of class {kind}, which only MATLAB can read")
+    if isinstance(item, h5py.Group):
+        return _struct({name: _item(h5py, file, item[name], allowance, depth + 1) for name in named(item)})
+    values = np.empty(0) if "MATLAB_empty" in item.attrs else numbers_in(item, allowance)
+    if isinstance(values, Foreign) or values.dtype.names:
+        return values if isinstance(values, Foreign) else Foreign("complex numbers")
+    if h5py.check_ref_dtype(values.dtype) is not None:
+        children = [_item(h5py, file, file[ref], allowance, depth + 1) for ref in values.flat if ref]
+        return children if kind == "cell" else _Array(children)
+    if kind == "char":
+        rows = np.atleast_2d(values.T).astype(np.uint16).tolist()
+        return _words(["".join(map(chr, row)) for row in rows])
+    return values.T
+
+
+class _Array(list[Node]):
+    """One field of an array of structs: a value for each."""
+
+
+def _struct(fields: dict[str, Node]) -> Node:
+    """Turn an array of structs, which such files keep field by field, into structs."""
+    lengths = {len(field) if isinstance(field, _Array) else 0 for field in fields.values()}
+    if len(lengths) != 1 or lengths == {0}:
+        return fields
+    columns = {name: field for name, field in fields.items() if isinstance(field, _Array)}
+    return [{name: column[index] for name, column in columns.items()} for index in range(lengths.pop())]

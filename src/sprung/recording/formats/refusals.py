@@ -1,0 +1,63 @@
+"""Refusing a file: with one problem, before it fills the memory, and whatever a library raises over it."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sprung.errors import InputError, Problem
+
+
+def allowance(size: int) -> float:
+    """Give the bytes that reading a file may take, from its size in bytes."""
+    return 10.0 * size + 50e6
+
+
+def refuse_too_large(numbers: int, file: str, largest: float) -> None:
+    """Refuse a file that declares more numbers than it can hold, before they are read.
+
+    Raises
+    ------
+    InputError
+        If they would take more than the largest number of bytes.
+    """
+    if 8.0 * numbers > largest:
+        found, do = f"{numbers} declared samples", "It is damaged: export the recording again."
+        raise refuse(file, found, "no more samples than a file of its size can hold", do)
+
+
+def refuse(where: str, found: str, expected: str, do: str) -> InputError:
+    """Make the error of a single problem."""
+    return InputError([Problem(where, found, expected, do)])
+
+
+def cut_short(where: str, found: str) -> InputError:
+    """Make the error of a file that ends too early."""
+    return refuse(where, found, "a complete file", "It is cut short: copy or export the recording again.")
+
+
+@contextmanager
+def contained(where: str, kind: str) -> Iterator[None]:
+    """Turn whatever a library raises over a file into an `InputError`, and keep it silent.
+
+    Raises
+    ------
+    InputError
+        If the block raises anything.
+    """
+    level = logging.root.manager.disable
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        logging.disable(logging.CRITICAL)
+        try:
+            yield
+        except InputError:
+            raise
+        except Exception as error:
+            reason = " ".join(f"{type(error).__name__}: {error}".split())[:200]
+            found, do = f"content that cannot be read ({reason})", "Export the recording again, or in another format."
+            raise refuse(where, found, f"a sound {kind} file", do) from error
+        finally:
+            logging.disable(level)
