@@ -1,7 +1,7 @@
 """From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
 
 from sprung.identification.added_mass import added_mass
-from sprung.identification.climb import NO_INFORMATION, RANK
+from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK
 from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
 from sprung.identification.inflation import of_colour
@@ -16,6 +16,7 @@ from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_
 from sprung.identification.suspects import Suspect, suspects
 
 __all__ = [
+    "CONVERGED",
     "NEAR",
     "NO_INFORMATION",
     "RANK",

@@ -27,6 +27,18 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+def reach_of(right: Complex) -> Complex:
+    """Give what is assumed of initial states as information on the amplitudes of modes; both of shape (..., 14, 14)."""
+    return np.asarray((np.swapaxes(right.conj(), 1, 2) / REACH**2) @ right, dtype=np.complex128)
+
+
+def inverse_of(normal: Complex) -> Complex:
+    """Invert normal equations of amplitudes, which may differ by orders of magnitude; shape (..., 14, 14)."""
+    scale = 1 / np.sqrt(np.diagonal(normal, axis1=1, axis2=2).real)
+    both = scale[:, :, None] * scale[:, None, :]
+    return np.asarray(np.linalg.inv(normal * both), dtype=np.complex128) * both
+
+
 @dataclass(frozen=True, eq=False)
 class Sums:
     """What an evaluation needs of a run's samples, whatever the weights.
@@ -55,19 +67,15 @@ class Sums:
     def of(cls, run: Run, poles: Complex, right: Complex, shapes: Complex) -> Sums:
         """Sum over the samples, once for given poles, eigenvectors and shapes of each load."""
         exponent, right = poles[run.load] * run.step[:, None], right[run.load]
-        reach = (np.swapaxes(right.conj(), 1, 2) / REACH**2) @ right
         products = gram(exponent, run.samples, run.group)
-        return cls(run, shapes[run.load], reach, products, run.correlate(exponent))
+        return cls(run, shapes[run.load], reach_of(right), products, run.correlate(exponent))
 
     def solve(self, weights: Real) -> Amplitudes:
         """Solve for the amplitudes, channels weighted by 1/σ², shape (channel,)."""
         w, group = self.run.present * weights, self.run.group
         weighted = self.shapes.conj() * w[:, None]
         normal = (np.swapaxes(weighted, 1, 2) @ self.shapes)[group] * self.gram[:, :14, :14]
-        regular = normal + self.reach[group]
-        scale = 1 / np.sqrt(np.diagonal(regular, axis1=1, axis2=2).real)
-        both = scale[:, :, None] * scale[:, None, :]
-        inverse = np.asarray(np.linalg.inv(regular * both), dtype=np.complex128) * both
+        inverse = inverse_of(normal + self.reach[group])
         projected = (weighted[group] * self.data[:, :, :14]).sum(axis=1)
         return Amplitudes(self, w, normal, inverse, (inverse @ projected[:, :, None])[:, :, 0])
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -207,13 +206,10 @@ class Climb:
         """
         found = {}
         for name, known in self.knowledge.statements.items():
-            information, gradient, free = replace(self, knowledge=self.knowledge.without(name)).system(point, inflation)
-            told = told_directions(information)
-            slope = told.T @ gradient
-            step = np.linalg.solve(told.T @ information @ told, slope)
-            away = self.knowledge.change(name, point.u, free @ told @ step) / known.value
+            move, gain = replace(self, knowledge=self.knowledge.without(name)).slope(point, inflation).newton
+            away = self.knowledge.change(name, point.u, move) / known.value
             if not known.exact or abs(away) > _EXACT_ENOUGH:
-                found[name] = max(float(slope @ step), 0.0) ** 0.5
+                found[name] = max(gain, 0.0) ** 0.5
         return found
 
     def to_the_top(
@@ -241,7 +237,7 @@ class Climb:
         point = self.at(u)
         before = np.inf
         while point.steps < (_ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
-            slope = self._slope(point)
+            slope = self.slope(point)
             if not slope.gradient.size:
                 return replace(point, converged=True)
             if summit is not None and slope.leads(slope.free.T @ (summit.u - point.u)):
@@ -267,10 +263,11 @@ class Climb:
     def _at(self, u: Real) -> Place:
         return self.likelihood.at(self.knowledge.coordinates.values(u))
 
-    def _slope(self, point: Point) -> _Slope:
-        return _Slope(*self.system(point))
+    def slope(self, point: Point, inflation: float = 1.0) -> Slope:
+        """Give where it goes up from a point, as `system` does."""
+        return Slope(*self.system(point, inflation))
 
-    def _step(self, point: Point, slope: _Slope, damping: float) -> tuple[Point | None, float, float]:
+    def _step(self, point: Point, slope: Slope, damping: float) -> tuple[Point | None, float, float]:
         """Take one damped step that does not lose; give None where there is none left to take.
 
         In a bent valley the straight way leads up its wall, and only the next step down again, further along: where the first
@@ -291,7 +288,7 @@ class Climb:
                 return moved(), damping, gain
             if first:
                 above = moved()
-                back, _ = self._slope(above).step(damping)
+                back, _ = self.slope(above).step(damping)
                 moved, won = self._tried(point, self.knowledge.bind(above.u + back), now)
                 if won > 0:
                     return moved(), damping, max(gain, won)
@@ -318,20 +315,36 @@ def _evaluated(u: Real, place: Place, weights: Real, steps: int) -> Point:
     return Point(u, place, weights, place.evaluate(weights), steps)
 
 
-class _Slope(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Slope:
     """Where it goes up from a point: information and gradient in the free directions, and these."""
 
     information: Real
     gradient: Real
     free: Real
 
-    def step(self, damping: float) -> tuple[Real, float]:
-        """Give the step in the coordinates, and what it should gain.
+    @cached_property
+    def _told(self) -> tuple[Real, Real, Real]:
+        """Give the directions of which the records say anything, and information and gradient in them.
 
-        Directions of which the records say nothing yet are left alone: they would only wander.
+        The others are left alone: they would only wander.
         """
         told = told_directions(self.information)
-        system, slope = told.T @ self.information @ told, told.T @ self.gradient
+        return told, told.T @ self.information @ told, told.T @ self.gradient
+
+    @cached_property
+    def newton(self) -> tuple[Real, float]:
+        """The step to where the summit would be if the likelihood were quadratic, in the coordinates, and its gain.
+
+        The gain is that of twice the log-likelihood.
+        """
+        told, system, slope = self._told
+        step = np.linalg.solve(system, slope)
+        return self.free @ (told @ step), float(slope @ step)
+
+    def step(self, damping: float) -> tuple[Real, float]:
+        """Give a damped step in the coordinates, and what it should gain."""
+        told, system, slope = self._told
         scale = told.T @ (np.diag(self.information)[:, None] * told)
         step = np.linalg.solve(system + damping * scale, slope)
         move = self.free @ (told @ step)
@@ -342,7 +355,6 @@ class _Slope(NamedTuple):
         squared = float(distance @ self.information @ distance)
         if squared < _SAME:
             return True
-        told = told_directions(self.information)
-        system = told.T @ self.information @ told
-        missed = told.T @ distance - np.linalg.solve(system, told.T @ self.gradient)
+        told, system, slope = self._told
+        missed = told.T @ distance - np.linalg.solve(system, slope)
         return float(missed @ system @ missed) < _LEADS_THERE * squared

@@ -12,7 +12,6 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification.climb import CONVERGED
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
@@ -42,7 +41,7 @@ def ascend_from_contact(
     decays: Sequence[Decay],
     models: Mapping[str, LinearModel],
     first: Summit,
-    again: Callable[[Sequence[Decay], Mapping[str, float], float], Summit],
+    again: Callable[[Sequence[Decay], Mapping[str, float]], Summit],
 ) -> tuple[tuple[Decay, ...], Summit]:
     """Let the fitted vehicle say where each decay begins, and fit again, until it stays with what it said.
 
@@ -71,11 +70,11 @@ def ascend_from_contact(
         if not any(shifts):
             break
         moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
-        next_one = again(moved, found.parameters, CONVERGED).after(found)
+        next_one = again(moved, found.parameters).after(found)
         if np.any(next_one.noise > _NO_WORSE * found.noise):
             break
         best, found, settled = moved, next_one, True
-    return best, found if settled else again(best, found.parameters, CONVERGED).after(found)
+    return best, found if settled else again(best, found.parameters).after(found)
 
 
 def _shifts(decays: Sequence[Decay], models: Mapping[str, LinearModel], found: Summit) -> list[int]:

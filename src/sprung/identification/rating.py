@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.identification.amplitudes import inverse_of, reach_of
 from sprung.identification.likelihood import Likelihood
-from sprung.identification.longhand import REACH
 from sprung.identification.solution import solve_modes
 from sprung.identification.sums import gram
 
@@ -50,12 +50,9 @@ def rate_vehicles(likelihood: Likelihood, vehicles: Real, weights: Real) -> Real
     products = gram(exponent, np.full(len(exponent), run.samples[0]), secular=False)
     shapes, w = modes.shapes, run.present * weights
     weighted = np.swapaxes(shapes.conj(), 1, 2) * w
-    reach = (np.swapaxes(modes.right.conj(), 1, 2) / REACH**2) @ modes.right
-    normal = (weighted @ shapes) * products + reach
-    scale = 1 / np.sqrt(np.diagonal(normal, axis1=1, axis2=2).real)
-    both = scale[:, :, None] * scale[:, None, :]
+    inverse = inverse_of((weighted @ shapes) * products + reach_of(modes.right))
     projected = np.sum(weighted.swapaxes(1, 2)[..., None] * data, axis=1)
-    q = (np.linalg.inv(normal * both) * both) @ projected
+    q = inverse @ projected
     fitted = shapes[..., None] * q[:, None]
     explained = np.sum(fitted.conj() * (2 * data - products[:, None] @ fitted), axis=(2, 3)).real
     shares: Real = np.maximum(energy - explained, 0.0) / np.where(energy > 0, energy, 1.0)

@@ -18,7 +18,6 @@ from sprung.identification.climb import (
     Climb,
     Point,
     least_information,
-    told_directions,
 )
 from sprung.identification.direct import direct_start
 from sprung.identification.inflation import of_disagreement
@@ -234,10 +233,7 @@ def expected_gain(
     climb = _climb(decays, models, sensors, known, values)
     coordinates = climb.knowledge.coordinates
     point = climb.at(climb.knowledge.bind(coordinates.of(np.array([values[name] for name in coordinates.names]))))
-    information, gradient, _ = climb.system(point)
-    told = told_directions(information)
-    slope = told.T @ gradient
-    return float(slope @ np.linalg.solve(told.T @ information @ told, slope))
+    return climb.slope(point).newton[1]
 
 
 def _climb(

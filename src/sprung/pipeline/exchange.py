@@ -73,5 +73,5 @@ def undo_exchange(
 
 
 def _changed(decay: Decay, order: NDArray[np.int64]) -> Decay:
-    rest = type(decay.rest)(decay.rest.level[order], decay.rest.noise[order])
+    rest = decay.rest._replace(level=decay.rest.level[order], noise=decay.rest.noise[order])
     return replace(decay, values=decay.values[order], earlier=decay.earlier[order], rest=rest)

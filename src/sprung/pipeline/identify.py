@@ -10,6 +10,7 @@ import numpy as np
 
 from sprung.errors import Problems
 from sprung.identification import (
+    CONVERGED,
     NEAR,
     STARTS,
     Fit,
@@ -143,7 +144,7 @@ def fit_campaign(
         prepared.decays,
         choice.models,
         first,
-        lambda decays, start, enough: _ascend(campaign, choice, decays, start, enough, progress),
+        lambda decays, start: _ascend(campaign, choice, decays, start, CONVERGED, progress),
     )
     summit = look_around(summit)
     progress("judging the fit")

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sprung.errors import InputError, Problem
+from sprung.errors import Problem
 from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS, Columns, Rate, clock_of, rate_of, seconds_of_day
 from sprung.recording.formats.dialect import COLUMNS, EMPTY, NUMBER, Layout, cells_of, layout_of, lines_of, text_of
+from sprung.recording.formats.refusals import refuse
 from sprung.recording.formats.table import Table, split_unit
 
 if TYPE_CHECKING:
@@ -43,11 +44,11 @@ class CsvFormat:
             text = text_of(path.read_bytes())
         except UnicodeDecodeError as error:
             do = "Export the recording again, as UTF-8."
-            raise _refuse(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
+            raise refuse(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
         end = _end(text)
         if not text[:end].strip():
             expected = "a line with the names of the columns, then the samples"
-            raise _refuse(file, "an empty file", expected, "Export it again.")
+            raise refuse(file, "an empty file", expected, "Export it again.")
         layout = layout_of(text, end)
         rate = _rate(text, layout, file)
         _check(layout, rate, end, file)
@@ -83,7 +84,7 @@ def _rate(text: str, layout: Layout, file: str) -> Rate | None:
     except ValueError as error:
         where, _, found = str(error).partition("|")
         expected = "a number that can be read in one way"
-        raise _refuse(f"{file}: {where}", found, expected, "Write it without a thousands separator.") from None
+        raise refuse(f"{file}: {where}", found, expected, "Write it without a thousands separator.") from None
 
 
 def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
@@ -93,16 +94,16 @@ def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
         found, do = "numbers in the first line", "Add a line with the names of the columns above them."
         if layout.line > 1:
             found = "numbers without names above them"
-        raise _refuse(where, found, "the names of the columns", do)
+        raise refuse(where, found, "the names of the columns", do)
     if any(not character.isprintable() for name in layout.names for character in name):
         found, do = "characters that nobody can read", "Export the recording as text; this file may be of another kind."
-        raise _refuse(where, found, "the names of the columns", do)
+        raise refuse(where, found, "the names of the columns", do)
     if len(layout.names) < 2 and rate is None:
         expected = "the time and at least one channel, separated by comma, semicolon, tab, pipe or spaces"
         do = "Export it with separators, or add a line such as 'Sample rate: 500 Hz' above the names."
-        raise _refuse(where, f"a single column, '{_short(layout.names[0])}'", expected, do)
+        raise refuse(where, f"a single column, '{_short(layout.names[0])}'", expected, do)
     if layout.start >= end:
-        raise _refuse(file, "a header and no samples", "one line per sample below the names", "Export it again.")
+        raise refuse(file, "a header and no samples", "one line per sample below the names", "Export it again.")
 
 
 def _table(text: str, end: int, layout: Layout, rate: Rate | None, file: str) -> Table:
@@ -185,7 +186,7 @@ def _read(text: str, end: int, layout: Layout, file: str) -> _Cells:
                     continue
         if line.count('"') % 2:
             do = "Look for a quotation mark that is not closed."
-            raise _refuse(f"{file}: line {number}", "a line that is no table", "one line per sample", do)
+            raise refuse(f"{file}: line {number}", "a line that is no table", "one line per sample", do)
         row = cells_of(line, layout.delimiter) if line.count(layout.delimiter) <= COLUMNS else line.split(separator)
         if not any(row):
             continue
@@ -194,7 +195,7 @@ def _read(text: str, end: int, layout: Layout, file: str) -> _Cells:
         if missing > len(text):
             found = f"{len(row)} cells, and few in many lines before"
             expected = f"{width}, as many as the header has names"
-            raise _refuse(f"{file}: line {number}", found, expected, "Export it again.")
+            raise refuse(f"{file}: line {number}", found, expected, "Export it again.")
         numbers.extend(_number(cell, index, number, layout.decimal, cells) for index, cell in enumerate(row[:width]))
         numbers.extend([np.nan] * (width - len(row)))
         lines.append(number)
@@ -208,7 +209,7 @@ def _refuse_unnamed(row: list[str], layout: Layout, where: str) -> None:
         if layout.delimiter == ",":
             do += " If the commas are decimal marks, export with semicolons or tabs between the columns."
         expected = f"{len(layout.names)}, as many as the header has names"
-        raise _refuse(where, f"{filled} cells", expected, do)
+        raise refuse(where, f"{filled} cells", expected, do)
 
 
 def _number(cell: str, column: int, line: int, decimal: str, cells: _Cells) -> float:
@@ -241,7 +242,3 @@ def _problem(column: int, text: tuple[int, str, int], layout: Layout, file: str)
 
 def _short(text: str) -> str:
     return text if len(text) <= 80 else f"{text[:77]}..."
-
-
-def _refuse(where: str, found: str, expected: str, do: str) -> InputError:
-    return InputError([Problem(where, found, expected, do)])

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sprung.recording.formats.damage import Allowance, reading
 from sprung.recording.formats.nested import DEEPEST, Foreign, Node
 from sprung.recording.formats.optional import library
+from sprung.recording.formats.refusals import Allowance, reading
 from sprung.recording.formats.vectors import table_of
 
 if TYPE_CHECKING:

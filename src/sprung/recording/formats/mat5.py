@@ -18,7 +18,7 @@ from sprung.recording.formats.nested import DEEPEST, Foreign, Node
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from sprung.recording.formats.damage import Allowance
+    from sprung.recording.formats.refusals import Allowance
 
 HEADER = 128
 _ARRAY, _COMPRESSED = 14, 15

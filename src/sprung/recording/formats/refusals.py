@@ -6,13 +6,24 @@ import logging
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from sprung.errors import InputError, Problem
 
+if TYPE_CHECKING:
+    from pathlib import Path
 
-def allowance(size: int) -> float:
+
+LARGEST = 10
+"""How many times the file's size its content may take up in memory..."""
+
+SPARE = 50_000_000
+"""...besides this many bytes, which any machine has."""
+
+
+def allowance(size: int) -> int:
     """Give the bytes that reading a file may take, from its size in bytes."""
-    return 10.0 * size + 50e6
+    return LARGEST * size + SPARE
 
 
 def refuse_too_large(numbers: int, file: str, largest: float) -> None:
@@ -61,3 +72,58 @@ def contained(where: str, kind: str) -> Iterator[None]:
             raise refuse(where, found, f"a sound {kind} file", do) from error
         finally:
             logging.disable(level)
+
+
+@contextmanager
+def reading(path: Path, kind: str) -> Iterator[None]:
+    """Turn whatever a library raises over a file into bad input.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        What it should be, ``a WAV file``.
+
+    Raises
+    ------
+    InputError
+        If the block raises anything.
+    """
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        found = f"a damaged file ({reason[:200]})"
+        raise refuse(path.name, found, kind, "Copy or export it again.") from error
+
+
+class Allowance:
+    """Memory that the content of one file may take up.
+
+    Parameters
+    ----------
+    path
+        The file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.name
+        self._size = path.stat().st_size
+        self._left = allowance(self._size)
+
+    def take(self, count: int) -> None:
+        """Take some bytes of it.
+
+        Raises
+        ------
+        InputError
+            If so much is not left.
+        """
+        self._left -= count
+        if self._left < 0:
+            found = f"{self._size} bytes that say they hold more than {LARGEST} times as many"
+            do = "Export it again, uncompressed and with this recording only."
+            raise refuse(self._file, found, "a file about as large as its recording", do)

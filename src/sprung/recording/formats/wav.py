@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem
-from sprung.recording.formats.damage import Allowance, reading
+from sprung.recording.formats.refusals import Allowance, reading
 from sprung.recording.formats.table import Table
 
 if TYPE_CHECKING:
