@@ -37,10 +37,10 @@ WANTED = 90.0
 TESTS: tuple[tuple[bool, tuple[str, ...]], ...] = ((True, ("total_mass",)), (False, AXLES))
 
 
-def low_passed(record: Real, level: float, random: np.random.Generator) -> Real:
+def low_passed(record: Real, level: float, random: np.random.Generator, rate: float = RATE) -> Real:
     """Add noise of the same power behind a first-order low-pass."""
-    kept = np.exp(-1 / (RATE * TIME_CONSTANT))
-    before = int(20 * RATE * TIME_CONSTANT)
+    kept = np.exp(-1 / (rate * TIME_CONSTANT))
+    before = int(20 * rate * TIME_CONSTANT)
     drawn = random.standard_normal((record.shape[0], before + record.shape[1]))
     coloured = lfilter([np.sqrt(1 - kept**2)], [1, -kept], drawn, axis=1)
     return record + level * np.asarray(coloured, dtype=np.float64)[:, before:]

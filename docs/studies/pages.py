@@ -140,13 +140,15 @@ def figures(value: float | np.floating[Any]) -> float | None:
     return None if np.isnan(value) else float(f"{value:.4g}")
 
 
-def run(work: Callable[[Case, int], Outcome], tasks: Sequence[tuple[Case, int]], processes: int) -> Iterable[Outcome]:
+def run(
+    work: Callable[..., Outcome], tasks: Sequence[tuple[Any, ...]], processes: int, chunk: int = 10
+) -> Iterable[Outcome]:
     """Do work on every task, in order, in so many processes."""
     if processes <= 1:
         yield from (work(*task) for task in tasks)
         return
     with ProcessPoolExecutor(processes) as pool:
-        yield from pool.map(work, *zip(*tasks, strict=True), chunksize=10)
+        yield from pool.map(work, *zip(*tasks, strict=True), chunksize=chunk)
 
 
 def summarise(cases: Mapping[Case, int], processes: int) -> list[Summary]:

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sprung import report as report
     from sprung import study as study
-    from sprung.pipeline import Result, check, identify, load, modes, plan, plan_campaign, plan_file
-    from sprung.recording import Campaign, Drop, read, write
+    from sprung.pipeline import Result, check, draft, identify, load, modes, plan, plan_campaign, plan_file
+    from sprung.recording import Campaign, Drop, read, schema_text, to_sep005, write
     from sprung.simulation import simulate, simulate_file
     from sprung.vehicle import Load, Sensor, Vehicle
 
@@ -30,6 +30,7 @@ __all__ = [
     "Sensor",
     "Vehicle",
     "check",
+    "draft",
     "identify",
     "load",
     "modes",
@@ -37,8 +38,10 @@ __all__ = [
     "plan_campaign",
     "plan_file",
     "read",
+    "schema_text",
     "simulate",
     "simulate_file",
+    "to_sep005",
     "write",
 ]
 
@@ -52,6 +55,7 @@ _HOME = {
     "Sensor": "vehicle",
     "Vehicle": "vehicle",
     "check": "pipeline",
+    "draft": "pipeline",
     "identify": "pipeline",
     "load": "pipeline",
     "modes": "pipeline",
@@ -59,8 +63,10 @@ _HOME = {
     "plan_campaign": "pipeline",
     "plan_file": "pipeline",
     "read": "recording",
+    "schema_text": "recording",
     "simulate": "simulation",
     "simulate_file": "simulation",
+    "to_sep005": "recording",
     "write": "recording",
 }
 _ROOMS = ("report", "study")

@@ -38,7 +38,9 @@ class Problem:
     do: str
 
     def __str__(self) -> str:
-        return f"{self.where}: found {self.found}; expected {self.expected}. {self.do}"
+        said = f"{self.where}: found {self.found}; expected {self.expected}. {self.do}"
+        # What stands in a damaged file must not steer the terminal, and a space of another kind is to be seen.
+        return said if said.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in said)
 
 
 class InputError(SprungError, ValueError):

@@ -12,7 +12,7 @@ import pytest
 import sprung
 from command_line import SEDAN, Folder, Identified, Run, run
 
-COMMANDS = ("demo", "paper", "check", "modal", "identify", "plan", "simulate")
+COMMANDS = ("demo", "paper", "check", "modal", "identify", "plan", "simulate", "schema")
 # The contract's results.json.
 KEYS = {
     "schema",
@@ -220,7 +220,8 @@ def test_check(folder: Folder) -> None:
     assert [drop["file"] for drop in said.json["drops"]][-1] == "loaded_bounce.csv"
     text = run("check", folder.path)
     assert all(drop["file"] in text.out for drop in said.json["drops"])
-    assert folder.listing() == before
+    drawings = [f"check/{Path(drop['file']).stem}.svg" for drop in said.json["drops"]]
+    assert folder.listing() == sorted([*before, "check", *drawings])
 
 
 @pytest.mark.parametrize("method", ["era", "svm"])
@@ -244,7 +245,7 @@ def test_simulate_and_back(vehicle_file: Path, tmp_path: Path) -> None:
     assert said.status == 0
     assert len(said.json["drops"]) == 5
     assert sorted(path.name for path in (tmp_path / "new" / "campaign").iterdir()) == sorted(
-        [*said.json["drops"], "campaign.toml"]
+        [*said.json["drops"], "campaign.toml", "campaign.schema.json"]
     )
     found = run("identify", said.json["campaign"], "--json")
     assert found.status == 0

@@ -16,15 +16,29 @@ def identify(folder: Folder) -> tuple[Run, Run]:
 
 
 @pytest.mark.parametrize("cell", ["NaN", "", "-Infinity", "1e300"])
-def test_a_channel_with_gaps_is_left_out_of_its_drop(folder: Folder, cell: str) -> None:
+def test_a_missing_sample_is_filled_in_and_told(folder: Folder, cell: str) -> None:
+    plain = run("identify", folder.path, "--json")
     folder.column("wheel_fl", lambda sample, number: cell if sample == 500 else number)
+    said, text = identify(folder)
+    assert (said.status, text.status, said.err) == (0, 0, "")
+    [fault] = said.json["faults"]
+    assert (fault["code"], fault["where"]) == ("missing", "empty_bounce.csv: wheel_fl")
+    assert "1 of 1800 samples is missing, the first in line 502; filled in" in fault["what"]
+    assert [drop["faults"] for drop in said.json["drops"]] == [["missing"], [], [], []]
+    for name, one in plain.json["parameters"].items():
+        assert abs(said.json["parameters"][name]["value"] - one["value"]) < 0.5 * one["std"]
+
+
+@pytest.mark.parametrize("cell", ["NaN", "", "-Infinity", "1e300"])
+def test_a_channel_with_gaps_is_left_out_of_its_drop(folder: Folder, cell: str) -> None:
+    folder.column("wheel_fl", lambda sample, number: cell if 500 <= sample < 520 else number)
     said, text = identify(folder)
     assert (said.status, text.status, said.err) == (0, 0, "")
     [fault] = said.json["faults"]
     assert (fault["code"], fault["where"]) == ("missing", "empty_bounce.csv: wheel_fl")
     assert "line 502" in fault["what"]
     assert [drop["faults"] for drop in said.json["drops"]] == [["missing"], [], [], []]
-    assert "empty_bounce.csv: wheel_fl: missing: 1 of 1800 samples" in " ".join(text.out.split())
+    assert "empty_bounce.csv: wheel_fl: missing: 20 of 1800 samples" in " ".join(text.out.split())
     with np.load(folder.path / "results" / "series.npz") as series:
         place = series["empty_bounce/channels"].tolist().index("wheel_fl")
         assert np.isnan(series["empty_bounce/measured"][place]).all()

@@ -36,9 +36,9 @@ def numbers(text: str) -> set[str]:
 
 @pytest.mark.parametrize("columns", [20, 40, 60, 80, 100, 120, 200])
 def test_no_width_cuts_a_word_or_a_number(folder: Folder, leafbus: Identified, columns: int) -> None:
-    wide = run("check", folder.path, columns=300)
-    narrow = run("check", folder.path, columns=columns)
-    starts = {f"{drop['start']:.3f}" for drop in run("check", folder.path, "--json").json["drops"]}
+    wide = run("check", "--no-drawings", folder.path, columns=300)
+    narrow = run("check", "--no-drawings", folder.path, columns=columns)
+    starts = {f"{drop['start']:.3f}" for drop in run("check", "--no-drawings", folder.path, "--json").json["drops"]}
     assert starts <= numbers(narrow.out) <= numbers(wide.out)
     result = sprung.load(leafbus.results)
     shown = text_of(result_view(result), console_of(columns))
@@ -79,7 +79,7 @@ def test_colours_only_where_they_are_wanted(folder: Folder) -> None:
 
 
 def test_json_is_json_even_where_colours_are_forced(folder: Folder) -> None:
-    assert run("check", folder.path, "--json", FORCE_COLOR="1").json["faults"] == []
+    assert run("check", "--no-drawings", folder.path, "--json", FORCE_COLOR="1").json["faults"] == []
 
 
 def test_progress_stays_off_captured_streams(folder: Folder) -> None:
@@ -92,8 +92,8 @@ def test_names_of_every_kind(tmp_path: Path, name: str) -> None:
     folder = copy_sedan(tmp_path / name)
     folder.edit('name = "sedan"\n', "").edit('"empty_bounce.csv"', f'"{name}.csv"')
     (folder.path / "empty_bounce.csv").rename(folder.path / f"{name}.csv")
-    assert run("check", folder.path, "--json").json["drops"][0]["file"] == f"{name}.csv"
-    assert f"{name}.csv" in run("check", folder.path, columns=120).out
+    assert run("check", "--no-drawings", folder.path, "--json").json["drops"][0]["file"] == f"{name}.csv"
+    assert f"{name}.csv" in run("check", "--no-drawings", folder.path, columns=120).out
     assert f"{name}: parameters" in run("identify", folder.path, columns=120).out
     assert json.loads((folder.path / "results" / "results.json").read_text("utf-8"))["vehicle"]["name"] == name
 

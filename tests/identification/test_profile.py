@@ -85,7 +85,7 @@ class LongWay:
         place = self.likelihood.at(np.array([values[name] for name in NAMES]))
         variance = np.ones(8)
         for _ in range(4):  # noise levels and initial states in turn
-            variance = place.misfit(1 / variance).sum(axis=0) / self.samples
+            variance = place.misfit(1 / variance)[0].sum(axis=0) / self.samples
         return float(self.samples * np.log(variance).sum())
 
     def whole(self, logarithms: Real) -> float:

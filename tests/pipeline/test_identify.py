@@ -51,6 +51,7 @@ def test_the_sedan_is_accepted(sedan: sprung.Result) -> None:
 def test_friction_is_rejected(leafbus: sprung.Result) -> None:
     """Leaf springs, 1000 and 1500 N of dry friction: the linear model must not pass."""
     assert leafbus.verdict.state == "reject"
+    assert leafbus.faults == ()  # no sensor, drop or load is blamed for what the model lacks
     assert "does not explain" in leafbus.verdict.reasons[0]
     assert max(leafbus.fit.misfit.values()) > 0.04
 

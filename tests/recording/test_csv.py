@@ -55,7 +55,7 @@ def test_the_dialect_changes_no_number(
     table = table_of(tmp_path, content)
     assert table.channels == ("Stoß", "a b", "c")
     assert table.units == ("m/s²", None, None)
-    np.testing.assert_allclose(table.values, np.array(values).T, rtol=1e-15)
+    np.testing.assert_allclose(table.take(), np.array(values).T, rtol=1e-15)
     np.testing.assert_allclose(table.time, 0.01 * np.arange(len(values)), rtol=1e-12)
 
 
@@ -88,7 +88,7 @@ def test_the_time_column_by_name_or_by_being_first_and_increasing(
 def test_the_time_column_need_not_be_first(tmp_path: Path) -> None:
     table = table_of(tmp_path, "a,b,time\n1,2,0.5\n3,4,0.6\n")
     assert table.channels == ("a", "b")
-    np.testing.assert_array_equal(table.values, [[1, 3], [2, 4]])
+    np.testing.assert_array_equal(table.take(), [[1, 3], [2, 4]])
     np.testing.assert_array_equal(table.time, [0.5, 0.6])
 
 
@@ -99,25 +99,24 @@ def test_names_may_hold_other_delimiters(tmp_path: Path) -> None:
 
 def test_a_last_line_cut_short_is_left_out_and_noted(tmp_path: Path) -> None:
     table = table_of(tmp_path, "time,a,b\n0,1,2\n1,3,4\n2,5")
-    assert table.values.shape == (2, 2)
+    assert table.take().shape == (2, 2)
     assert table.notes == ("line 4, the last, is cut short and was left out",)
 
 
 def test_blank_lines_keep_the_line_numbers(tmp_path: Path) -> None:
     table = table_of(tmp_path, "\ntime,a,b\n0,1,2\n\n1,3,4\n")
-    assert table.lines is not None
-    assert table.lines.tolist() == [3, 5]
+    assert table.place(0) == "line 3"
     assert table.place(1) == "line 5"
 
 
 def test_text_among_numbers_is_noted_per_channel_and_named_by_line(tmp_path: Path, text: Text) -> None:
     content = text("time,a,b,c").replace("0.0100,9,11.5", "0.0100,OVLD,11.5").replace("0.0120,10", "0.0120,OVLD")
     table = table_of(tmp_path, content)
-    assert list(table.spoilt) == ["a"]
-    assert str(table.spoilt["a"]).startswith(
+    assert [table.spoilt(column) is not None for column in range(3)] == [True, False, False]
+    assert str(table.spoilt(0)).startswith(
         "x.csv: line 7, column 'a': found 'OVLD' (the first of 2 such cells); expected a number."
     )
-    assert np.isfinite(table.values[1:]).all()
+    assert np.isfinite(table.take([1, 2])).all()
 
 
 REFUSED: dict[str, tuple[str | bytes, str]] = {
@@ -142,3 +141,11 @@ def test_a_file_that_is_no_table_is_refused_with_its_reason(tmp_path: Path, cont
     with pytest.raises(InputError) as error:
         table_of(tmp_path, content)
     assert words in str(error.value)
+
+
+def test_what_stands_in_a_file_does_not_steer_the_terminal(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text("time,a\n0,1\n1,\x1b[2J\n2,1\xa0000\n", encoding="utf-8")
+    said = str(read_table(path).spoilt(0))
+    assert r"found '\x1b[2J'" in said
+    assert said.isprintable()

@@ -69,7 +69,7 @@ def test_every_layout_gives_the_same_numbers(tmp_path: Path, write: Callable[[An
     result = read(written(tmp_path, write, userblock_size=block))
     assert result.channels == ("front", "rear")
     assert result.units == ("g", "mg")
-    np.testing.assert_array_equal(result.values, [A, B])
+    np.testing.assert_array_equal(result.take(), [A, B])
     np.testing.assert_allclose(result.time, TIME, rtol=1e-15, atol=1e-16)
 
 
@@ -159,3 +159,12 @@ def test_a_cut_file_is_refused(tmp_path: Path, kept: float, write: Callable[[Any
     path.write_bytes(raw[: int(kept * len(raw))])
     with pytest.raises(InputError, match=r"x\.h5: found a damaged file .*; expected an HDF5 file"):
         Hdf5Format().read(path)
+
+
+@pytest.mark.parametrize("rate", [1e300, 1e-300, 0.0, -500.0, np.nan])
+def test_a_rate_that_no_logger_has(tmp_path: Path, rate: float) -> None:
+    def write(file: Any) -> None:
+        file["a"], file.attrs["fs"] = A, rate
+
+    with pytest.raises(InputError, match=r"x\.h5: fs: found .* Hz; expected a positive number"):
+        read(written(tmp_path, write))

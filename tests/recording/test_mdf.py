@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import gc
+import sys
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,14 +50,14 @@ def test_doubles_and_the_rate_are_exact(tmp_path: Path, version: str, compressio
     assert table.channels == ("a0", "a1", "a2")
     assert table.units == ("g", "m/s^2", None)
     assert table.clock == 2000.0  # from the times it is 1999.9999999999998
-    np.testing.assert_array_equal(table.values, VALUES)
+    np.testing.assert_array_equal(table.take(), VALUES)
 
 
 def test_groups_on_one_clock_are_one_table(tmp_path: Path) -> None:
     table = read(written(tmp_path, [signal(VALUES[0], TIME, "a")], [signal(VALUES[1], TIME + 1e-8, "a", "m/s^2")]))
     assert table.channels == ("device 0.a", "device 1.a")
     assert table.units == ("g", "m/s^2")
-    np.testing.assert_array_equal(table.values, VALUES[:2])
+    np.testing.assert_array_equal(table.take(), VALUES[:2])
     assert table.notes == ("renamed, as several channels have one name or none: device 0.a, device 1.a",)
 
 
@@ -64,9 +65,9 @@ def test_channels_on_another_clock_are_spoilt(tmp_path: Path) -> None:
     slow = [signal(VALUES[2, :50], TIME[:50] * 10, "slow"), signal(VALUES[2, 50:100], TIME[:50] * 10, "slower")]
     table = read(written(tmp_path, slow, [signal(VALUES[0], TIME, "a")]))
     assert table.channels == ("a", "slow", "slower")
-    np.testing.assert_array_equal(table.values[0], VALUES[0])
-    assert np.isnan(table.values[1:]).all()
-    assert str(table.spoilt["slow"]) == (
+    np.testing.assert_array_equal(table.take()[0], VALUES[0])
+    assert np.isnan(table.take()[1:]).all()
+    assert str(table.spoilt(1)) == (
         "x.mf4: channel 'slow': found 50 samples from 0 to 0.245 s at 200 Hz; expected the clock that most samples of "
         "the file are on, 200 samples from 0 to 0.0995 s at 2000 Hz. "
         "Export all channels that are needed at one rate and over one time."
@@ -79,7 +80,7 @@ def test_integers_are_scaled_and_text_is_left_out(tmp_path: Path) -> None:
     text = signal(np.array([b"on"] * 200), TIME, "state", "", encoding="utf-8")
     table = read(written(tmp_path, [signal(raw, TIME, "a", conversion=halves), text]))
     assert table.channels == ("a",)
-    np.testing.assert_array_equal(table.values[0], 0.5 * raw + 1)
+    np.testing.assert_array_equal(table.take()[0], 0.5 * raw + 1)
     assert table.notes == ("left out, as their samples are no numbers: state",)
 
 
@@ -87,7 +88,7 @@ def test_invalid_samples_are_no_numbers(tmp_path: Path) -> None:
     invalid = np.zeros(200, dtype=bool)
     invalid[7] = True
     table = read(written(tmp_path, [signal(VALUES[0], TIME, "a", invalidation_bits=invalid)]))
-    np.testing.assert_array_equal(np.isnan(table.values[0]), invalid)
+    np.testing.assert_array_equal(np.isnan(table.take()[0]), invalid)
 
 
 def test_uneven_times_and_other_starts_are_kept(tmp_path: Path) -> None:
@@ -170,10 +171,11 @@ def test_whatever_happens_to_a_file(
     path.write_bytes(content if end is None else content[: int(end * len(content))])
     try:
         table = MdfFormat().read(path)
+        values = table.take()
     except InputError as error:
         problems = error.problems
     else:
-        assert table.values.shape == (len(set(table.channels)), len(table.time))
+        assert values.shape == (len(set(table.channels)), len(table.time))
         return
     assert all(problem.where.startswith("x.mf4") and problem.do for problem in problems)
 
@@ -182,3 +184,19 @@ def test_whatever_happens_to_a_file(
 def test_nothing_is_left_of_damaged_files() -> None:
     gc.collect()
     assert not [o for o in gc.get_objects() if type(o).__name__ == "MDF4" and not hasattr(o, "header")]
+
+
+def test_what_cannot_be_opened_is_closed_and_forgotten_in_silence(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = written(tmp_path, [signal(VALUES[0], TIME, "a")])
+    content = bytearray(path.read_bytes())
+    content[12] = 0xFF  # within the version, which is text: the library gives up before it has read anything
+    path.write_bytes(content)
+    complaints: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", complaints.append)
+    with pytest.raises(InputError):
+        MdfFormat().read(path)
+    gc.collect()
+    assert not complaints
+    assert capfd.readouterr().err == ""

@@ -74,6 +74,17 @@ def test_units_and_direction_become_si_and_positive_up(folder: Folder, text: Tex
     assert "body_fr: read in g, as the file says" in said
 
 
+def test_a_range_is_in_the_unit_of_the_file_where_the_sensor_names_none(folder: Folder, text: Text) -> None:
+    path = folder(
+        ('channel = "body_fl"', 'channel = "body_fl"\nrange = 5'),
+        ('channel = "body_fr"', 'channel = "body_fr"\nrange = 5\nunit = "mg"'),
+        one=text("time,body_fl [g],body_fr [g],body_rl"),
+    )
+    one, two = read(path).recordings
+    assert one.full_scale == pytest.approx((5 * STANDARD_GRAVITY, 5e-3 * STANDARD_GRAVITY, None))
+    assert two.full_scale == pytest.approx((5.0, 5e-3 * STANDARD_GRAVITY, None))
+
+
 def test_the_sensor_may_name_its_column_with_the_unit(folder: Folder, text: Text) -> None:
     path = folder(
         ('"body_fl"', '"body_fl [g]"'),
@@ -99,11 +110,21 @@ def test_a_channel_missing_in_one_recording_is_left_out_there(folder: Folder, te
 
 
 @pytest.mark.parametrize("gap", ["NaN", "", "n/a", "inf"])
-def test_a_channel_with_gaps_is_left_out(folder: Folder, text: Text, gap: str) -> None:
-    one = read(folder(one=text().replace("0.0100,9,", f"0.0100,{gap},"))).recordings[0]
-    assert one.usable.tolist() == [False, True, True]
-    assert one.faults[0].code == "missing"
-    assert "1 of 100 samples are missing, the first in line 7" in one.faults[0].what
+def test_a_short_gap_is_filled_and_a_long_one_leaves_the_channel_out(folder: Folder, text: Text, gap: str) -> None:
+    short = text().replace("0.0100,9,", f"0.0100,{gap},")
+    long = "".join(
+        f"{i * 0.002:.4f},{gap if 40 <= i < 60 else 9 + i % 5},{9 + i % 3},{-1 - i % 2}\n" for i in range(100)
+    )
+    one, two = read(folder(one=short, two="time,body_fl,body_fr,body_rl\n" + long)).recordings
+    assert one.usable.all()
+    (fault,) = one.faults
+    assert fault.code == "missing"
+    assert "1 of 100 samples is missing, the first in line 7; filled in" in fault.what
+    assert f"one.csv: body_fl: {fault.what}" in one.history
+    assert two.usable.tolist() == [False, True, True]
+    (fault,) = two.faults
+    assert "20 of 100 samples are missing, the first in line 42; the channel is left out" in fault.what
+    assert "two.csv: body_fl: left out (missing)" in two.history
 
 
 def test_a_drop_without_any_channel_is_kept_and_named(folder: Folder, text: Text) -> None:
@@ -121,14 +142,30 @@ def test_nothing_usable_is_a_problem(folder: Folder, text: Text) -> None:
     assert len(error.value.problems) == 8  # three channels and the drop, twice
 
 
-@pytest.mark.parametrize("change", [("0.0100,", "0.0109,"), ("0.0100,10,9.5,-2.25\n", "")])
-def test_an_uneven_clock_leaves_the_drop_out(folder: Folder, text: Text, change: tuple[str, str]) -> None:
-    content = text().replace("0.0100,9,11.5,-2.25\n", "") if change[1] == "" else text().replace(*change)
-    one = read(folder(one=content)).recordings[0]
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("0.0100,", "0.0109,"), "up to line 7; the samples are no smoother at those times, and were taken to be even"),
+        (("0.0100,9,11.5,-2.25\n", ""), "1 of 100 lines is missing, the first before line 7; filled in"),
+    ],
+)
+def test_an_uneven_clock_is_understood_and_told(folder: Folder, text: Text, change: tuple[str, str], said: str) -> None:
+    assert change[0] in text()
+    one = read(folder(one=text().replace(*change))).recordings[0]
+    assert one.usable.all()
+    assert one.values.shape == (3, 100)
+    (fault,) = one.faults
+    assert fault.code == "clock"
+    assert said in fault.what
+
+
+def test_a_clock_that_nothing_can_be_made_of_leaves_the_drop_out(folder: Folder) -> None:
+    rows = "".join(f"{(i / 30) ** 3:.6f},{i % 5},{i % 3},{i % 2}\n" for i in range(150))
+    one = read(folder(one="time,body_fl,body_fr,body_rl\n" + rows)).recordings[0]
     assert np.isnan(one.values).all()
     (fault,) = one.faults
     assert fault.code == "clock"
-    assert "up to line 7" in fault.what
+    assert "the drop is left out" in fault.what
 
 
 def test_times_rounded_to_milliseconds_are_an_even_clock(folder: Folder) -> None:
@@ -190,3 +227,14 @@ def test_the_development_campaigns(shared: Path, name: str, load_mass: float, kn
         assert recording.rate == pytest.approx(500, rel=1e-9)
         # At the end the vehicle rests on its wheels: each accelerometer reads standard gravity, whatever its unit was.
         np.testing.assert_allclose(recording.values[:, -500:].mean(axis=1), STANDARD_GRAVITY, rtol=0.01)
+
+
+@pytest.mark.parametrize(("last", "found"), [("1e300", "the time 1e\\+300 s"), ("-1e13", "the time -1e\\+13 s")])
+def test_a_time_that_no_clock_shows(folder: Folder, text: Text, last: str, found: str) -> None:
+    with pytest.raises(InputError, match=rf"one\.csv: line 101: found {found}; expected the time of a sample"):
+        read(folder(one=text().replace("0.1980,", f"{last},")))
+
+
+def test_samples_that_follow_each_other_sooner_than_any(folder: Folder, text: Text) -> None:
+    with pytest.raises(InputError, match="found 2e-12 s from one sample to the next"):
+        read(folder(one=text("time [ns],body_fl,body_fr,body_rl")))

@@ -8,6 +8,7 @@ import pytest
 
 from sprung.errors import InputError
 from sprung.recording.formats import Table, formats, read_table, registry
+from sprung.recording.formats.store import holding
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -20,7 +21,7 @@ class Greedy:
         return bool(path.name and head)
 
     def read(self, path: Path) -> Table:
-        return Table((path.stem,), (None,), np.zeros((1, 4)), clock=2.0)
+        return Table((path.stem,), (None,), holding(np.zeros((1, 4))), clock=2.0)
 
 
 class GreedyEntry:

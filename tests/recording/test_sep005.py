@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import sprung
 from sprung.errors import InputError
 from sprung.recording.formats.sep005 import from_sep005, to_sep005
 from sprung.recording.recording import Recording
@@ -23,7 +26,7 @@ def test_signals_at_a_rate() -> None:
     assert table.channels == ("a", "b")
     assert table.units == ("g", "m/s^2")
     assert table.clock == 2000.0
-    np.testing.assert_array_equal(table.values, VALUES)
+    np.testing.assert_array_equal(table.take(), VALUES)
 
 
 def test_signals_with_times() -> None:
@@ -42,7 +45,7 @@ def test_one_name_in_two_places() -> None:
 def test_signals_at_two_rates_are_spoilt_but_for_the_most() -> None:
     table = from_sep005([signal("a"), signal("b"), signal("c", fs=500)])
     assert table.clock == 2000.0
-    assert list(table.spoilt) == ["c"]
+    assert [table.spoilt(column) is not None for column in range(3)] == [False, False, True]
 
 
 @pytest.mark.parametrize(
@@ -92,5 +95,73 @@ def test_there_and_back(start: float, rate: float) -> None:
     table = from_sep005(signals)
     assert table.channels == ("a", "b")  # c is left out of the recording
     assert table.units == ("m/s^2", "m/s^2")
-    np.testing.assert_array_equal(table.values, VALUES)
+    np.testing.assert_array_equal(table.take(), VALUES)
     np.testing.assert_array_equal(table.time, recording.time)
+
+
+Sound = Callable[..., Path]
+"""The fixture that gives a sound campaign folder with some texts replaced."""
+
+
+def test_a_campaign_whose_recordings_are_in_memory(folder: Sound) -> None:
+    path = folder()
+    read = sprung.read(path)
+    signals = {recording.name: sprung.to_sep005(recording) for recording in read.recordings}
+    for name in signals:
+        (path / name).unlink()
+    again = sprung.read(path, signals=signals)
+    assert again.drops == read.drops
+    assert again.faults == read.faults
+    for one, other in zip(again.recordings, read.recordings, strict=True):
+        assert (one.name, one.channels, one.start) == (other.name, other.channels, other.start)
+        assert one.rate == pytest.approx(other.rate, rel=1e-12)
+        np.testing.assert_array_equal(one.values, other.values)
+
+
+def test_some_recordings_in_memory_and_some_in_files(folder: Sound) -> None:
+    path = folder(('file = "one.csv"', 'file = "in memory"'))
+    data = np.arange(100.0)
+    given = [{"name": name, "data": data, "unit_str": "g", "fs": 500} for name in ("body_fl", "body_fr", "body_rl")]
+    first, second = sprung.read(path, signals={"in memory": given}).recordings
+    np.testing.assert_allclose(first.values[0], 9.80665 * data)  # the unit g, by its definition
+    assert (first.name, first.rate) == ("in memory", 500)
+    assert second.name == "two.csv"
+
+
+def test_the_campaign_file_says_of_signals_what_it_says_of_files(folder: Sound) -> None:
+    path = folder(('channel = "body_fl"', 'channel = "body_fl"\nunit = "mg"\ndirection = "down"'))
+    given = [{"name": name, "data": np.arange(100.0), "unit_str": "g", "fs": 500} for name in ("body_fl", "body_fr")]
+    recording = sprung.read(path, signals={"one.csv": given}).recordings[0]
+    np.testing.assert_allclose(recording.values[0], -9.80665e-3 * np.arange(100.0))
+    assert [fault.code for fault in recording.faults] == ["missing"]  # body_rl
+
+
+def test_what_is_wrong_with_the_signals_of_a_campaign(folder: Sound) -> None:
+    path = folder()
+    given = {"one.csv": [signal("body_fl", fs=0)], "tow.csv": [signal()], "three": [signal()]}
+    with pytest.raises(InputError) as raised:
+        sprung.read(path, signals=given)
+    assert [problem.where for problem in raised.value.problems] == ["one.csv[0].fs", "signals", "signals"]
+    assert "'tow.csv', which no drop has" in str(raised.value)
+    assert "Did you mean 'two.csv'?" in str(raised.value)
+
+
+def test_masked_samples_are_missing() -> None:
+    masked = np.ma.masked_array(VALUES[0], np.arange(30) == 4)
+    np.testing.assert_array_equal(np.flatnonzero(np.isnan(from_sep005([signal(data=masked)]).take()[0])), [4])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (signal(fs=10**400), r"\.fs: found 1000.*expected samples per second"),  # larger than any float
+        (signal(unit_str=np.arange(40.0)), r"\.unit_str: found array\(\[ ?0.*expected text"),
+    ],
+)
+def test_what_no_float_and_no_line_can_hold(wrong: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        from_sep005([wrong])
+
+
+def test_names_and_starts_of_any_kind() -> None:
+    assert from_sep005([signal(None, unit_str=None, start_timestamp=np.zeros(3))]).channels == ("signals[0]",)

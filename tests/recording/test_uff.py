@@ -51,7 +51,7 @@ def test_values_names_and_units(tmp_path: Path, binary: int, exact: float) -> No
     table = read(written(tmp_path, function(0, binary=binary), function(1, binary=binary, rsp_dir=-1)))
     assert table.channels == ("3Z+", "4X-")
     assert table.units == ("g", "g")
-    np.testing.assert_allclose(table.values, VALUES, rtol=0, atol=exact)
+    np.testing.assert_allclose(table.take(), VALUES, rtol=0, atol=exact)
 
 
 def test_the_rate_that_six_digits_of_the_step_mean(tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_a_file_cut_short(tmp_path: Path, binary: int, end: int) -> None:
     whole = path.read_bytes()
     path.write_bytes(whole[:end])
     if end == -1:  # but for the last line end it is whole
-        np.testing.assert_allclose(read(path).values, VALUES, atol=1e-11)
+        np.testing.assert_allclose(read(path).take(), VALUES, atol=1e-11)
         return
     with pytest.raises(InputError):
         read(path)
@@ -135,9 +135,10 @@ def test_whatever_happens_to_a_file(
     path.write_bytes(content if end is None else content[: int(end * len(content))])
     try:
         table = UffFormat().read(path)
+        values = table.take()
     except InputError as error:
         problems = error.problems
     else:
-        assert table.values.shape == (len(set(table.channels)), len(table.time))
+        assert values.shape == (len(set(table.channels)), len(table.time))
         return
     assert all(problem.where.startswith("x.uff") and problem.do for problem in problems)

@@ -40,7 +40,7 @@ def read(folder: Path, content: bytes) -> Table:
 def test_floating_point_comes_back_as_it_was(tmp_path: Path, kind: type[np.floating[Any]], channels: int) -> None:
     samples = SAMPLES[:, :channels].astype(kind)
     result = read(tmp_path, sound(samples))
-    np.testing.assert_array_equal(result.values, samples.T)
+    np.testing.assert_array_equal(result.take(), samples.T)
     assert result.channels == ("ch1", "ch2", "ch3")[:channels]
     assert result.units == (None,) * channels
     assert result.clock == 2000
@@ -54,7 +54,7 @@ def test_floating_point_comes_back_as_it_was(tmp_path: Path, kind: type[np.float
 def test_integers_are_parts_of_full_scale(tmp_path: Path, kind: Any, lowest: int, middle: int, highest: int) -> None:
     result = read(tmp_path, sound(np.array([lowest, middle, highest], dtype=kind)))
     # One step below 1 is the largest: the ranges of integers are not symmetric.
-    np.testing.assert_array_equal(result.values, [[-1, 0, 1 - 1 / (highest - middle + 1)]])
+    np.testing.assert_array_equal(result.take(), [[-1, 0, 1 - 1 / (highest - middle + 1)]])
     assert "full scale" in result.notes[0]
 
 
@@ -63,14 +63,14 @@ def test_24_bits_are_parts_of_full_scale_too(tmp_path: Path) -> None:
     form = struct.pack("<HHIIHH", 1, 1, 500, 1500, 3, 24)
     chunks = b"fmt " + struct.pack("<I", 16) + form + b"data" + struct.pack("<I", 9) + samples + b"\0"
     result = read(tmp_path, b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks)
-    np.testing.assert_array_equal(result.values, [[-1, 0, 0.5]])
+    np.testing.assert_array_equal(result.take(), [[-1, 0, 0.5]])
 
 
 def test_other_chunks_are_passed_over(tmp_path: Path) -> None:
     content = sound(SAMPLES)
     extra = b"LIST" + struct.pack("<I", 4) + b"INFO" + b"odd!" + struct.pack("<I", 4) + b"abcd"
     result = read(tmp_path, content[:4] + struct.pack("<I", len(content) + len(extra) - 8) + content[8:] + extra)
-    np.testing.assert_array_equal(result.values, SAMPLES.T)
+    np.testing.assert_array_equal(result.take(), SAMPLES.T)
 
 
 @pytest.mark.parametrize("keep", [60, 100, 500])
@@ -100,7 +100,13 @@ def test_damage_is_refused_or_harmless(tmp_path: Path, data: st.DataObject, kind
     path.write_bytes(raw[: data.draw(st.integers(0, len(raw)) | st.just(len(raw)))])
     try:
         result = WavFormat().read(path)
+        values = result.take()
     except InputError as error:
         assert all(problem.where.startswith(path.name) for problem in error.problems)  # noqa: PT017
     else:
-        assert result.values.shape == (len(result.channels), len(result.time))
+        assert values.shape == (len(result.channels), len(result.time))
+
+
+def test_a_number_that_warns_wherever_it_is_used(tmp_path: Path) -> None:
+    samples = np.frombuffer(struct.pack("<3I", 0x7FA00000, 0, 0x3F800000), "<f4")  # a signalling NaN, 0 and 1
+    np.testing.assert_array_equal(read(tmp_path, sound(samples)).take(), [[np.nan, 0, 1]])

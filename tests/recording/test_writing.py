@@ -144,6 +144,7 @@ def one_drop(**changes: Any) -> Campaign:
 def test_only_what_differs_from_the_defaults_is_written(tmp_path: Path) -> None:
     assert write(one_drop(), tmp_path / "a" / "b") == tmp_path / "a" / "b" / "campaign.toml"
     assert (tmp_path / "a" / "b" / "campaign.toml").read_text().splitlines() == [
+        "#:schema ./campaign.schema.json",
         "schema = 1",
         "",
         "[vehicle]",
@@ -239,8 +240,12 @@ def test_a_folder_where_a_file_should_be(tmp_path: Path) -> None:
 
 
 def test_a_read_only_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object, **__: object) -> None:
-        raise PermissionError(13, "Permission denied")
+    open_as_ever = Path.open
+
+    def refuse(path: Path, mode: str = "r", **how: Any) -> Any:
+        if path.is_relative_to(tmp_path):
+            raise PermissionError(13, "Permission denied")
+        return open_as_ever(path, mode, **how)
 
     monkeypatch.setattr(Path, "open", refuse)  # permissions do not bind the superuser, who may run the tests
     with pytest.raises(InputError, match=r"cannot be written to \(Permission denied\).*see to its permissions"):

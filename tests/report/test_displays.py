@@ -9,6 +9,7 @@ import dataclasses
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import pytest
 from rich.console import Console
@@ -16,10 +17,10 @@ from rich.console import Console
 import sprung
 from sprung.errors import Fault
 from sprung.estimate import Estimate
-from sprung.pipeline import Check, DropReport, Result
+from sprung.pipeline import ChannelReport, Check, DropReport, Result
 from sprung.recording import Campaign
 from sprung.report import check_view, modes_view, result_view, text_of
-from sprung.vehicle import TABLE_1_CAR
+from sprung.vehicle import TABLE_1_CAR, WHEELS
 
 HERE = Path(__file__).parent
 DATA = HERE.parent / "data"
@@ -104,12 +105,84 @@ def test_a_check(regenerate: bool) -> None:
     gap = Fault(
         "missing", "empty_roll.csv: wheel_rr", "every sample is missing; the channel is left out", "Check its cable."
     )
-    drops = (
-        DropReport("empty_bounce.csv", "empty", 0.438, 3.598, ()),
-        DropReport("empty_roll.csv", "empty", 12.4425, 15.598, ("missing",)),
-        DropReport("loaded_bounce.csv", "ballast", None, None, ("no-decay",)),
+    clipped = Fault("clipped", "empty_bounce.csv: wheel_fl", "14 samples are at full scale", "Use a larger range.")
+    check = Check((bounce(), roll(), left_out()), (clipped, gap, late))
+    compare("check", text_of(check_view(check), CONSOLE), regenerate)
+
+
+def test_a_check_that_an_older_sprung_could_have_made() -> None:
+    shown = text_of(check_view(Check((DropReport("a.csv", "empty", 0.4, 3.5, ()),), ())), CONSOLE)
+    assert "a.csv" in shown
+    assert "Limits" not in shown
+    assert "Channels" not in shown
+
+
+def channels(used: bool, *peaks: float | None, **faults: tuple[str, ...]) -> tuple[ChannelReport, ...]:
+    """Give three channels, without a peak of those that are left out."""
+    names: tuple[tuple[str, Literal["body", "fl", "rr"]], ...] = (
+        ("body", "body"),
+        ("wheel_fl", "fl"),
+        ("wheel_rr", "rr"),
     )
-    compare("check", text_of(check_view(Check(drops, (gap, late))), CONSOLE), regenerate)
+    return tuple(
+        ChannelReport(name, on, None if peak is None else 0.0203, peak, used and peak is not None, faults.get(name, ()))
+        for (name, on), peak in zip(names, peaks, strict=True)
+    )
+
+
+def bounce() -> DropReport:
+    """Whole, but for a wheel that clipped."""
+    return DropReport(
+        file="empty_bounce.csv",
+        load="empty",
+        start=0.466,
+        end=3.598,
+        faults=("clipped",),
+        kind="bounce",
+        wheels=WHEELS,
+        wheels_seen=WHEELS,
+        release=0.4,
+        landing=0.438,
+        last_lift_off=0.44,
+        why_start="until then wheel_fl clipped",
+        why_end="the recording ends",
+        rate=500.0,
+        channels=channels(True, 10.94, 101.2, 77.34, wheel_fl=("clipped",)),
+    )
+
+
+def roll() -> DropReport:
+    """On another clock, of other wheels than stated, with limits that were given and a channel that is missing."""
+    return DropReport(
+        file="empty_roll.csv",
+        load="empty",
+        start=12.4425,
+        end=15.598,
+        faults=("missing",),
+        kind="roll left",
+        wheels=("fl", "rl"),
+        wheels_seen=("fr", "rr"),
+        release=12.3,
+        why_start="given as start",
+        why_end="given as end",
+        rate=512.0,
+        channels=channels(True, 3.1, 2.05, None, wheel_rr=("missing",)),
+    )
+
+
+def left_out() -> DropReport:
+    return DropReport(
+        file="loaded_bounce.csv",
+        load="ballast",
+        start=None,
+        end=None,
+        faults=("no-decay",),
+        kind="bounce",
+        wheels=WHEELS,
+        release=0.41,
+        rate=500.0,
+        channels=channels(False, 9.0, 111.7, 89.6),
+    )
 
 
 def test_modes_without_uncertainty(regenerate: bool) -> None:

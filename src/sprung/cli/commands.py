@@ -11,7 +11,7 @@ import typer
 from typer.core import TyperGroup
 
 import sprung
-from sprung.cli.output import INTERRUPTED, REJECTED, complain, say, say_json, working
+from sprung.cli.output import INTERRUPTED, REJECTED, advancing, complain, say, say_json, working
 from sprung.errors import InputError, Problem
 
 
@@ -78,19 +78,40 @@ def conclude(result: Any, folder: Path, as_json: bool) -> None:
         raise typer.Exit(REJECTED)
 
 
-@app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
-def check(campaign: CampaignFile, as_json: Json = False) -> None:
-    """Read and judge the recordings, identify nothing."""
+@app.command(epilog="Example: [bold]sprung check campaign.toml --no-drawings[/bold]")
+def check(
+    campaign: CampaignFile,
+    output: Annotated[
+        Optional[Path],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Where to draw the drops (default: check/ beside the campaign)."
+        ),
+    ] = None,
+    drawings: Annotated[bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file.")] = True,
+    as_json: Json = False,
+) -> None:
+    """Read and judge the recordings, identify nothing; draw each drop."""
     with working("reading the recordings"):
-        found = sprung.check(sprung.read(campaign))
+        read = sprung.read(campaign)
+        found = sprung.check(read)
     if not found.usable:
         raise InputError(
             Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
         )
+    drawn: tuple[Path, ...] = ()
+    if drawings:
+        folder = (output or (read.path or campaign).parent / "check").resolve()
+        try:
+            with working("drawing"):
+                drawn = sprung.report.write_check(found, folder)
+        except InputError as error:
+            complain(f"No drawings: {error}")
     if as_json:
-        say_json(asdict(found))
+        say_json({**found.document(), "drawings": [str(path) for path in drawn]})
     else:
         say(sprung.report.text_of(sprung.report.check_view(found)))
+        if drawn:
+            say(f"\nDrawn: {len(drawn)} drop{'s' * (len(drawn) > 1)} in {drawn[0].parent}\n")
 
 
 @app.command(epilog="Example: [bold]sprung modal campaign.toml --method svm[/bold]")
@@ -165,6 +186,24 @@ def plan(
         raise typer.Exit(REJECTED)
 
 
+@app.command(epilog="Example: [bold]sprung new measurements[/bold]")
+def new(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder with the recordings.")],
+    as_json: Json = False,
+) -> None:
+    """Draft campaign.toml from recordings: find the drops in them, tell the sensors, mark what is missing."""
+    with advancing("looking for drops") as progress:
+        drafted = sprung.draft(folder, progress=progress)
+        written = drafted.write()
+    if as_json:
+        say_json(drafted.document())
+    else:
+        say(sprung.report.text_of(sprung.report.draft_view(drafted)))
+        say(
+            f"\nWritten: {written}\nNext:    fill in what is missing there, then sprung check {shlex.quote(str(written))}\n"
+        )
+
+
 @app.command(epilog="Example: [bold]sprung demo[/bold]")
 def demo(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
@@ -193,6 +232,12 @@ def paper(as_json: Json = False) -> None:
         say_json(reproduction.document())
     else:
         say(sprung.report.text_of(sprung.report.paper_view(reproduction)))
+
+
+@app.command(epilog="Example: [bold]sprung schema > campaign.schema.json[/bold]")
+def schema(as_json: Json = False) -> None:  # noqa: ARG001 (it is JSON anyhow)
+    """Print the JSON Schema of campaign.toml, by which editors complete its keys and mark mistakes."""
+    say_json(sprung.schema_text())
 
 
 def _version(wanted: bool) -> None:

@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 DEFECT = 1
 BAD_INPUT = 2
@@ -25,6 +26,16 @@ def working(first: str) -> Iterator[Callable[[str], None]]:
     console = Console(stderr=True)
     with console.status(first) as status:
         yield status.update
+
+
+@contextmanager
+def advancing(what: str) -> Iterator[Callable[[float], None]]:
+    """Show how far something long has come, while somebody watches; takes the part that is done, 0 to 1."""
+    console = Console(stderr=True)
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(what, total=1.0)
+        yield lambda fraction: bar.update(task, completed=fraction)
 
 
 def say(text: str) -> None:

@@ -7,13 +7,14 @@ from sprung.identification.estimates import Correlation, Estimates, Scale, Unide
 from sprung.identification.inflation import of_colour
 from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, residual_records
 from sprung.identification.knowledge import Coordinates, Knowledge
-from sprung.identification.likelihood import Likelihood
+from sprung.identification.likelihood import Likelihood, Place
 from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.profile import profiled
 from sprung.identification.structured import StructuredFit, structured_least_squares
 from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around
 from sprung.identification.suspects import Suspect, suspects
+from sprung.identification.timing import timed_by_decay, timed_by_release, told_alone
 
 __all__ = [
     "CONVERGED",
@@ -29,6 +30,7 @@ __all__ = [
     "Knowledge",
     "Likelihood",
     "ModeEstimate",
+    "Place",
     "Scale",
     "StructuredFit",
     "Summit",
@@ -50,4 +52,7 @@ __all__ = [
     "residual_records",
     "structured_least_squares",
     "suspects",
+    "timed_by_decay",
+    "timed_by_release",
+    "told_alone",
 ]

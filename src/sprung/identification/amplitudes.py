@@ -19,6 +19,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.identification.delays import SETTLED, STEPS, Delays
 from sprung.identification.longhand import REACH
 from sprung.identification.records import Run
 from sprung.identification.sums import gram, waves
@@ -47,6 +48,10 @@ class Sums:
     ----------
     run
         The records.
+    expected
+        How late each logger should be, s, shape (record, logger).
+    poles
+        λ, 1/s, shape (group, 14).
     shapes
         s, shape (group, channel, 14).
     reach
@@ -58,20 +63,64 @@ class Sums:
     """
 
     run: Run
+    expected: Real
+    poles: Complex
     shapes: Complex
     reach: Complex
     gram: Complex
     data: Complex
 
     @classmethod
-    def of(cls, run: Run, poles: Complex, right: Complex, shapes: Complex) -> Sums:
-        """Sum over the samples, once for given poles, eigenvectors and shapes of each load."""
-        exponent, right = poles[run.load] * run.step[:, None], right[run.load]
+    def of(cls, run: Run, values: Real, poles: Complex, right: Complex, shapes: Complex) -> Sums:
+        """Sum over the samples, once for given parameters and their poles, eigenvectors and shapes of each load."""
+        expected = run.expected + run.follows @ values if run.late.size else run.expected
+        poles, right = poles[run.load], right[run.load]
+        exponent = poles * run.step[:, None]
         products = gram(exponent, run.samples, run.group)
-        return cls(run, shapes[run.load], reach_of(right), products, run.correlate(exponent))
+        return cls(run, expected, poles, shapes[run.load], reach_of(right), products, run.correlate(exponent))
 
     def solve(self, weights: Real) -> Amplitudes:
-        """Solve for the amplitudes, channels weighted by 1/σ², shape (channel,)."""
+        """Solve for the amplitudes and delays, channels weighted by 1/σ², shape (channel,)."""
+        late = self.run.late
+        if not late.shape[1]:
+            return self._solve(weights)
+        values = self.expected
+        for _ in range(STEPS):
+            turned = self._turned(values)
+            solved = turned._solve(weights)
+            delays = turned._delays(solved, values)
+            step = delays.step
+            if np.abs(step).max() < SETTLED:
+                break
+            values = values + step
+        return replace(solved, delays=delays)
+
+    def slid(self, weights: Real, shifts: Real) -> Real:
+        """Slide clocks that are hardly known to where the records are likeliest; shape (record, logger)."""
+        expected, wide = self.expected, self.run.expected_std
+        found = expected.copy()
+        for _ in range(2):
+            for logger in np.flatnonzero((wide > shifts.max() / 10).any(axis=0)).tolist():
+                values = np.repeat(found[None], len(shifts), axis=0)
+                values[:, :, logger] = expected[:, logger] + shifts[:, None]
+                left = [self._turned(tried)._solve(weights).residual @ weights for tried in values]
+                costs = np.array(left) + (shifts[:, None] / wide[:, logger]) ** 2
+                found[:, logger] = values[np.argmin(costs, axis=0), np.arange(len(found)), logger]
+        return found
+
+    def _turned(self, delays: Real) -> Sums:
+        """Give the same with delays in the shapes; records are groups then."""
+        late = (delays @ self.run.late.T)[:, :, None]
+        return replace(self, shapes=self.shapes * np.exp(self.poles[:, None] * late))
+
+    def _delays(self, solved: Amplitudes, values: Real) -> Delays:
+        weighted = self.shapes.conj() * solved.weights[:, None]
+        gram, data = self.gram[:, :14, :14], self.data[:, :, :14]
+        inverse, amplitudes = solved.inverse, solved.amplitudes
+        known = self.expected, self.run.expected_std, self.run.follows, self.run.late
+        return Delays(values, *known, self.poles, self.shapes, weighted, gram, data, inverse, amplitudes)
+
+    def _solve(self, weights: Real) -> Amplitudes:
         w, group = self.run.present * weights, self.run.group
         weighted = self.shapes.conj() * w[:, None]
         normal = (np.swapaxes(weighted, 1, 2) @ self.shapes)[group] * self.gram[:, :14, :14]
@@ -96,6 +145,8 @@ class Amplitudes:
         Inverse of the same with their reach added, shape (record, 14, 14).
     amplitudes
         q, shape (record, 14).
+    delays
+        Those of several loggers' clocks, which are in the shapes of the sums; None where all have one clock.
     """
 
     sums: Sums
@@ -103,6 +154,7 @@ class Amplitudes:
     normal: Complex
     inverse: Complex
     amplitudes: Complex
+    delays: Delays | None = None
 
     @cached_property
     def _fitted(self) -> Complex:
@@ -120,8 +172,13 @@ class Amplitudes:
         run, fitted = self.sums.run, self._fitted
         unexplained = 2 * self.sums.data[:, :, :14] - self._smoothed[:, :, :14]
         explained = (fitted.real * unexplained.real + fitted.imag * unexplained.imag).sum(axis=2)
-        residual: Real = np.maximum(run.energy - run.present * explained, 0.0)
+        residual: Real = run.present * np.maximum(run.energy - explained, 0.0)
         return residual
+
+    @property
+    def penalty(self) -> float:
+        """What is to be added to the weighted residuals for delays that are not as expected."""
+        return 0.0 if self.delays is None else self.delays.penalty
 
     @property
     def leverage(self) -> Real:
@@ -130,6 +187,22 @@ class Amplitudes:
         hat = self.sums.run.by_group(self.sums.gram[:, :14, :14] * np.swapaxes(self.inverse, 1, 2))
         leverage: Real = self.weights * ((s.conj() @ hat) * s).sum(axis=(0, 2)).real
         return leverage
+
+    def turned(self, slopes: Complex) -> Complex:
+        """Give σ and τ where the channels have the delays that were found: for t + δ stands where t stood.
+
+        Parameters
+        ----------
+        slopes
+            Without delays: σ and τ beside each other, τ per sample; shape (group, channel, change, 28).
+        """
+        if self.delays is None:
+            return slopes
+        later = (self.delays.values @ self.delays.late.T)[:, :, None, None]
+        turn = np.exp(self.sums.poles[:, None, None] * later)
+        secular = slopes[..., 14:] * turn
+        moved = slopes[..., :14] * turn + secular * (later / self.sums.run.step[:, None, None, None])
+        return np.concatenate([moved, secular], axis=-1)
 
     def gradient(self, slopes: Complex) -> Real:
         """Give Σ derivative · residual / σ² of each record.
@@ -150,7 +223,11 @@ class Amplitudes:
         parts = [
             np.tensordot(left[run.members(group)], own, axes=([1, 2], [0, 2])).real for group, own in enumerate(slopes)
         ]
-        return np.concatenate(parts)
+        gradient = np.concatenate(parts)
+        if self.delays is not None:
+            parameters = self.delays.follows.shape[2]
+            gradient[:, :parameters] += self.delays.gradient
+        return gradient
 
     def information(self, slopes: Complex, apart: bool = False) -> Real:
         """Give the products of the derivatives with each other, less what amplitudes and offsets can take up.
@@ -171,7 +248,7 @@ class Amplitudes:
         driven = self.sums.gram * q[:, None, :]
         found = []
         for group, own in enumerate(slopes):
-            members, channels, parameters = run.members(group), own.shape[0], own.shape[1]
+            members, parameters = run.members(group), own.shape[1]
             shared = q[members].conj()[:, :, None] * driven[members]
             if not apart:
                 shared = shared.sum(axis=0, keepdims=True)
@@ -179,21 +256,47 @@ class Amplitudes:
             products *= self.weights[:, None, None]
             # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
             within = (own.view(float) @ np.swapaxes(products.view(float), 2, 3)).sum(axis=1)
-            # Amplitudes see the derivatives through the shapes.
-            through = (self.sums.shapes[group].conj() * self.weights[:, None]).T
-            seen = (through @ own.reshape(channels, -1)).reshape(14, parameters, 28)
-            across = np.swapaxes(driven[members, :14], 0, 1) @ np.swapaxes(seen, 1, 2)
-            flat = np.ascontiguousarray(np.swapaxes(across, 0, 1))
+            flat = self._across(group, own, driven[members])
             taken = (np.swapaxes(flat.conj(), 1, 2) @ (self.inverse[members] @ flat)).real
+            if self.delays is not None:
+                taken += self.delays.taken(group, own, driven[group], flat[0])
+                within += self.delays.information(group, parameters)
             found.append(within - (taken if apart else taken.sum(axis=0, keepdims=True)))
         return np.concatenate(found)
+
+    def _across(self, group: int, slopes: Complex, driven: Complex) -> Complex:
+        """Give the inner products of a group's derivatives with what the amplitudes do, (record, 14, parameter)."""
+        channels, parameters = slopes.shape[:2]
+        # Amplitudes see the derivatives through the shapes.
+        through = (self.sums.shapes[group].conj() * self.weights[:, None]).T
+        seen = (through @ slopes.reshape(channels, -1)).reshape(14, parameters, 28)
+        across = np.swapaxes(driven[:, :14], 0, 1) @ np.swapaxes(seen, 1, 2)
+        return np.ascontiguousarray(np.swapaxes(across, 0, 1))
+
+    def delay_covariances(self, slopes: Complex, covariance: Real) -> Iterator[Real]:
+        """Give the covariance of every record's delays, that of the parameters in it; s², shape (delay, delay).
+
+        Parameters
+        ----------
+        slopes
+            As for `gradient`.
+        covariance
+            Of the parameters, SI, shape (parameter, parameter).
+        """
+        assert self.delays is not None  # noqa: S101 (asked for where there are some; for the type checker)
+        driven = self.sums.gram * np.tile(self.amplitudes, 2)[:, None, :]
+        for record, own in enumerate(slopes):
+            across = self._across(record, own, driven[record : record + 1])[0]
+            alone = self.delays.covariance[record]
+            carried = alone @ self.delays.response(record, own, driven[record], across)
+            yield alone + carried @ covariance @ carried.T
 
     def feigned(self, slopes: Complex) -> Real:
         """Give the information that noise alone feigns, shape (parameter, parameter)."""
         # What noise puts into the amplitudes: their inverse normal equations, less what their reach holds back.
         eigenvalues, vectors = np.linalg.eigh(self.normal)
         roots = self.inverse @ (vectors * np.sqrt(np.maximum(eigenvalues, 0.0))[:, None, :])
-        each = [replace(self, amplitudes=roots[:, :, j]).information(slopes) for j in range(14)]
+        each = [replace(self, amplitudes=roots[:, :, j], delays=None).information(slopes) for j in range(14)]
         total: Real = np.sum(each, axis=(0, 1))
         return total
 

@@ -149,7 +149,7 @@ class Climb:
         """Give minus twice the log-likelihood, up to a constant."""
         prior = self.knowledge.prior(point.u).residual
         variance = self.variance(point.evaluation.residual, point.evaluation.leverage)
-        return float(self._observations @ np.log(variance) + prior @ prior)
+        return float(self._observations @ np.log(variance) + prior @ prior) + point.evaluation.penalty
 
     def first_costs(self, starts: Sequence[Real]) -> Real:
         """Rate starts: the same from a sketch of the records, its channels weighted by their energy; shape (start,)."""
@@ -257,7 +257,7 @@ class Climb:
     def at(self, u: Real) -> Point:
         """Stand somewhere, with the noise that the residuals show there."""
         weights, place = self._observations / self._energy, self._at(u)
-        variance = self.variance(place.misfit(weights), np.zeros_like(weights))
+        variance = self.variance(place.misfit(weights)[0], np.zeros_like(weights))
         return _evaluated(u, place, 1 / variance, 0)
 
     def _at(self, u: Real) -> Place:
@@ -273,7 +273,7 @@ class Climb:
         In a bent valley the straight way leads up its wall, and only the next step down again, further along: where the first
         step loses, one more is tried from there (the watchdog of Chamberlain and others, Math. Prog. Study 16 (1982) 1).
         """
-        now = self._weighted(point.u, point.evaluation.residual, point.weights)
+        now = self._weighted(point.u, point.evaluation.residual, point.weights) + point.evaluation.penalty
         first = True
         gain = 0.0
         while damping < _MOST_DAMPING:
@@ -299,12 +299,12 @@ class Climb:
     def _tried(self, point: Point, u: Real, now: float) -> tuple[Callable[[], Point], float]:
         """Give what going to other coordinates wins, and the way to stand there."""
         place = self._at(u)
-        residual = place.misfit(point.weights)
+        residual, penalty = place.misfit(point.weights)
 
         def moved() -> Point:
             return _evaluated(u, place, 1 / self.variance(residual, point.evaluation.leverage), point.steps + 1)
 
-        return moved, now - self._weighted(u, residual, point.weights)
+        return moved, now - self._weighted(u, residual, point.weights) - penalty
 
     def _weighted(self, u: Real, residual: Real, weights: Real) -> float:
         prior = self.knowledge.prior(u).residual

@@ -33,6 +33,9 @@ _BACKWARD = 30.0
 _LONGEST = 2.0
 """s after the start of a decay for which wheels may still hop."""
 
+_NEIGHBOURS = 4
+"""Samples on each side of which a spline makes a new one."""
+
 _MOST = 0.5
 """Part of a decay that may be given up: a model to which tyres seem to hop for longer is not to be trusted in this."""
 
@@ -96,6 +99,14 @@ def _shifts(decays: Sequence[Decay], models: Mapping[str, LinearModel], found: S
             amplitudes = np.linalg.solve(shapes, states[i])
             motion = ((shapes[3:7] * amplitudes) @ powers[:, before - earlier : before + samples]).real
             loose = np.flatnonzero((static - motion < _COMPRESSED * static).any(axis=0))
-            first = int(loose[-1]) + 1 if loose.size else 0
+            first = int(loose[-1]) + 1 + _wary(decays[i]) if loose.size else 0
             shifts[i] = first - earlier if first - earlier < _MOST * samples else 0
     return shifts.tolist()
+
+
+def _wary(decay: Decay) -> int:
+    """Give samples by which to stay away from the last contact with several loggers.
+
+    One may have taken its sample half a step before the others, and what was interpolated has something of its neighbours.
+    """
+    return max((1 if clock.share == 1 else round(_NEIGHBOURS / clock.share) for clock in decay.clocks), default=0)

@@ -162,6 +162,9 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
     disagreement = summit.disagreement
     fitted = best.place.fitted(best.weights)
     colours = of_colour(residual_records(fitted, decays), [decay.rate for decay in decays])
+    # Samples that were interpolated are coloured, but counted for no more than those that were taken.
+    there = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
+    colours = np.maximum(colours * climb.likelihood.observations.sum(axis=0) / np.maximum(there, 1), 1.0)
     colour = float(colours.max())
     inflated = max(colour, disagreement)
     coloured = 1 < colour == inflated

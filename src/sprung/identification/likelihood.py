@@ -41,12 +41,15 @@ class Evaluation(NamedTuple):
         Σ derivative · residual / σ², shape (parameter,).
     information
         Fisher information of the parameters, amplitudes and offsets eliminated; shape (parameter, parameter).
+    penalty
+        What delays of clocks cost that are not as expected, in twice the log-likelihood.
     """
 
     residual: Real
     leverage: Real
     gradient: Real
     information: Real
+    penalty: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +83,7 @@ class Likelihood:
         sensors
             The sensors' rows, in the order of the decays' channels.
         """
-        records = Records.of(decays)
+        records = Records.of(decays, next(iter(models.values())).names)
         return cls(records, tuple(models[load] for load in records.loads), sensors)
 
     @cached_property
@@ -91,7 +94,7 @@ class Likelihood:
     @cached_property
     def energy(self) -> Real:
         """Sum of squares of all centred records of each channel, (m/s²)², shape (channel,)."""
-        energy: Real = np.sum([run.energy.sum(axis=0) for run in self.records.runs], axis=0)
+        energy: Real = np.sum([run.present * run.energy.sum(axis=0) for run in self.records.runs], axis=0)
         return energy
 
     @cached_property
@@ -132,7 +135,8 @@ class Place:
     @cached_property
     def _sums(self) -> list[Sums]:
         modes = self.modes
-        return [Sums.of(run, modes.poles, modes.right, modes.shapes) for run in self.likelihood.records.runs]
+        runs, values = self.likelihood.records.runs, self.values
+        return [Sums.of(run, values, modes.poles, modes.right, modes.shapes) for run in runs]
 
     @cached_property
     def _slopes(self) -> list[Complex]:
@@ -149,11 +153,14 @@ class Place:
 
     @cached_property
     def _defective(self) -> bool:
-        return self.modes.condition > _DEFECTIVE
+        # Delays turn shapes: they have no long way, and bear with what rounding leaves near a critical damping.
+        delayed = any(run.late.shape[1] for run in self.likelihood.records.runs)
+        return not delayed and self.modes.condition > _DEFECTIVE
 
-    def misfit(self, weights: Real) -> Real:
-        """Give the residual sums of squares alone, (m/s²)², shape (drop, channel)."""
-        return self.likelihood.records.in_order([one.residual for one in self._solve(weights)])
+    def misfit(self, weights: Real) -> tuple[Real, float]:
+        """Give the residual sums of squares alone, (m/s²)², shape (drop, channel), and what delays cost beside them."""
+        solved = self._solve(weights)
+        return self.likelihood.records.in_order([one.residual for one in solved]), sum(one.penalty for one in solved)
 
     def evaluate(self, weights: Real) -> Evaluation:
         """Evaluate fit and derivatives."""
@@ -165,13 +172,13 @@ class Place:
                 np.sum([drop.gradient for drop in drops], axis=0),
                 np.sum([drop.information for drop in drops], axis=0),
             )
-        solved = self._solve(weights)
-        pairs = list(zip(solved, self._slopes, strict=True))
+        pairs = self._solve_with(weights, self._slopes)
         return Evaluation(
-            self.likelihood.records.in_order([one.residual for one in solved]),
-            np.sum([one.leverage for one in solved], axis=0),
+            self.likelihood.records.in_order([one.residual for one, _ in pairs]),
+            np.sum([one.leverage for one, _ in pairs], axis=0),
             np.concatenate([one.gradient(slopes) for one, slopes in pairs]).sum(axis=0),
             np.concatenate([one.information(slopes) for one, slopes in pairs]).sum(axis=0),
+            sum(one.penalty for one, _ in pairs),
         )
 
     def by_drop(self, weights: Real) -> tuple[Real, Real]:
@@ -179,7 +186,7 @@ class Place:
         if self._defective:
             drops = self._longhand(weights)
             return np.array([drop.gradient for drop in drops]), np.array([drop.information for drop in drops])
-        pairs = list(zip(self._solve(weights), self._slopes, strict=True))
+        pairs = self._solve_with(weights, self._slopes)
         in_order = self.likelihood.records.in_order
         gradients = in_order([solved.gradient(slopes) for solved, slopes in pairs])
         return gradients, in_order([solved.information(slopes, apart=True) for solved, slopes in pairs])
@@ -203,7 +210,7 @@ class Place:
             return None
         pairs = zip(self._slopes, self._of_runs(more), strict=True)
         slopes = [np.ascontiguousarray(np.concatenate([own, other], axis=2)) for own, other in pairs]
-        solved = list(zip(self._solve(weights), slopes, strict=True))
+        solved = self._solve_with(weights, slopes)
         gradient = np.sum([one.gradient(those).sum(axis=0) for one, those in solved], axis=0)
         return gradient, np.sum([one.information(those).sum(axis=0) for one, those in solved], axis=0)
 
@@ -215,7 +222,7 @@ class Place:
         """
         if self._defective:  # modes of their own cannot be told apart
             return np.zeros((len(self.values), len(self.values)))
-        pairs = zip(self._solve(weights), self._slopes, strict=True)
+        pairs = self._solve_with(weights, self._slopes)
         feigned: Real = np.sum([solved.feigned(slopes) for solved, slopes in pairs], axis=0)
         return feigned
 
@@ -230,6 +237,50 @@ class Place:
                 found[position] = record
         return [found[position] for position in range(self.likelihood.records.drops)]
 
+    def delays(self, weights: Real, covariance: Real) -> dict[int, tuple[Real, Real]]:
+        """Give the delays of the drops with several loggers, by the drop's position.
+
+        Parameters
+        ----------
+        weights
+            1/σ².
+        covariance
+            Of the parameters, SI, shape (parameter, parameter).
+
+        Returns
+        -------
+        dict
+            How late each logger is, s, shape (logger,), and the covariance of that.
+        """
+        found: dict[int, tuple[Real, Real]] = {}
+        for solved, slopes in self._solve_with(weights, self._slopes):
+            if solved.delays is not None:
+                positions, spreads = solved.sums.run.order.tolist(), solved.delay_covariances(slopes, covariance)
+                found |= dict(zip(positions, zip(solved.delays.values, spreads, strict=True), strict=True))
+        return found
+
+    def slid(self, weights: Real, shifts: Real) -> dict[int, Real]:
+        """Slide the clocks of loggers about, one after the other, to where each drop's records are most likely.
+
+        Parameters
+        ----------
+        weights
+            1/σ².
+        shifts
+            s, shape (shift,): what is tried beside what is expected of each clock.
+
+        Returns
+        -------
+        dict
+            By the drop's position how late its loggers are, s, shape (logger,).
+        """
+        return {
+            position: late
+            for sums in self._sums
+            if sums.run.late.shape[1]
+            for position, late in zip(sums.run.order.tolist(), sums.slid(weights, shifts), strict=True)
+        }
+
     def states(self, weights: Real) -> Real:
         """Give {X, Ẋ} of each drop at its first sample, SI, shape (drop, 14)."""
         if self._defective:
@@ -242,6 +293,10 @@ class Place:
 
     def _solve(self, weights: Real) -> list[Amplitudes]:
         return [sums.solve(weights) for sums in self._sums]
+
+    def _solve_with(self, weights: Real, slopes: Sequence[Complex]) -> list[tuple[Amplitudes, Complex]]:
+        """Solve every run, and give its slopes where its delays are."""
+        return [(one, one.turned(own)) for one, own in zip(self._solve(weights), slopes, strict=True)]
 
     def _longhand(self, weights: Real) -> list[Longhand]:
         """Evaluate every drop the long way, in the fit's order."""

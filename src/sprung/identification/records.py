@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.identification.sums import BLOCK, blocks, correlate
 from sprung.prepare import Decay
+from sprung.recording import LoggerClock
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -37,12 +38,21 @@ class Run:
     samples
         Of each record, shape (record,).
     present
-        1 for a channel that is used, 0 for one that is left out; shape (channel,).
+        1 for a channel that is used, 0 for one that is left out, and for one that was interpolated the samples that were taken
+        for each that is there; shape (channel,).
     energy
         Sum of squares of the centred records, (m/s²)², shape (record, channel).
     blocked
         Centred records cut into blocks, one after the other, channels that are left out zero; shape (block, channel,
         BLOCK).
+    late
+        Of several loggers which one recorded each channel, shape (channel, logger), every record then being a group; no
+        column where all channels have one clock.
+    expected, expected_std
+        How late each of them was in each record as far as anybody knows, and how sure that is, s, shape (record, logger).
+    follows
+        By how much the first of these, s at parameters of zero, grows with each parameter, s per SI unit; shape (record,
+        logger, parameter).
     """
 
     order: Index
@@ -53,24 +63,34 @@ class Run:
     present: Real
     energy: Real
     blocked: Real
+    late: Real
+    expected: Real
+    expected_std: Real
+    follows: Real
 
     @classmethod
-    def of(cls, order: Sequence[int], decays: Sequence[Decay], loads: Sequence[str]) -> Run:
+    def of(cls, order: Sequence[int], decays: Sequence[Decay], loads: Sequence[str], names: Sequence[str] = ()) -> Run:
         """Take up decays that belong together, by their positions in the list of all."""
-        alike = sorted({(loads.index(decays[i].load), 1.0 / decays[i].rate) for i in order})
-        groups = {i: alike.index((loads.index(decays[i].load), 1.0 / decays[i].rate)) for i in order}
+        clocks = decays[order[0]].clocks
+        kind = {i: (loads.index(decays[i].load), 1.0 / decays[i].rate, i if clocks else 0) for i in order}
+        alike = sorted(set(kind.values()))
+        groups = {i: alike.index(kind[i]) for i in order}
         order = sorted(order, key=groups.__getitem__)
         samples = np.array([decays[i].samples for i in order])
         cut = [blocks(decays[i].values, decays[i].usable) for i in order]
         return cls(
             order=np.array(order),
             group=np.array([groups[i] for i in order]),
-            load=np.array([load for load, _ in alike]),
-            step=np.array([step for _, step in alike]),
+            load=np.array([load for load, *_ in alike]),
+            step=np.array([step for _, step, _ in alike]),
             samples=samples,
-            present=np.array(decays[order[0]].usable, dtype=float),
+            present=decays[order[0]].usable * _shares(decays[order[0]]),
             energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
             blocked=np.concatenate(cut),
+            late=_loggers(decays[order[0]]),
+            expected=np.array([[clock.late for clock in decays[i].clocks] for i in order]),
+            expected_std=np.array([[clock.std for clock in decays[i].clocks] for i in order]),
+            follows=np.array([[_by_parameter(clock, names) for clock in decays[i].clocks] for i in order]),
         )
 
     @cached_property
@@ -121,6 +141,10 @@ class Run:
             present=self.present,
             energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
             blocked=np.concatenate(cut),
+            late=self.late[:, :0],
+            expected=self.expected[long, :0],
+            expected_std=self.expected_std[long, :0],
+            follows=self.follows[long, :0],
         )
 
     def shortened(self, duration: float) -> Run:
@@ -179,17 +203,20 @@ class Records:
     drops: int
 
     @classmethod
-    def of(cls, decays: Sequence[Decay]) -> Records:
-        """Take up decays of any load, rate and length."""
+    def of(cls, decays: Sequence[Decay], names: Sequence[str] = ()) -> Records:
+        """Take up decays of any load, rate and length, to be fitted by parameters of these names."""
         loads = tuple(sorted({decay.load for decay in decays}))
-        together: dict[tuple[bool, ...], list[list[int]]] = {}
+        together: dict[tuple[object, ...], list[list[int]]] = {}
         for i in sorted(range(len(decays)), key=lambda i: (decays[i].load, decays[i].rate)):
-            runs = together.setdefault(tuple(decays[i].usable), [[]])
+            loggers = tuple((clock.channels, clock.share) for clock in decays[i].clocks)
+            runs = together.setdefault((*decays[i].usable, loggers), [[]])
             if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK:
                 runs.append([])
             runs[-1].append(i)
         return cls(
-            loads, tuple(Run.of(order, decays, loads) for runs in together.values() for order in runs), len(decays)
+            loads,
+            tuple(Run.of(order, decays, loads, names) for runs in together.values() for order in runs),
+            len(decays),
         )
 
     def in_order(self, by_run: Sequence[Real]) -> Real:
@@ -198,3 +225,25 @@ class Records:
         for run, values in zip(self.runs, by_run, strict=True):
             ordered[run.order] = values
         return ordered
+
+
+def _shares(decay: Decay) -> Real:
+    """Give the samples that each channel's logger took for each one of the decay, shape (channel,)."""
+    shares = np.ones(len(decay.values))
+    for clock in decay.clocks:
+        shares[list(clock.channels)] = clock.share
+    return shares
+
+
+def _loggers(decay: Decay) -> Real:
+    """Say which logger recorded which channel, shape (channel, logger)."""
+    own = np.zeros((len(decay.values), len(decay.clocks)))
+    for column, clock in enumerate(decay.clocks):
+        own[list(clock.channels), column] = 1.0
+    return own
+
+
+def _by_parameter(clock: LoggerClock, names: Sequence[str]) -> list[float]:
+    """Give how a clock follows the parameters of a fit, which may share half-distances; shape (parameter,)."""
+    parts = {"t_f": ("t_f1", "t_f2"), "t_r": ("t_r1", "t_r2")}
+    return [sum(clock.follows.get(part, 0.0) for part in parts.get(name, (name,))) for name in names]

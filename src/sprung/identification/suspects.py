@@ -44,6 +44,9 @@ class Suspect(NamedTuple):
         By how much, in that unit.
     std
         Standard uncertainty of that in white noise.
+    pull
+        By how many of its own standard uncertainties a parameter moves with one of this, the most of all parameters: how
+        much less is known of the vehicle where this is not known.
     """
 
     kind: Kind
@@ -52,6 +55,7 @@ class Suspect(NamedTuple):
     item: int
     value: float
     std: float
+    pull: float
 
     @property
     def gain(self) -> float:
@@ -100,14 +104,22 @@ def suspects(
     across = seen.T @ information[:parameters, parameters:]
     left = np.diag(information)[parameters:] - np.einsum("pe,pq,qe->e", across, inverse, across)
     score = gradient[parameters:] - across.T @ inverse @ (told.T @ own)
+    directions = told @ inverse
+    spreads = np.sqrt(np.maximum(np.einsum("ij,ij->i", directions, told), np.finfo(float).tiny))
+    pulls = np.abs(directions @ across / spreads[:, None]).max(axis=0, initial=0.0)
     alone = np.diag(information)[parameters:]
     known = left > 1e-9 * np.maximum(alone, np.finfo(float).tiny)
     named = [
-        Suspect(kind, where, axis, item, float(score[i] / left[i]), float(left[i] ** -0.5))
+        Suspect(kind, where, axis, item, *_estimate(float(score[i]), float(left[i]), float(pulls[i])))
         for i, (kind, where, axis, item) in enumerate(accused)
         if known[i]
     ]
     return tuple(sorted(named, key=lambda one: one.gain, reverse=True))
+
+
+def _estimate(score: float, left: float, pull: float) -> tuple[float, float, float]:
+    """Give value, standard uncertainty and pull, from the score and the information that the parameters leave."""
+    return score / left, left**-0.5, pull * left**-0.5
 
 
 _Who = tuple[Kind, str, int, int]

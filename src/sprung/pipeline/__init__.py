@@ -1,18 +1,22 @@
 """The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
 
-from sprung.pipeline.check import Check, DropReport, check
+from sprung.pipeline.check import ChannelReport, Check, DropReport, check
+from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.identify import identify
 from sprung.pipeline.modes import modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.result import FitReport, Result, Series, load
 
 __all__ = [
+    "ChannelReport",
     "Check",
+    "Draft",
     "DropReport",
     "FitReport",
     "Result",
     "Series",
     "check",
+    "draft",
     "identify",
     "load",
     "modes",

@@ -1,17 +1,54 @@
-"""Look at the recordings, identify nothing: which part of each drop can be used, and what is wrong."""
+"""Look at the recordings, identify nothing: which part of each drop can be used, why, and what is wrong."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any, Literal
+
+import numpy as np
 
 from sprung.errors import Fault
-from sprung.prepare import Prepared, prepare
-from sprung.recording import Campaign
+from sprung.pipeline.clocks import ClockReport
+from sprung.prepare import Decay, Events, Prepared, Seen, prepare
+from sprung.recording import Campaign, Drop, Recording
+from sprung.vehicle import WHEELS, Sensor, Wheel
+
+
+@dataclass(frozen=True)
+class ChannelReport:
+    """What one channel of one drop shows.
+
+    Attributes
+    ----------
+    name
+        The channel's.
+    on
+        What its sensor sits on: the body, or a wheel station.
+    noise
+        At rest on the blocks, m/s² root-mean-square; None where the recording shows no rest.
+    peak
+        Largest reading from the release on, counted from the reading at rest (without one, from the mean), m/s²; None
+        where nothing of the channel can be read.
+    used
+        Whether it is in the decay.
+    faults
+        Codes of its own.
+    """
+
+    name: str
+    on: Literal["body", "fl", "fr", "rl", "rr"]
+    noise: float | None
+    peak: float | None
+    used: bool
+    faults: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class DropReport:
-    """One drop: which part of it was used, and the codes of its faults; start and end are None where none was.
+    """One drop: what happened when, which part of it was used, why, and the codes of its faults.
+
+    Times are in s on the recording's own clock. What results of an older sprung do not have is None or empty.
 
     Attributes
     ----------
@@ -20,9 +57,26 @@ class DropReport:
     load
         Name of the load on the vehicle.
     start, end
-        Of the decay, s on the file's own clock.
+        Of the decay; None where none was used.
     faults
         Codes.
+    kind
+        ``bounce``, ``pitch front``, ``pitch rear``, ``roll left``, ``roll right``, or the wheels by name.
+    wheels
+        Which wheels were dropped, as the campaign says.
+    wheels_seen
+        Which wheels the release shows to have fallen; as stated where no sensor tells. None without a release.
+    release, landing, last_lift_off
+        First motion; when the last wheel that fell met the ground; the last moment a tyre may have been off it. None
+        where the records do not tell.
+    why_start, why_end
+        The reason for each limit of the decay, in words.
+    rate
+        Samples per second.
+    channels
+        What each channel shows.
+    clocks
+        For several loggers how their clocks stood, as the fit found it.
     """
 
     file: str
@@ -30,6 +84,22 @@ class DropReport:
     start: float | None
     end: float | None
     faults: tuple[str, ...]
+    kind: str = ""
+    wheels: tuple[Wheel, ...] = ()
+    wheels_seen: tuple[Wheel, ...] | None = None
+    release: float | None = None
+    landing: float | None = None
+    last_lift_off: float | None = None
+    why_start: str = ""
+    why_end: str = ""
+    rate: float | None = None
+    channels: tuple[ChannelReport, ...] = ()
+    clocks: tuple[ClockReport, ...] = ()
+
+    @property
+    def contradicted(self) -> bool:
+        """Whether the records show other wheels to have fallen than the campaign says."""
+        return self.wheels_seen is not None and set(self.wheels_seen) != set(self.wheels)
 
 
 @dataclass(frozen=True)
@@ -39,18 +109,28 @@ class Check:
     Attributes
     ----------
     drops
-        Which part of each drop can be used.
+        What happened in each drop, and which part of it can be used.
     faults
         Everything that is wrong, the harmless included.
+    seen
+        What each drop's recording shows, to draw.
+    recordings
+        Each drop's recording as it was read, to draw what was left out of it.
     """
 
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
+    seen: tuple[Seen, ...] = field(default=(), repr=False)
+    recordings: tuple[Recording, ...] = field(default=(), repr=False)
 
     @property
     def usable(self) -> bool:
         """Whether at least one drop can be used."""
         return any(drop.start is not None for drop in self.drops)
+
+    def document(self) -> dict[str, Any]:
+        """Give drops and faults as JSON holds them."""
+        return {"drops": [asdict(drop) for drop in self.drops], "faults": [asdict(fault) for fault in self.faults]}
 
 
 def check(campaign: Campaign) -> Check:
@@ -73,11 +153,61 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     used = {decay.file: decay for decay in prepared.decays}
     left_out = {recording.name: faults for _, recording, faults in prepared.left_out}
     reports = []
-    for drop, recording in zip(campaign.drops, campaign.recordings, strict=True):
-        decay = used.get(recording.name)
-        faults = left_out[recording.name] if decay is None else decay.faults
-        start, end = (None, None) if decay is None else (decay.start, decay.end)
-        reports.append(DropReport(recording.name, drop.load, start, end, tuple(fault.code for fault in faults)))
+    for drop, seen in zip(campaign.drops, prepared.seen, strict=True):
+        name = seen.recording.name
+        decay = used.get(name)
+        faults = left_out[name] if decay is None else decay.faults
+        reports.append(_report(drop, seen, decay, faults, campaign.sensors))
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
-    return Check(tuple(reports), (*campaign.faults, *of_drops, *of_left_out))
+    everything = (*campaign.faults, *of_drops, *of_left_out)
+    return Check(tuple(reports), everything, prepared.seen, campaign.recordings)
+
+
+def _report(
+    drop: Drop, seen: Seen, decay: Decay | None, faults: Sequence[Fault], sensors: Sequence[Sensor]
+) -> DropReport:
+    recording = seen.recording
+    released = None if seen.release is None else recording.start + seen.release / recording.rate
+    events = Events(release=released) if decay is None else decay.events
+    return DropReport(
+        file=recording.name,
+        load=drop.load,
+        start=None if decay is None else decay.start,
+        end=None if decay is None else decay.end,
+        faults=tuple(fault.code for fault in faults),
+        kind=drop.kind,
+        wheels=drop.wheels,
+        wheels_seen=_fallen(drop, seen) if seen.fell else None,
+        release=events.release,
+        landing=events.landing,
+        last_lift_off=events.last_lift_off,
+        why_start=events.why_start,
+        why_end=events.why_end,
+        rate=recording.rate,
+        channels=tuple(_channels(seen, decay, faults, sensors)),
+    )
+
+
+def _fallen(drop: Drop, seen: Seen) -> tuple[Wheel, ...]:
+    return tuple(wheel for wheel in WHEELS if seen.fell.get(wheel, wheel in drop.wheels))
+
+
+def _channels(
+    seen: Seen, decay: Decay | None, faults: Sequence[Fault], sensors: Sequence[Sensor]
+) -> Iterator[ChannelReport]:
+    recording, rest = seen.recording, seen.rest
+    for channel, (name, sensor) in enumerate(zip(recording.channels, sensors, strict=True)):
+        values = recording.values[channel]
+        at_rest = seen.release is not None and np.isfinite(rest.level[channel])
+        level = rest.level[channel] if at_rest else values.mean()
+        peak = np.abs(values[seen.release or 0 :] - level).max(initial=0.0)
+        used = decay is not None and bool(decay.usable[channel])
+        yield ChannelReport(
+            name=name,
+            on=sensor.on,
+            noise=float(np.sqrt(np.mean(rest.noise[channel] ** 2))) if at_rest else None,
+            peak=float(peak) if np.isfinite(peak) else None,
+            used=used,
+            faults=tuple(fault.code for fault in faults if fault.where == f"{recording.name}: {name}"),
+        )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from typing import NamedTuple
 
 import numpy as np
 
-from sprung.errors import Problems
+from sprung.errors import Fault, Problems
 from sprung.identification import (
     CONVERGED,
     NEAR,
@@ -22,11 +23,12 @@ from sprung.identification import (
     expected_gain,
     look_around,
     mode_estimates,
+    suspects,
 )
-from sprung.pipeline.accusation import accuse
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
-from sprung.pipeline.exchange import undo_exchange
+from sprung.pipeline.clocks import clock_reports, set_clocks
+from sprung.pipeline.diagnosis import Bench, Hypothesis, Suspicion, diagnose, suspicious, without_looking_at_wheels
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
@@ -40,6 +42,9 @@ METHOD = "joint maximum likelihood"
 
 _UNLIKELY = 0.25
 """Part of the gain that is asked of a larger model below which it is not even fitted."""
+
+_DIAGNOSES = 3
+"""How many times what is wrong is looked for, each time in what was put right before."""
 
 _BEFORE_DECAY = 0.1
 """s from the release to the decay in a usual drop, for planning further ones."""
@@ -109,6 +114,10 @@ class Fitted(NamedTuple):
         Where the fit ended.
     fit
         How sure it is.
+    found
+        The decays as they were found, before any fit.
+    accused
+        What is probably wrong, though nothing was done about it.
     """
 
     campaign: Campaign
@@ -117,6 +126,8 @@ class Fitted(NamedTuple):
     prepared: Prepared
     summit: Summit
     fit: Fit
+    found: tuple[Decay, ...]
+    accused: tuple[Fault, ...] = ()
 
 
 def fit_campaign(
@@ -126,19 +137,51 @@ def fit_campaign(
     extras: Sequence[str] | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Fitted:
-    """Fit a campaign, as `identify` does before it judges."""
+    """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
+    fitted, mended = _fit(campaign, tracks, extras, (), progress), tuple[Hypothesis, ...]()
+    for _ in range(_DIAGNOSES):
+        suspicion = suspicious(fitted.campaign, fitted.prepared.decays, fitted.summit)
+        if suspicion == "none":
+            break
+        progress("looking for what is wrong")
+        taken = _diagnosed(fitted, suspicion)
+        mended = (*mended, *(one for one in taken if one.remedy != "named"))
+        accused = tuple(one.fault for one in taken if one.remedy == "named")
+        if len(taken) > len(accused):
+            fitted = _fit(campaign, tracks, extras, mended, progress)
+        fitted = fitted._replace(accused=accused)
+        if accused or not taken:
+            break
+    if any(one.settle is not None for one in mended):
+        loads = {load.name: load for load in fitted.campaign.loads}
+        listed = suspects(fitted.summit, fitted.campaign.sensors, loads, campaign.cg_height)
+        mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
+        fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
+    return fitted
+
+
+def _fit(
+    campaign: Campaign,
+    tracks: Tracks | None,
+    extras: Sequence[str] | None,
+    mended: Sequence[Hypothesis],
+    progress: Callable[[str], None],
+) -> Fitted:
+    """Fit a campaign with what is wrong put right or left out."""
+    left_out = {one.drop: one.fault for one in mended if one.drop is not None}
+    for one in mended:
+        if one.drop is None:
+            changed = one.change(campaign)
+            campaign = replace(changed, faults=(*changed.faults, one.fault))
     choice = choose_model(campaign, tracks, None if extras is None else tuple(extras))
     progress("finding the decays")
-    prepared = prepare(campaign)
+    prepared = _without(campaign, prepare(campaign), left_out)
     _need_decays(campaign, prepared)
-    first = _ascend(campaign, choice, prepared.decays, None, NEAR, progress)
-    as_they_are, first = undo_exchange(
-        prepared.decays,
-        [sensor.channel for sensor in campaign.sensors],
-        first,
-        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, 1),
+    prepared, first = set_clocks(
+        campaign, prepared, lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress)
     )
-    prepared = prepared._replace(decays=as_they_are)
+    start = None if first is None else first.parameters
+    first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
     choice, first, why = _choose_tracks(campaign, choice, prepared.decays, first, progress)
     decays, summit = ascend_from_contact(
         prepared.decays,
@@ -148,7 +191,36 @@ def fit_campaign(
     )
     summit = look_around(summit)
     progress("judging the fit")
-    return Fitted(campaign, choice, why, prepared._replace(decays=decays), summit, describe(summit, decays))
+    fit = describe(summit, decays)
+    return Fitted(campaign, choice, why, prepared._replace(decays=decays), summit, fit, prepared.decays)
+
+
+def _without(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
+    """Leave drops out of what was prepared, by their recordings."""
+    named = {one.name: (drop, one) for drop, one in zip(campaign.drops, campaign.recordings, strict=True)}
+    gone = [decay for decay in prepared.decays if decay.file in left_out]
+    return prepared._replace(
+        decays=tuple(decay for decay in prepared.decays if decay.file not in left_out),
+        left_out=(*prepared.left_out, *((*named[one.file], (*one.faults, left_out[one.file])) for one in gone)),
+    )
+
+
+def _diagnosed(fitted: Fitted, suspicion: Suspicion) -> tuple[Hypothesis, ...]:
+    """Look for what is wrong, with the larger of the models that are open."""
+    choice = fitted.choice
+    tracks: Tracks = "separate" if choice.open else choice.tracks
+
+    def bench(decays: Sequence[Decay]) -> Bench:
+        return Bench.of(fitted.campaign, decays, tracks, choice.extras)
+
+    if suspicion == "contradicted":
+        return diagnose(bench(fitted.prepared.decays))
+    # A sensor that tells something wrong may have told the landing wrong. Without any, what is left may be too little.
+    safe = bench(without_looking_at_wheels(fitted.campaign, fitted.found))
+    taken = diagnose(safe)
+    if safe.base.explained or any(not one.specific and one.fault.code != "drift" for one in taken):
+        return diagnose(bench(fitted.found)) or taken
+    return taken
 
 
 def as_test(fitted: Fitted) -> PlannedTest:
@@ -232,13 +304,13 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
 
 def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None) -> Result:
     """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
-    campaign, choice, why, prepared, summit, fit = fitted
+    campaign, choice, why, prepared, summit, fit, _, accused = fitted
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
+    clocks = clock_reports(summit, fit, decays)
     estimates = conclude(fit, choice.known)
     misfit = judge_residuals(fit, decays)
-    accused = accuse(campaign, decays, summit, misfit, fit.inflation)
     verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused])
     profiles = profiles_of(profile, summit, fit, choice.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
@@ -254,7 +326,7 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
         correlation=estimates.correlation,
         modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
         fit=_fit_report(choice, why, fit, decays, channels, misfit),
-        drops=looked_at.drops,
+        drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         series={decay.name: _series(decay, fitted, channels) for decay, fitted in zip(decays, fit.fitted, strict=True)},
     )

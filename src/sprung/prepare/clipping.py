@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.errors import Fault
 from sprung.prepare.release import resolution
+from sprung.recording import Recording
 from sprung.units import acceleration_factor
 from sprung.vehicle import Sensor
 
@@ -16,49 +19,92 @@ Real = NDArray[np.float64]
 _FULL = 0.999
 """Part of the full scale from which a reading is at it."""
 
+_BEYOND = 1.02
+"""Full scales from which a reading is beyond it: then it is another one than stated."""
+
 _PLATEAU = 3
 """Samples in a row at a channel's extreme which are no chance, once its shoulders are steep."""
 
 _STEEP = 4.0
 """Steps of resolution that a signal has to jump on to a plateau and off it: a peak that is merely flat does not."""
 
+_NOISY, _COARSE = 6.0, 0.05
+"""Changes from sample to sample that it has to jump likewise, where a step of resolution is no small part of one: then noise
+may stay on one step for some samples, and a finer signal never does."""
 
-def clipped_samples(values: Real, sensors: Sequence[Sensor]) -> NDArray[np.bool_]:
+
+def with_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recording:
+    """Give a recording that no file was read for the full scale of its channels, and take back one that cannot be.
+
+    Parameters
+    ----------
+    recording
+        As it was read.
+    sensors
+        One for each channel, with a range in its own unit, or else in m/s².
+
+    Returns
+    -------
+    Recording
+        With a fault for each channel that reads more than its range.
+    """
+    stated = recording.full_scale or tuple(
+        None if sensor.range is None else sensor.range * acceleration_factor(sensor.unit or "m/s^2")
+        for sensor in sensors
+    )
+    peaks = np.abs(recording.values).max(axis=1, initial=0.0).tolist()
+    kept = tuple(
+        None if scale is None or peak > _BEYOND * scale else scale for peak, scale in zip(peaks, stated, strict=True)
+    )
+    faults = [
+        Fault(
+            "unit",
+            f"{recording.name}: {channel}",
+            f"it reads up to {peak:.4g} m/s², beyond its range of {scale:.4g} m/s²; the range was not used",
+            "Correct the range or the unit of the sensor in the campaign file.",
+        )
+        for channel, peak, scale, now in zip(recording.channels, peaks, stated, kept, strict=True)
+        if scale is not None and now is None
+    ]
+    return replace(recording, full_scale=kept, faults=(*recording.faults, *faults))
+
+
+def clipped_samples(recording: Recording) -> NDArray[np.bool_]:
     """Find the clipped samples.
 
     Parameters
     ----------
-    values
-        Shape (channel, time), m/s²; channels that are left out NaN.
-    sensors
-        One for each channel; the range of one that has it decides, otherwise the channel's own extremes do.
+    recording
+        With its full scale, which decides where it is known; otherwise the channel's own extremes do.
 
     Returns
     -------
     ndarray
         Shape (channel, time).
     """
+    values = recording.values
     found = np.zeros(values.shape, dtype=bool)
     steps = resolution(np.nan_to_num(values))
-    for channel, sensor in enumerate(sensors):
+    for channel, full_scale in enumerate(recording.full_scale or [None] * len(values)):
         signal = values[channel]
-        if np.isnan(signal).any():
+        if np.isnan(signal).any() or not signal.size:
             continue
-        if sensor.range is not None and sensor.unit is not None:
-            found[channel] = np.abs(signal) >= _FULL * sensor.range * acceleration_factor(sensor.unit)
+        if full_scale is not None:
+            found[channel] = np.abs(signal) >= _FULL * full_scale
         else:
-            found[channel] = _plateaus(signal, signal.max(), steps[channel])
-            found[channel] |= _plateaus(signal, signal.min(), steps[channel])
+            step, usual = float(steps[channel]), float(np.median(np.abs(np.diff(signal))))
+            jump = max(_STEEP * step, _NOISY * usual if step > _COARSE * usual else 0.0)
+            found[channel] = _plateaus(signal, signal.max(), jump) | _plateaus(signal, signal.min(), jump)
     return found
 
 
-def _plateaus(signal: Real, extreme: float, step: float) -> NDArray[np.bool_]:
+def _plateaus(signal: Real, extreme: float, jump: float) -> NDArray[np.bool_]:
     at = np.concatenate([[0], (signal == extreme).astype(int), [0]])
     begins, ends = np.flatnonzero(np.diff(at) == 1), np.flatnonzero(np.diff(at) == -1)
     found = np.zeros(signal.size, dtype=bool)
     for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
         last = signal.size - 1
         outside = signal[[begin - 1 if begin else 0, end if end < last else last]]
-        if end - begin >= _PLATEAU and np.all(np.abs(outside - extreme) > _STEEP * step):
+        if end - begin >= _PLATEAU and np.all(np.abs(outside - extreme) > jump):
             found[begin:end] = True
     return found

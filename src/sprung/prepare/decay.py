@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.prepare.events import Events
 from sprung.prepare.release import Rest
+from sprung.recording import LoggerClock
+
+FITTED = "in the fitted vehicle every tyre is down for good"
+"""Why a decay starts where it does, once a fit has moved its start."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +42,10 @@ class Decay:
         What the sensors read while the vehicle stood on the blocks.
     faults
         What is wrong with the drop.
+    clocks
+        For several loggers how their clocks stand to this one; without any, all channels have one clock.
+    events
+        When what happened, and why the decay has its limits.
     """
 
     name: str
@@ -48,6 +57,8 @@ class Decay:
     start: float
     rest: Rest
     faults: tuple[Fault, ...] = ()
+    clocks: tuple[LoggerClock, ...] = ()
+    events: Events = field(default_factory=Events)
 
     @cached_property
     def usable(self) -> NDArray[np.bool_]:
@@ -71,7 +82,8 @@ class Decay:
         whole = np.concatenate([self.earlier, self.values], axis=1)
         first = self.earlier.shape[1] + samples
         start = self.start + samples / self.rate
-        return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start)
+        events = replace(self.events, last_lift_off=start, why_start=FITTED) if samples else self.events
+        return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start, events=events)
 
     @property
     def end(self) -> float:

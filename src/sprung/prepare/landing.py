@@ -53,10 +53,19 @@ class Landing(NamedTuple):
         First sample after every wheel that fell has landed once: before it nothing is free vibration.
     certain
         First sample from which no tyre can have left the ground again.
+    why
+        What that is known from, in words.
+    landed
+        First sample after the last wheel that fell met the ground; None where no sensor tells.
+    lifted
+        Last sample at which a tyre may have been off the ground; None where no sensor tells.
     """
 
     possible: int
     certain: int
+    why: str
+    landed: int | None = None
+    lifted: int | None = None
 
 
 def suspension_jump(
@@ -146,15 +155,26 @@ def find_decay(
         if low.size:
             last = max(last, release.sample + int(low[-1]) + 1)
         if sensor.on in dropped:
-            first = max(first, _steepest_rise(reading[channel, : release.sample + impact], release.sample))
+            first = max(first, steepest_rise(reading[channel, : release.sample + impact], release.sample))
     if not (first or last):
         return None
     # The rise tells the landing to a few samples; what lies before it costs nothing, for the fit will say where it was.
     possible = max((first or last) - int(np.ceil(_EARLIER * rate)), release.sample)
-    return Landing(possible, max(first, last))
+    why = (
+        "no tyre can be off the ground any more" if last > first else "every wheel that fell has landed and stays down"
+    )
+    return Landing(possible, max(first, last), why, first or None, max(first, last) - 1)
 
 
-def _steepest_rise(reading: Real, release: int) -> int:
-    """Give the sample after the steepest rise between the release and the wheel's hardest impact."""
+def steepest_rise(reading: Real, release: int) -> int:
+    """Give the sample after the steepest rise between the release and the wheel's hardest impact.
+
+    Parameters
+    ----------
+    reading
+        Of one sensor on a wheel, positive up, shape (time,).
+    release
+        Sample of the release.
+    """
     impact = release + int(np.argmax(reading[release:]))
     return impact if impact - release < 2 else release + int(np.argmax(np.diff(reading[release : impact + 1]))) + 1

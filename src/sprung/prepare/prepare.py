@@ -11,12 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.prepare.clipping import clipped_samples
+from sprung.prepare.alignment import align, lively
+from sprung.prepare.clipping import clipped_samples, with_full_scale
 from sprung.prepare.coupling import direct_coupled
 from sprung.prepare.decay import Decay
+from sprung.prepare.drift import steady
+from sprung.prepare.events import Events, Seen, filled_in, marked, seen_in
 from sprung.prepare.gravity import put_right
 from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
+from sprung.prepare.spikes import without_spikes
 from sprung.recording import Campaign, Drop, Recording
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Wheel
@@ -35,6 +39,8 @@ _LOW_BLOCKS, _HOPPING = 0.1, 0.25
 _CLIPPED = 0.6
 """s after the release up to which clipping only delays the decay; a channel that clips for longer is left out."""
 
+_ALLOWED_FOR = "a fall and two periods of wheel hop after the release, as no sensor tells when the wheels landed"
+
 _TYPICAL_SUSPENSION = 70.0
 """Static suspension force over unsprung mass, m/s², for a wheel that no release has weighed: between car and bus."""
 
@@ -48,10 +54,13 @@ class Prepared(NamedTuple):
         One for each drop that can be used, in the campaign's order.
     left_out
         For the other drops their names and why.
+    seen
+        For every drop of the campaign, in its order, what its recording shows.
     """
 
     decays: tuple[Decay, ...]
     left_out: tuple[tuple[Drop, Recording, tuple[Fault, ...]], ...]
+    seen: tuple[Seen, ...] = ()
 
 
 def prepare(campaign: Campaign) -> Prepared:
@@ -66,15 +75,18 @@ def prepare(campaign: Campaign) -> Prepared:
     -------
     Prepared
     """
-    campaign = replace(campaign, recordings=_alive(campaign.recordings))
-    releases = [_release(recording) for recording in campaign.recordings]
-    righted, releases = put_right(campaign.recordings, releases)
-    campaign = replace(campaign, recordings=tuple(righted))
-    # A sensor clips before its high-pass is undone: what it read then is no longer within its range.
-    clipped = [clipped_samples(recording.values, campaign.sensors) for recording in campaign.recordings]
+    smooth = [without_spikes(recording) for recording in campaign.recordings]
+    spiked = [filled_in(*pair) for pair in zip(campaign.recordings, smooth, strict=True)]
+    whole = _alive([align(recording) for recording in smooth])
+    scaled = [with_full_scale(recording, campaign.sensors) for recording in whole]
+    righted = put_right(scaled, [_release(recording) for recording in scaled], campaign.sensors)
+    releases, sensors = righted.releases, righted.sensors
+    campaign = replace(campaign, sensors=sensors)
+    # A sensor clips before its drift is taken off or its high-pass undone: what it read then is not within its range.
+    clipped = [clipped_samples(recording) for recording in righted.recordings]
     recordings = [
-        recording if release is None else direct_coupled(recording, release, campaign.sensors)
-        for recording, release in zip(campaign.recordings, releases, strict=True)
+        recording if release is None else direct_coupled(steady(recording, release, sensors), release, sensors)
+        for recording, release in zip(righted.recordings, releases, strict=True)
     ]
     campaign = replace(campaign, recordings=tuple(recordings))
     suspension = _weigh_corners(campaign, releases)
@@ -85,7 +97,11 @@ def prepare(campaign: Campaign) -> Prepared:
             decays.append(decay)
         else:
             left_out.append((drop, recording, (*recording.faults, decay)))
-    return Prepared(tuple(decays), tuple(left_out))
+    seen = [
+        seen_in(recording, release, campaign.sensors, (*marked("clipped", over), *marked("spike", off)))
+        for recording, release, over, off in zip(campaign.recordings, releases, clipped, spiked, strict=True)
+    ]
+    return Prepared(tuple(decays), tuple(left_out), tuple(seen))
 
 
 def _alive(recordings: Sequence[Recording]) -> tuple[Recording, ...]:
@@ -122,7 +138,8 @@ def _alive(recordings: Sequence[Recording]) -> tuple[Recording, ...]:
 def _release(recording: Recording) -> Release | None:
     if not recording.usable.any():
         return None
-    found = find_release(recording.values[recording.usable], recording.rate)
+    watched = lively(recording)[recording.usable]
+    found = find_release(recording.values[recording.usable], recording.rate, watched=watched)
     if found is None:
         return None
     level = np.full(len(recording.channels), np.nan)
@@ -160,9 +177,9 @@ def _decay(
     landing = _landing(campaign, drop, recording, release, suspension, clipped, faults)
     first = landing.certain
     recording = _without_clipped(recording, clipped, landing.possible, faults)
-    last = recording.values.shape[1] - 1
+    last, why_end = recording.values.shape[1] - 1, "the recording ends"
     if drop.end is not None:
-        last = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6)))
+        last, why_end = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6))), "given as end"
     length = (last - first) / recording.rate
     if length < SHORTEST:
         return Fault(
@@ -181,7 +198,17 @@ def _decay(
         start=recording.start + first / recording.rate,
         rest=no_rest(len(recording.channels)) if release is None else release.rest,
         faults=tuple(faults),
+        clocks=recording.clocks,
+        events=_events(recording, release, landing, why_end),
     )
+
+
+def _events(recording: Recording, release: Release | None, landing: Landing, why_end: str) -> Events:
+    def when(sample: int | None) -> float | None:
+        return None if sample is None else recording.start + sample / recording.rate
+
+    released = None if release is None else release.sample
+    return Events(when(released), when(landing.landed), when(landing.lifted), landing.why, why_end)
 
 
 def _without_clipped(recording: Recording, clipped: NDArray[np.bool_], start: int, faults: list[Fault]) -> Recording:
@@ -211,7 +238,7 @@ def _landing(
 ) -> Landing:
     if drop.start is not None:
         given = max(0, int(np.ceil((drop.start - recording.start) * recording.rate - 1e-6)))
-        return Landing(given, given)
+        return Landing(given, given, "given as start")
     if release is None:
         faults.append(
             Fault(
@@ -221,20 +248,25 @@ def _landing(
                 "Give start = ... for this drop, or let the recording begin before the release.",
             )
         )
-        return Landing(0, 0)
+        return Landing(0, 0, "no release was found, so the first sample")
     fall = np.sqrt(2 * (drop.height or _LOW_BLOCKS) / STANDARD_GRAVITY)
     possible = release.sample + int(fall * recording.rate)
     guessed = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
     found = find_decay(
         recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
-    ) or Landing(possible, guessed)
+    ) or Landing(possible, guessed, _ALLOWED_FOR)
     judged = {sensor.on for sensor, used in zip(campaign.sensors, recording.usable, strict=True) if used}
     if not judged.issuperset(drop.wheels):  # a wheel fell that nobody watched
-        found = Landing(max(found.possible, possible), max(found.certain, guessed))
+        later = guessed > found.certain
+        found = found._replace(possible=max(found.possible, possible), certain=max(found.certain, guessed))
+        found = found._replace(why=_ALLOWED_FOR) if later else found
     at_landing = np.asarray(clipped[:, : release.sample + int(_CLIPPED * recording.rate)].any(axis=0))
     after = int(np.flatnonzero(at_landing)[-1]) + 1 if at_landing.any() else 0
-    return Landing(max(found.possible, after), max(found.certain, after))
+    if after > found.certain:
+        over = [name for name, samples in zip(recording.channels, clipped, strict=True) if samples[after - 1]]
+        found = found._replace(why=f"until then {', '.join(over)} clipped")
+    return found._replace(possible=max(found.possible, after), certain=max(found.certain, after))
 
 
 def _wheelbase(campaign: Campaign) -> float:

@@ -15,7 +15,7 @@ _QUIET = 0.04
 _SMALL = 0.03
 """Part of a channel's peak that is taken as rest however quiet the sensor: wind, somebody at the lever."""
 
-_STANDS_OUT = 30.0
+STANDS_OUT = 30.0
 """Peak over the spread of the first samples in the clearest channel, below which the recording does not begin at rest."""
 
 _FEW = 20
@@ -60,7 +60,9 @@ def no_rest(channels: int) -> Rest:
     return Rest(np.full(channels, np.nan), np.empty((channels, 0)))
 
 
-def find_release(values: Real, rate: float) -> Release | None:
+def find_release(
+    values: Real, rate: float, stands_out: float = STANDS_OUT, watched: NDArray[np.bool_] | None = None
+) -> Release | None:
     """Find the release.
 
     Parameters
@@ -69,6 +71,10 @@ def find_release(values: Real, rate: float) -> Release | None:
         Usable channels, shape (channel, time), m/s².
     rate
         Samples per second.
+    stands_out
+        Peak over the spread of the first samples in the clearest channel, below which there is no release.
+    watched
+        Which channels tell the moment, shape (channel,); all where it is left out.
 
     Returns
     -------
@@ -92,8 +98,9 @@ def find_release(values: Real, rate: float) -> Release | None:
     )[:, None]
     deviation = np.abs(values - level)
     peak = np.maximum(deviation.max(axis=1, keepdims=True), 1e-300)
-    moving = (deviation > np.maximum(8 * spread, _SMALL * peak)).any(axis=0)
-    clear = peak > _STANDS_OUT * spread
+    told = np.ones(len(values), dtype=bool) if watched is None else watched
+    moving = (deviation > np.maximum(8 * spread, _SMALL * peak))[told].any(axis=0)
+    clear = (peak > stands_out * spread) & told[:, None]
     if not clear.any():
         return None
     # A landing shows in every channel that shows anything, a spike in one.

@@ -1,19 +1,39 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
 from sprung.recording.campaign import Campaign, Drop, ModelChoice
-from sprung.recording.reading import VehicleFile, read, read_vehicle
-from sprung.recording.recording import Recording
+from sprung.recording.formats import Table, read_table, to_sep005
+from sprung.recording.gaps import gap, gaps_in
+from sprung.recording.mending import MOST_MISSING, filled
+from sprung.recording.merging import merged
+from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
+from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
+from sprung.recording.recording import LoggerClock, Recording
+from sprung.recording.signals import SLOWEST
 from sprung.recording.whole import write_whole
 from sprung.recording.writing import write
 
 __all__ = [
+    "FILE",
+    "MOST_MISSING",
+    "SCHEMA_FILE",
+    "SCHEMA_LINE",
+    "SLOWEST",
     "Campaign",
     "Drop",
+    "LoggerClock",
     "ModelChoice",
     "Recording",
+    "Table",
     "VehicleFile",
+    "filled",
+    "gap",
+    "gaps_in",
+    "merged",
     "read",
+    "read_table",
     "read_vehicle",
+    "schema_text",
+    "to_sep005",
     "write",
     "write_whole",
 ]

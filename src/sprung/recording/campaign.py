@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import Literal
@@ -18,11 +18,16 @@ from sprung.vehicle import EMPTY, Finite, Load, Positive, Sensor, Wheel
 class Drop(BaseModel):
     """One release off the blocks, as a campaign file describes it."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     file: str | None = None
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
+    files: tuple[str, ...] = Field(default=(), max_length=64)
+    """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
+    window: tuple[Finite, Finite] | None = None
+    """s on the file's clock: the part of the recording that holds this drop, where it holds more than one."""
     load: str = "empty"
+    """Name of the load on the vehicle."""
     wheels: tuple[Wheel, ...] = Field(default=("fl", "fr", "rl", "rr"), min_length=1)
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
@@ -38,31 +43,69 @@ class Drop(BaseModel):
             raise ValueError("name each wheel once")
         if self.start is not None and self.end is not None and self.end <= self.start:
             raise ValueError(f"the end, {self.end:g} s, must come after the start, {self.start:g} s")
+        if self.file is not None and self.files:
+            raise ValueError("name either the file or, where several loggers recorded it, the files")
+        if len(set(self.files)) != len(self.files):
+            raise ValueError("name each file once")
+        if self.window is not None and self.window[1] <= self.window[0]:
+            raise ValueError(f"the window must end after {self.window[0]:g} s, where it begins")
+        if self.window is not None and self.files:
+            raise ValueError("the clocks of several files have no window in common: cut the files")
         return self
+
+    @property
+    def recordings(self) -> tuple[str, ...]:
+        """Files that recorded it."""
+        return self.files if self.file is None else (self.file,)
+
+    @property
+    def recording(self) -> str | None:
+        """What to call its recording: the file, with the beginning of its window, or what its files have in common."""
+        if self.window is not None:
+            return f"{self.file} from {self.window[0]:g} s"
+        if len(self.files) < 2:
+            return self.file or next(iter(self.files), None)
+        start, end = _shared_beginning(self.files), _shared_beginning([file[::-1] for file in self.files])[::-1]
+        shared = f"{start}*{end}"
+        own = len(start) + len(end) - len(PurePath(self.files[0]).suffix)
+        return shared if own > 0 else f"{self.files[0]} and {len(self.files) - 1} more"
 
     @property
     def name(self) -> str:
         """Short name: the recording's file name without its ending, or made from the load and the wheels."""
         if self.file is not None:
-            return PurePath(self.file).stem
+            return PurePath(self.file).stem + ("" if self.window is None else f"_{self.window[0]:g}s")
+        return f"{self.load}_{self.kind.replace(' ', '_')}"
+
+    @property
+    def kind(self) -> str:
+        """What kind of drop it is, by the wheels that were dropped: ``pitch front``; or just the wheels."""
         kinds = {
             frozenset(("fl", "fr", "rl", "rr")): "bounce",
-            frozenset(("fl", "fr")): "pitch_front",
-            frozenset(("rl", "rr")): "pitch_rear",
-            frozenset(("fl", "rl")): "roll_left",
-            frozenset(("fr", "rr")): "roll_right",
+            frozenset(("fl", "fr")): "pitch front",
+            frozenset(("rl", "rr")): "pitch rear",
+            frozenset(("fl", "rl")): "roll left",
+            frozenset(("fr", "rr")): "roll right",
         }
-        return f"{self.load}_{kinds.get(frozenset(self.wheels), '_'.join(self.wheels))}"
+        return kinds.get(frozenset(self.wheels), " ".join(self.wheels))
+
+
+def _shared_beginning(texts: Sequence[str]) -> str:
+    alike = [len(set(letters)) == 1 for letters in zip(*texts, strict=False)]
+    return texts[0][: (*alike, False).index(False)]
 
 
 class ModelChoice(BaseModel):
     """What the user says about the model; what is left out, sprung decides."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     tracks: Literal["shared", "separate"] | None = None
+    """One half-distance per axle, or those of springs and dampers apart."""
     extras: tuple[str, ...] | None = None
+    """Exactly these beyond the plain model of seven degrees of freedom."""
     forbid: tuple[str, ...] = ()
+    """Never these, whatever else sprung chooses."""
 
 
 @dataclass(frozen=True, eq=False)

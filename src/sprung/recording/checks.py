@@ -50,19 +50,24 @@ def check(draft: Draft[CampaignFile], problems: Problems) -> None:
 
 def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
     """Nothing may be named twice."""
-    for section, key in (("sensor", "channel"), ("load", "name"), ("drop", "file")):
-        entries: Iterable[object] = getattr(draft.file, section)
-        names = [getattr(entry, key) for entry in entries]
-        if section == "drop":
-            names = [name if name is None else str(PurePath(name)) for name in names]  # "./a.csv" is "a.csv"
-        first: dict[str, int] = {}
-        for index, name in zip(draft.numbered(section), names, strict=True):
-            if name is None or first.setdefault(name, index) == index:
+    file = draft.file
+    named: dict[str, list[tuple[str, str, object]]] = {
+        "sensor": [("channel", sensor.channel, sensor.logger) for sensor in file.sensor],
+        "load": [("name", load.name, None) for load in file.load],
+        # "./a.csv" is "a.csv"; one file may hold several drops, each in its window.
+        "drop": [("file", "" if drop.file is None else str(PurePath(drop.file)), drop.window) for drop in file.drop],
+    }
+    remedies = {"drop": "Each drop has its own recording, or its own window of one."}
+    for section, entries in named.items():
+        first: dict[tuple[str, object], int] = {}
+        for index, (key, name, beside) in zip(draft.numbered(section), entries, strict=True):
+            if not name or first.setdefault((name, beside), index) == index:
                 continue
-            found = f"'{name}', which {section}[{first[name] + 1}] has too"
+            found = f"'{name}', which {section}[{first[name, beside] + 1}] has too"
             expected = f"a {key} of its own for every {section}"
-            do = "Each drop has its own recording." if section == "drop" else "Rename one, or remove it."
-            problems.add(draft.where(section, index, key), found, expected, do)
+            problems.add(
+                draft.where(section, index, key), found, expected, remedies.get(section, "Rename one, or remove it.")
+            )
 
 
 def refused_unit(sensor: Sensor) -> str | None:

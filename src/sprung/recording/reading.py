@@ -11,15 +11,16 @@ import numpy as np
 from sprung.errors import InputError, Problem, Problems, did_you_mean
 from sprung.recording.campaign import Campaign, Drop, ModelChoice
 from sprung.recording.checks import check, refused_unit
-from sprung.recording.formats import Table, read_table, split_unit
+from sprung.recording.formats import Signals, Table, from_sep005, read_table, split_unit
+from sprung.recording.loggers import Wanted, named_apart, recording_of_drop
 from sprung.recording.schema import CampaignFile, VehicleFileSchema
-from sprung.recording.signals import column_of, recording_of
+from sprung.recording.signals import column_of
 from sprung.recording.understanding import Draft, understand
 from sprung.vehicle import EMPTY, Load, Sensor, Vehicle
 
 if TYPE_CHECKING:
     import os
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from sprung.estimate import Known
     from sprung.recording.recording import Recording
@@ -56,13 +57,18 @@ class VehicleFile:
     path: Path | None = None
 
 
-def read(path: str | os.PathLike[str]) -> Campaign:
+def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Campaign:
     """Read a campaign and its recordings.
 
     Parameters
     ----------
     path
         The campaign file, or the folder that holds it as ``campaign.toml``.
+    signals
+        Recordings in memory, by the names under which the campaign file has them: those files are not opened. Each is a list
+        of dictionaries as SEP005 of the SDyPy project proposes them, one per signal, with ``name``, ``data`` of shape
+        (time,), ``unit_str``, and ``fs`` in Hz or ``time`` in s. Unit and direction of a sensor in the campaign file hold for
+        them as for a file.
 
     Returns
     -------
@@ -74,22 +80,29 @@ def read(path: str | os.PathLike[str]) -> Campaign:
     InputError
         If something is wrong with the campaign file, or with a recording so that it cannot be used; every problem of
         all the files at once.
+
+    Examples
+    --------
+    >>> import sprung
+    >>> campaign = sprung.read("campaign.toml", signals={"empty_bounce": signals})          # doctest: +SKIP
     """
     path = Path(path) / FILE if Path(path).is_dir() else Path(path)
     problems = Problems()
     draft = understand(CampaignFile, path, problems)
     check(draft, problems)
     files = _files(draft, problems)
-    tables = _tables(files, path.parent, problems)
+    tables = _tables(files, path.parent, signals or {}, problems)
+    _check_signals(draft, files, signals or {}, problems)
     _check_channels(draft, tables, problems)
     _check_starts_and_ends(draft, tables, problems)
-    recordings = _recordings(draft, files, tables, problems)
+    sensors = named_apart(draft.file.sensor)
+    recordings = _recordings(draft, sensors, tables, problems)
     problems.raise_if_any()
     _refuse_unusable(recordings)
     vehicle = draft.file.vehicle
     return Campaign(
         name=vehicle.name or _printable(path.absolute().parent.name),
-        sensors=draft.file.sensor,
+        sensors=sensors,
         drops=draft.file.drop,
         recordings=recordings,
         loads=_loads(draft.file),
@@ -164,38 +177,65 @@ def _loads(file: CampaignFile) -> tuple[Load, ...]:
     return (EMPTY, *(load for load in file.load if load.name != EMPTY.name))
 
 
-def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, str]:
+def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, tuple[str, ...]]:
     """Give the recordings' names by the drop's index in the file, also of drops that are faulty otherwise."""
     written = [] if ("drop",) in draft.lost else draft.document.get("drop", [])
-    files = {index: entry["file"] for index, entry in enumerate(written) if isinstance(entry, dict) and "file" in entry}
+    entries = {index: entry for index, entry in enumerate(written) if isinstance(entry, dict)}
+    either = {index: entry.get("files") or [entry.get("file")] for index, entry in entries.items()}
+    files = {index: names for index, names in either.items() if names != [None]}
     for index in draft.numbered("drop"):
         if index not in files:
             where = draft.where("drop", index, "file")
             problems.add(where, "nothing", "the name of its recording", 'Add file = "..." to it.')
-    return {index: file for index, file in files.items() if isinstance(file, str)}
+    return {
+        index: tuple(names)
+        for index, names in files.items()
+        if isinstance(names, list) and all(isinstance(name, str) for name in names)
+    }
 
 
-def _tables(files: Mapping[int, str], folder: Path, problems: Problems) -> dict[int, Table]:
-    """Read every recording that can be read."""
-    tables: dict[int, Table] = {}
-    others = {Path(file).name for file in files.values()}
-    for index, file in files.items():
+def _tables(
+    files: Mapping[int, Sequence[str]], folder: Path, signals: Signals, problems: Problems
+) -> dict[int, dict[str, Table]]:
+    """Read every recording that can be read, each once; by the drop's index and the recording's name."""
+    others = {Path(file).name for names in files.values() for file in names}
+    read_already: dict[str, Table] = {}
+    for file in dict.fromkeys(file for names in files.values() for file in names):
         try:
-            tables[index] = read_table(folder / file, others)
+            read_already[file] = (
+                from_sep005(signals[file], Path(file).name) if file in signals else read_table(folder / file, others)
+            )
         except InputError as error:
             for problem in error.problems:
                 where = problem.where.replace(Path(file).name, file, 1)
                 problems.add(where, problem.found, problem.expected, problem.do)
-    return tables
+    # A drop of which one file is lost has a problem already: its others are not asked for what that one has.
+    return {
+        index: {file: read_already[file] for file in names}
+        for index, names in files.items()
+        if all(file in read_already for file in names)
+    }
 
 
-def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Table], problems: Problems) -> None:
+def _check_signals(
+    draft: Draft[CampaignFile], files: Mapping[int, Sequence[str]], signals: Signals, problems: Problems
+) -> None:
+    """Whoever gives signals wants them used."""
+    wanted = {file for names in files.values() for file in names}
+    for name in signals:
+        if name not in wanted and draft.complete("drop"):
+            do = did_you_mean(name, wanted - set(signals)).replace("Allowed:", "Without signals:")
+            problems.add("signals", f"'{name}', which no drop has", "the name of a drop's recording", do)
+
+
+def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Mapping[str, Table]], problems: Problems) -> None:
     """Every sensor must be in some recording; in which it is missing, the recording itself will say."""
-    columns = sorted({name for table in tables.values() for name in table.channels})
+    whole = [table for of_drop in tables.values() for table in of_drop.values()]
+    columns = sorted({name for table in whole for name in table.channels})
     sensors = tuple(zip(draft.numbered("sensor"), draft.file.sensor, strict=True))
     unclaimed = set(columns) - {split_unit(sensor.channel)[0] for _, sensor in sensors}
     for index, sensor in sensors:
-        if tables and not any(column_of(table, sensor.channel) for table in tables.values()):
+        if whole and not any(column_of(table, sensor.channel) for table in whole):
             where = draft.where("sensor", index, "channel")
             expected = "the name of a column of the recordings"
             problems.add(
@@ -207,20 +247,31 @@ def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Table], pro
 
 
 def _recordings(
-    draft: Draft[CampaignFile], files: Mapping[int, str], tables: Mapping[int, Table], problems: Problems
+    draft: Draft[CampaignFile],
+    sensors: Sequence[Sensor],
+    tables: Mapping[int, Mapping[str, Table]],
+    problems: Problems,
 ) -> tuple[Recording, ...]:
-    sensors = tuple(sensor for sensor in draft.file.sensor if refused_unit(sensor) is None)
+    pairs = [
+        Wanted(written, named)
+        for written, named in zip(draft.file.sensor, sensors, strict=True)
+        if refused_unit(written) is None
+    ]
+    drops = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     recordings: list[Recording] = []
-    for index, table in tables.items():
+    for index, of_drop in tables.items():
         with problems.collecting():
-            recordings.append(recording_of(table, sensors, files[index]))
+            recordings.append(recording_of_drop(of_drop, pairs, drops.get(index) or Drop(file=next(iter(of_drop)))))
     return tuple(recordings)
 
 
-def _check_starts_and_ends(draft: Draft[CampaignFile], tables: Mapping[int, Table], problems: Problems) -> None:
+def _check_starts_and_ends(
+    draft: Draft[CampaignFile], tables: Mapping[int, Mapping[str, Table]], problems: Problems
+) -> None:
     for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
-        time = tables[index].time if index in tables else np.empty(0)
-        for key, value in (("start", drop.start), ("end", drop.end)):
+        time = next(iter(tables[index].values())).time if index in tables else np.empty(0)
+        window = drop.window or (None, None)
+        for key, value in (("start", drop.start), ("end", drop.end), ("window", window[0]), ("window", window[1])):
             if value is not None and len(time) > 1 and not time.min() <= value <= time.max():
                 expected = f"a time within the recording, {time.min():.6g} to {time.max():.6g} s on its own clock"
                 do = f"Correct {key}, or leave it out."

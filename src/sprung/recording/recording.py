@@ -2,12 +2,51 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+
+ROUGHLY = 0.05
+"""s: how far two clocks may stand apart where only the first motion that a logger shows has tied them."""
+
+
+@dataclass(frozen=True, eq=False)
+class LoggerClock:
+    """One of several loggers of a drop, and how its clock stands to the recording's.
+
+    Attributes
+    ----------
+    name
+        The logger's.
+    channels
+        Which channels it recorded, by their positions.
+    ahead
+        What its own clock shows when the recording's shows zero, s, as far as the release tells.
+    share
+        Samples that it took for each one in the recording: below 1 where it was slower.
+    late, std
+        By how much later its samples were taken than the recording's clock says, and how sure that is, s.
+    follows
+        By how much that grows with each parameter of the vehicle that told it, s per SI unit, by the parameter's name.
+    """
+
+    name: str
+    channels: tuple[int, ...]
+    ahead: float
+    share: float = 1.0
+    late: float = 0.0
+    std: float = ROUGHLY
+    follows: Mapping[str, float] = field(default_factory=dict)
+
+    def expected(self, parameters: Mapping[str, float]) -> float:
+        """Give how late it is as far as is known, s, for a vehicle of these parameters, SI."""
+        shared = {f"{name}{which}": parameters[name] for name in ("t_f", "t_r") if name in parameters for which in "12"}
+        everything = {**parameters, **shared}
+        return self.late + sum(slope * everything[name] for name, slope in self.follows.items())
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +70,13 @@ class Recording:
         What was done to it since it was read, in words, in order.
     faults
         What is wrong with it.
+    parts
+        Where several loggers recorded the drop, what each of them did, on its own clock and with its own channels.
+    clocks
+        For several loggers how their clocks stand to this one; without any, all channels have one clock.
+    full_scale
+        The largest reading of each channel's sensor, m/s², by the unit of the file if nothing else names one; None where
+        nobody says it. Empty where no file was read: the sensors' own units hold then.
     """
 
     name: str
@@ -40,6 +86,9 @@ class Recording:
     rate: float
     history: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()
+    parts: tuple[Recording, ...] = ()
+    clocks: tuple[LoggerClock, ...] = ()
+    full_scale: tuple[float | None, ...] = ()
 
     @property
     def time(self) -> NDArray[np.float64]:

@@ -23,7 +23,7 @@ EXTRAS = (*LINEAR_EXTRAS, *(name for name in ("friction", "rebound") if name not
 class Measured(BaseModel):
     """A number, or { value = ..., std = ... }."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     value: Finite
     """SI."""
@@ -44,7 +44,7 @@ class Measured(BaseModel):
 class VehicleSection(BaseModel):
     """``[vehicle]``: what is measured on the vehicle with a tape."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     name: str | None = Field(default=None, min_length=1)
     """For people to read; the folder's name where it is left out."""
@@ -61,17 +61,22 @@ class VehicleSection(BaseModel):
 class CampaignFile(BaseModel):
     """campaign.toml."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     number: int = Field(default=SCHEMA, alias="schema")
-    """Of the schema."""
+    """Version of the keys in this file."""
     vehicle: VehicleSection = VehicleSection()
+    """What is measured on the vehicle with a tape."""
     known: Mapping[str, Measured] = Field(default_factory=dict)
-    """Measured beforehand, by a name in `KNOWABLE`."""
+    """Measured beforehand: any parameter, or a weighed mass; the names are those of `KNOWABLE`."""
     model: ModelChoice = ModelChoice()
+    """What the model has; what is left out, sprung decides and says why."""
     sensor: tuple[Sensor, ...] = ()
+    """One accelerometer each."""
     load: tuple[Load, ...] = ()
+    """One known load each; the load `empty` always exists."""
     drop: tuple[Drop, ...] = ()
+    """One release off the blocks each."""
 
 
 class VehicleFileSchema(CampaignFile):

@@ -8,11 +8,13 @@ import numpy as np
 
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
 from sprung.recording.formats import Table, split_unit
+from sprung.recording.mending import mend
 from sprung.recording.recording import Recording
+from sprung.recording.stamps import Evened, evened
 from sprung.units import acceleration_factor
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -24,8 +26,8 @@ SLOWEST = 64.0
 LARGEST = 1e6
 """m/s²: no accelerometer reads more; loggers write such numbers where they have none."""
 
-UNEVEN = 0.2
-"""By how much, relative to the usual step, a step of an even clock may differ."""
+_LATEST, _SHORTEST = 1e12, 1e-9
+"""s: no clock shows more, and no sample follows another sooner."""
 
 
 def column_of(table: Table, channel: str) -> tuple[int, ...]:
@@ -76,7 +78,7 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     Returns
     -------
     Recording
-        Its faults name the channels left out.
+        Its faults name what was missing and was filled in, and the channels left out.
 
     Raises
     ------
@@ -86,45 +88,71 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     """
     problems = Problems()
     faults: list[Fault] = []
+    left_out: list[Fault] = []
     done: dict[str, list[str]] = {}
+    full_scale: list[float | None] = []
     with problems.collecting():
         _refuse_backward(table, name)
-    values = np.full((len(sensors), table.values.shape[1]), np.nan)
+    raw: dict[int, NDArray[np.float64]] = {}
+    with problems.collecting():
+        needed = [column[0] for sensor in sensors if len(column := column_of(table, sensor.channel)) == 1]
+        raw = dict(zip(needed, table.take(needed), strict=True))
+    problems.raise_if_any()
+    values = np.full((len(sensors), table.samples), np.nan)
     for sensor, row in zip(sensors, values, strict=True):
         with problems.collecting():
-            found = _channel(table, sensor, sensors, name)
+            found = _channel(table, raw, sensor, sensors, name)
             if isinstance(found, Fault):
-                faults.append(found)
+                left_out.append(found)
+                full_scale.append(None)
             else:
-                row[:], step = found
+                row[:], step, factor = found
                 done.setdefault(step, []).append(sensor.channel)
+                full_scale.append(None if sensor.range is None else sensor.range * factor)
+    del raw
     problems.raise_if_any()
 
-    time = table.time
-    rate = float((len(time) - 1) / (time[-1] - time[0])) if isinstance(table.clock, np.ndarray) else table.clock
-    uneven = _uneven(table, name)
-    if uneven is not None:
-        values[:] = np.nan
-        faults = [uneven]
-    elif rate < SLOWEST:
-        raise InputError([_too_slow(rate, name)])
-    elif np.isnan(values).all():
-        do = "Check the logger and its cables, and the channel names in the campaign file."
-        faults.append(Fault("missing", name, "no channel of it is usable; the drop is left out", do))
+    count = values.shape[1]
+    samples = _evened(table, values, name)
+    useless = np.isnan(samples.values).all() and bool(samples.faults)
+    if samples.rate < SLOWEST and not useless:
+        raise InputError([_too_slow(samples.rate, name)])
+    if useless:
+        faults, left_out = [*samples.faults], []
+    else:
+        wheres = [f"{name}: {sensor.channel}" for sensor in sensors]
+        mended = mend(
+            samples.values, samples.lost, samples.rate, wheres, lambda sample: table.place(int(samples.origin[sample]))
+        )
+        samples = samples._replace(values=mended.values, start=samples.start + mended.first / samples.rate)
+        faults = [*samples.faults, *left_out, *mended.faults]
+        left_out += mended.left_out
+        if np.isnan(samples.values).all():
+            do = "Check the logger and its cables, and the channel names in the campaign file."
+            left_out.append(Fault("missing", name, "no channel of it is usable; the drop is left out", do))
+            faults.append(left_out[-1])
     history = (
-        f"read {len(time)} samples at {rate:.6g} Hz, from {time[0]:.6g} s on",
+        f"read {count} samples at {samples.rate:.6g} Hz, from {samples.start:.6g} s on",
         *table.notes,
         *(f"{', '.join(channels)}: {step}" for step, channels in done.items()),
-        *(f"{fault.where}: left out ({fault.code})" for fault in faults),
+        *(f"{fault.where}: {f'left out ({fault.code})' if fault in left_out else fault.what}" for fault in faults),
     )
-    channels = tuple(sensor.channel for sensor in sensors)
-    return Recording(name, channels, values, float(time[0]), rate, history, tuple(faults))
+    return Recording(
+        name=name,
+        channels=tuple(sensor.channel for sensor in sensors),
+        values=samples.values,
+        start=samples.start,
+        rate=samples.rate,
+        history=history,
+        faults=tuple(faults),
+        full_scale=tuple(full_scale),
+    )
 
 
 def _channel(
-    table: Table, sensor: Sensor, sensors: Sequence[Sensor], file: str
-) -> tuple[NDArray[np.float64], str] | Fault:
-    """Give one sensor's samples and what was done to them, or why it is left out."""
+    table: Table, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
+) -> tuple[NDArray[np.float64], str, float] | Fault:
+    """Give one sensor's samples, NaN where one is missing, what was done to them and the unit; or why it is left out."""
     where, columns = f"{file}: {sensor.channel}", column_of(table, sensor.channel)
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
@@ -135,25 +163,22 @@ def _channel(
         found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."
         raise InputError([Problem(where, found, "one column per channel", do)])
     column = columns[0]
-    if table.channels[column] in table.spoilt:
-        raise InputError([table.spoilt[table.channels[column]]])
-    raw, unit = table.values[column], own_unit(sensor, table.units[column])
-    again = "Check the sensor's cable and the logger, or export the recording again."
-    gaps = ~np.isfinite(raw)
-    if gaps.any():
-        some = "every sample is" if gaps.all() else f"{gaps.sum()} of {gaps.size} samples are"
-        first = "" if gaps.all() else f", the first in {table.place(int(gaps.argmax()))}"
-        return Fault("missing", where, f"{some} missing{first}; the channel is left out of this drop", again)
+    samples, unit = raw[column], own_unit(sensor, table.units[column])
+    if not np.isfinite(samples).all() and (problem := table.spoilt(column)) is not None:
+        raise InputError([problem])
+    if not np.isfinite(samples).any():
+        do = "Check the sensor's cable and the logger, or export the recording again."
+        return Fault("missing", where, "every sample is missing; the channel is left out of this drop", do)
     try:
         factor = acceleration_factor(unit)
     except ValueError:
         do = 'Give the sensor a unit in the campaign file, such as unit = "g", if that is what the numbers are.'
         raise InputError([Problem(where, f"the unit '{unit}'", "a unit of acceleration", do)]) from None
-    beyond = np.abs(raw) > LARGEST / factor
-    if beyond.any():
-        first = f"{raw[beyond.argmax()]:.4g} {unit} in {table.place(int(beyond.argmax()))}"
-        what = f"{beyond.sum()} of {beyond.size} samples read more than any accelerometer can, the first {first}"
-        return Fault("missing", where, f"{what}; the channel is left out of this drop", again)
+    no_number = ~(np.abs(samples) <= LARGEST / factor)
+    if no_number.all():
+        first = f"the first {samples[0]:.4g} {unit}"
+        what = f"every sample reads more than any accelerometer can, {first}; the channel is left out of this drop"
+        return Fault("missing", where, what, "Check the sensor's cable and its unit.")
     source = (
         ""
         if sensor.unit
@@ -163,7 +188,8 @@ def _channel(
     )
     step = f"read in {unit}{source}" + (f", times {factor:g} to m/s²" if factor != 1 else "")
     sign = -1.0 if sensor.direction == "down" else 1.0
-    return sign * factor * raw, step + (", turned from down to up" if sign < 0 else "")
+    step += ", turned from down to up" if sign < 0 else ""
+    return sign * factor * np.where(no_number, np.nan, samples), step, factor
 
 
 def _refuse_backward(table: Table, file: str) -> None:
@@ -171,6 +197,10 @@ def _refuse_backward(table: Table, file: str) -> None:
     if len(time) < 2:
         found, do = "a single sample" if len(time) else "no samples", "Export it again."
         raise InputError([Problem(file, found, "the samples of a whole drop", do)])
+    far = np.flatnonzero(~(np.abs(time) <= _LATEST))
+    if far.size:
+        where, found = f"{file}: {table.place(int(far[0]))}", f"the time {time[far[0]]:.9g} s"
+        raise InputError([Problem(where, found, "the time of a sample, in s", "Export the recording again.")])
     backward = np.flatnonzero(~(np.diff(time) > 0)) + 1
     if backward.size:
         first = int(backward[0])
@@ -180,25 +210,17 @@ def _refuse_backward(table: Table, file: str) -> None:
         raise InputError(
             [Problem(f"{file}: {table.place(first)}", found, "a time that increases from line to line", do)]
         )
+    usual = float(np.median(np.diff(time)))
+    if usual < _SHORTEST:
+        found, do = f"{usual:.3g} s from one sample to the next", "See that the time is in s, or name its unit."
+        raise InputError([Problem(file, found, f"steps of {_SHORTEST:g} s or more", do)])
 
 
-def _uneven(table: Table, file: str) -> Fault | None:
-    """Find steps of the clock that are none of an even one."""
-    time = table.time
-    steps = np.diff(time)
-    usual = float(np.median(steps))
-    digits = next((digits for digits in range(10) if np.allclose(time, time.round(digits), rtol=0, atol=1e-12)), 10)
-    if np.abs(time - np.linspace(time[0], time[-1], len(time))).max() <= 10.0**-digits:
-        return None  # an even clock, written with too few digits to look even
-    off = np.flatnonzero(np.abs(steps - usual) > UNEVEN * usual)
-    if not off.size:
-        return None
-    first = int(off[0])
-    what = (
-        f"the clock is uneven: {off.size} of {steps.size} steps differ from the usual {usual:.6g} s by more than "
-        f"{UNEVEN:.0%}, the first, {steps[first]:.6g} s, up to {table.place(first + 1)}; the drop is left out"
-    )
-    return Fault("clock", file, what, "Export the recording at a fixed rate, or repeat the drop.")
+def _evened(table: Table, values: NDArray[np.float64], file: str) -> Evened:
+    if isinstance(table.clock, np.ndarray):
+        return evened(table.clock, values, table.place, file)
+    count = values.shape[1]
+    return Evened(values, 0.0, table.clock, np.zeros(count, dtype=bool), np.arange(count))
 
 
 def _too_slow(rate: float, file: str) -> Problem:

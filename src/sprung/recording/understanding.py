@@ -10,12 +10,15 @@ from pydantic import ValidationError
 
 from sprung.errors import InputError, Problem, Problems
 from sprung.recording.document import toml_document
+from sprung.recording.gaps import gaps_in
 from sprung.recording.schema import SCHEMA, CampaignFile
 from sprung.recording.sentences import Place, problems_of, where_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
+
+    from pydantic_core import ErrorDetails
 
 File = TypeVar("File", bound=CampaignFile)
 File_co = TypeVar("File_co", bound=CampaignFile, covariant=True)
@@ -87,14 +90,26 @@ def understand(model: type[File], path: Path, problems: Problems) -> Draft[File]
         do = "Update sprung: the file was written for a newer version." if newer else f"Write schema = {SCHEMA}."
         found, expected = f"schema {number!r}", f"schema {SCHEMA}, which this version of sprung reads"
         raise InputError([Problem(f"{path.name}: schema", found, expected, do)])
+    gaps = dict(gaps_in(document))
+    for place, what in gaps.items():
+        where, found = where_in(path.name, place, document), "a gap that is still to be filled"
+        problems.add(where, found, what, "Write it there, in place of the text.")
+    details: list[ErrorDetails] = []
     try:
-        return Draft(path.name, document, _validated(model, document), frozenset())
+        file = _validated(model, document)
     except ValidationError as error:
-        details = error.errors(include_url=False)
-    lost = {detail["loc"][:2] for detail in details}
+        details = [fault for fault in error.errors(include_url=False) if not _within(fault["loc"], gaps)]
+    lost = {detail["loc"][:2] for detail in details} | {place[:2] for place in gaps}
+    if not lost:
+        return Draft(path.name, document, file, frozenset())
     for problem in problems_of(model, details, path.name, document):
         problems.add(problem.where, problem.found, problem.expected, problem.do)
     return Draft(path.name, document, _validated(model, _without(document, lost)), frozenset(lost))
+
+
+def _within(place: Place, gaps: Mapping[Place, str]) -> bool:
+    """Say whether a fault is only that of a gap."""
+    return any(place[: len(gap)] == gap for gap in gaps)
 
 
 def _validated(model: type[File], document: Mapping[str, Any]) -> File:

@@ -12,6 +12,7 @@ import numpy as np
 import tomli_w
 
 from sprung.recording.formats import split_unit
+from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE
 from sprung.recording.schema import SCHEMA
 from sprung.recording.signals import own_unit
@@ -34,7 +35,8 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     """Write a campaign into a folder, whole or not at all.
 
     The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
-    out stays without numbers. Recordings of other formats become text tables.
+    out stays without numbers. Recordings of other formats become text tables. The JSON Schema of the campaign file is put
+    beside it, by which editors complete its keys.
 
     Parameters
     ----------
@@ -53,32 +55,40 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     InputError
         If the folder cannot be made or written to.
     """
-    names = tuple(_file_names(campaign.drops))
+    pieces = [recording.parts or (recording,) for recording in campaign.recordings]
+    names = tuple(_file_names(campaign.drops, pieces))
+    sensors = {sensor.channel: sensor for sensor in campaign.sensors}
     files = {
-        name: _table(recording, campaign.sensors) for name, recording in zip(names, campaign.recordings, strict=True)
+        name: _table(piece, [sensors[channel] for channel in piece.channels])
+        for own, of_drop in zip(names, pieces, strict=True)
+        for name, piece in zip(own, of_drop, strict=True)
     }
-    files[FILE] = _toml(_document(campaign, names))
+    files[SCHEMA_FILE] = schema_text().encode()
+    files[FILE] = SCHEMA_LINE.encode() + _toml(_document(campaign, names))
     write_whole(folder, files)
     return Path(folder) / FILE
 
 
-def _file_names(drops: Sequence[Drop]) -> Iterator[str]:
-    """Name each drop's text table: its file's own name where that stays within the folder, and no two alike."""
+def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) -> Iterator[tuple[str, ...]]:
+    """Name each drop's text tables: their files' own names where these stay within the folder, and no two alike."""
     taken: set[str] = set()
-    for drop in drops:
-        path = PurePosixPath(drop.file or drop.name)
-        if path.is_absolute() or ".." in path.parts:
-            path = PurePosixPath(path.name)
-        plain = path.with_name(path.stem if drop.file else path.name)
-        name, count = f"{plain}.csv", 1
-        while name.lower() in taken:  # some file systems take A.csv for a.csv
-            count += 1
-            name = f"{plain}_{count}.csv"
-        taken.add(name.lower())
-        yield name
+    for drop, of_drop in zip(drops, pieces, strict=True):
+        own = []
+        for file in [piece.name for piece in of_drop] if len(of_drop) > 1 else [drop.file]:
+            path = PurePosixPath(file or drop.name)
+            if path.is_absolute() or ".." in path.parts:
+                path = PurePosixPath(path.name)
+            plain = path.with_name(path.stem if file else path.name)
+            name, count = f"{plain}.csv", 1
+            while name.lower() in taken:  # some file systems take A.csv for a.csv
+                count += 1
+                name = f"{plain}_{count}.csv"
+            taken.add(name.lower())
+            own.append(name)
+        yield tuple(own)
 
 
-def _document(campaign: Campaign, files: Sequence[str]) -> dict[str, Any]:
+def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, Any]:
     heights = ("cg_height", "wheel_height", "roll_axis_height")
     vehicle: dict[str, Any] = {"name": campaign.name}
     if campaign.wheelbase is not None:
@@ -90,7 +100,10 @@ def _document(campaign: Campaign, files: Sequence[str]) -> dict[str, Any]:
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],
         "load": [written(load) for load in campaign.loads if load.name != EMPTY.name],
-        "drop": [{"file": file} | written(drop, "file") for file, drop in zip(files, campaign.drops, strict=True)],
+        "drop": [
+            ({"file": own[0]} if len(own) == 1 else {"files": list(own)}) | written(drop, "file", "files", "window")
+            for own, drop in zip(files, campaign.drops, strict=True)
+        ],
     }
     return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
 

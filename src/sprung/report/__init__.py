@@ -1,8 +1,21 @@
 """Everything people look at; reads every result, and nothing below reads it."""
 
+from sprung.report.check import check_view
+from sprung.report.draft import draft_view
+from sprung.report.drawing import draw_check, write_check
 from sprung.report.layout import text_of
 from sprung.report.paper import paper_view
 from sprung.report.plan import plan_view
-from sprung.report.terminal import check_view, modes_view, result_view
+from sprung.report.terminal import modes_view, result_view
 
-__all__ = ["check_view", "modes_view", "paper_view", "plan_view", "result_view", "text_of"]
+__all__ = [
+    "check_view",
+    "draft_view",
+    "draw_check",
+    "modes_view",
+    "paper_view",
+    "plan_view",
+    "result_view",
+    "text_of",
+    "write_check",
+]

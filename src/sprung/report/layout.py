@@ -94,6 +94,24 @@ def hanging(first: str, text: str | Text) -> RenderableType:
     return grid
 
 
+def figures(number: float, count: int) -> str:
+    """Write a number with a few figures, trailing zeros among them.
+
+    Parameters
+    ----------
+    number
+        The number.
+    count
+        How many figures.
+
+    Examples
+    --------
+    >>> figures(0.0201, 2), figures(111.96, 3), figures(2e7, 3)
+    ('0.020', '112', '2e+07')
+    """
+    return f"{number:#.{count}g}".rstrip(".") if 1e-3 <= abs(number) < 10.0**count else f"{number:.{count}g}"
+
+
 def text_of(view: RenderableType, console: Console | None = None) -> str:
     """Turn a view into the text that a terminal shows.
 

@@ -10,7 +10,7 @@ from rich.text import Text
 from sprung.errors import Fault
 from sprung.estimate import Estimate, round_by_uncertainty
 from sprung.identification import ModeEstimate
-from sprung.pipeline import Check, FitReport, Result
+from sprung.pipeline import FitReport, Result
 from sprung.report.layout import hanging, table
 from sprung.report.plan import next_line
 from sprung.vehicle import PARAMETERS
@@ -179,22 +179,6 @@ def fault_list(faults: Sequence[Fault]) -> RenderableType:
         text = Text.assemble(f"{fault.where}: ", (fault.code, "yellow"), f": {fault.what}. {fault.do}")
         lines.append(hanging("  - ", text))
     return Group(*lines)
-
-
-def check_view(check: Check) -> RenderableType:
-    """Show what a look at the recordings gave."""
-    rows = []
-    for drop in check.drops:
-        if drop.start is None or drop.end is None:
-            rows.append([drop.file, drop.load, "-", "-", "left out", ", ".join(drop.faults)])
-        else:
-            length = f"{drop.end - drop.start:.2f}"
-            rows.append([drop.file, drop.load, f"{drop.start:.3f}", f"{drop.end:.3f}", length, ", ".join(drop.faults)])
-    headers = ["recording", "load", "decay from s", "to s", "length s", "faults"]
-    parts: list[RenderableType] = [table("Drops", headers, rows, headers[2:5], ("length s",))]
-    if check.faults:
-        parts += [Text(), fault_list(check.faults)]
-    return Group(*parts)
 
 
 def modes_view(modes: Mapping[str, Sequence[ModeEstimate]], faults: Sequence[Fault] = ()) -> RenderableType:

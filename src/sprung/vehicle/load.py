@@ -19,7 +19,7 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 class Item(BaseModel):
     """One piece of a load: a mass at a place."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass: Positive
     """kg."""
@@ -58,7 +58,7 @@ class Item(BaseModel):
 class Added(BaseModel):
     """A load of which only totals are known, taken as centred on the body's centre of gravity (the paper's bus)."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass: NotNegative
     """kg, on the body."""
@@ -85,11 +85,14 @@ class Added(BaseModel):
 class Load(BaseModel):
     """A known load: a list of items, or totals. The load named ``empty`` has neither and always exists."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     name: str = Field(min_length=1)
+    """What the drops call it."""
     items: tuple[Item, ...] = ()
+    """Its pieces, each a mass at a place."""
     added: Added | None = None
+    """What it adds in all, where only totals are known."""
 
     @model_validator(mode="after")
     def _one_description(self) -> Load:

@@ -14,7 +14,7 @@ from sprung.vehicle.rows import Row
 class Sensor(BaseModel):
     """One accelerometer, as a campaign file describes it."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     channel: str = Field(min_length=1)
     """Column or channel name in the recordings."""

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Problem
-from sprung.recording.formats.refusals import cut_short, refuse, refuse_too_large
+from sprung.recording.formats.refusals import refuse, refuse_too_large
+from sprung.recording.formats.store import Samples, joined, nothing
 from sprung.recording.formats.table import Table
 
 AGREE = 1e-3
 """By how much of a step the times of two clocks, or of a clock and an even one, may differ to be the same."""
-
-SPARE = 20e6
-"""Bytes that rows of NaN may take, for the channels that are not on the clock of the table."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,15 +79,15 @@ class Column:
         What the file says it is measured in; None where it says nothing.
     clock
         When its samples were taken.
-    read
-        Gives its samples, shape (time,); None if they are no numbers.
+    samples
+        They themselves; None if they are no numbers.
     """
 
     name: str
     otherwise: str
     unit: str | None
     clock: Clock
-    read: Callable[[], NDArray[np.float64] | None]
+    samples: Samples | None
 
 
 def even(start: float, step: float, count: int, uncertainty: float, where: str) -> Clock:
@@ -184,26 +182,24 @@ def one_table(columns: Sequence[Column], file: str, largest: float, notes: Seque
         raise refuse(file, "times that are no numbers", "the time of every sample, in s", "Export the recording again.")
     refuse_too_large(len(chosen) * clock.count, file, largest)
     names = _names(columns)
-    rows = {column: row for column in chosen if (row := _row(column, clock.count, file)) is not None}
+    rows = {column: column.samples for column in chosen if column.samples is not None}
     if not rows:
         raise refuse(file, "no channel whose samples are numbers", expected, "Export the recording again.")
     within = set(chosen)
     elsewhere = [column for column in columns if column.clock.count and column not in within]
-    spoilt = elsewhere if 8 * len(elsewhere) * clock.count <= SPARE else []
-    values = np.full((len(rows) + len(spoilt), clock.count), np.nan)
-    for index, row in enumerate(rows.values()):
-        values[index] = row
+    for column in elsewhere:
+        problem = _other_clock(column, clock, f"{file}: channel '{names[column]}'")
+        rows[column] = nothing(clock.count, problem)
     left_out = {
         "renamed, as several channels have one name or none": [n for c, n in names.items() if n != c.name],
         "left out, as their samples are no numbers": [names[column] for column in chosen if column not in rows],
         "left out, as they are on another clock": [names[column] for column in elsewhere],
     }
     return Table(
-        channels=tuple(names[column] for column in (*rows, *spoilt)),
-        units=tuple(column.unit for column in (*rows, *spoilt)),
-        values=values,
+        channels=tuple(names[column] for column in rows),
+        units=tuple(column.unit for column in rows),
+        store=joined(tuple(rows.values())),
         clock=clock.of_table,
-        spoilt={names[column]: _other_clock(column, clock, f"{file}: channel '{names[column]}'") for column in spoilt},
         notes=(*notes, *(f"{why}: {', '.join(which)}" for why, which in left_out.items() if which)),
     )
 
@@ -218,13 +214,6 @@ def _sets(columns: Sequence[Column]) -> list[list[Column]]:
         else:
             members.append(column)
     return sets
-
-
-def _row(column: Column, count: int, file: str) -> NDArray[np.float64] | None:
-    row = column.read()
-    if row is not None and len(row) != count:
-        raise cut_short(f"{file}: channel '{column.name or column.otherwise}'", f"{len(row)} of {count} samples")
-    return row
 
 
 def _names(columns: Sequence[Column]) -> dict[Column, str]:

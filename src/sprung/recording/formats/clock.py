@@ -11,7 +11,7 @@ import numpy as np
 from sprung.errors import InputError, Problem, did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -78,28 +78,28 @@ class Rate:
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """The cells of a table as numbers.
+    """What a table has to say of its time.
 
     Attributes
     ----------
     names, units
-        Of the columns; what the header and a row of units say.
+        Of all columns; what the header and a row of units say.
     values
-        Shape (column, time); NaN where the file holds no number.
+        By column that may be the time: its numbers, NaN where the file holds none, shape (time,).
     clocks
-        By column that holds clock times: seconds since midnight, NaN where there is none, shape (time,).
+        By such a column that holds clock times: seconds since midnight, NaN where there is none, shape (time,).
     wrong
-        By column, what stands there that is neither a number nor a clock time.
-    lines
-        Line of the file in which each sample stands, shape (time,).
+        By such a column, what stands there that is neither a number nor a clock time.
+    line
+        Gives the line of the file in which a sample stands.
     """
 
     names: tuple[str, ...]
     units: tuple[str, ...]
-    values: NDArray[np.float64]
+    values: Mapping[int, NDArray[np.float64]]
     clocks: Mapping[int, NDArray[np.float64]]
     wrong: Mapping[int, Problem]
-    lines: NDArray[np.int64]
+    line: Callable[[int], int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +114,36 @@ class Clock:
 def is_time_name(name: str) -> bool:
     """Say whether a column's name is one of a time, its unit apart."""
     return _base(name)[0].lower() in TIME_NAMES
+
+
+def may_be_time(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
+    """Give the columns among which the time is found, if any is: these alone are read for it.
+
+    Parameters
+    ----------
+    names
+        Of all columns.
+    rows
+        The cells of the first lines.
+
+    Returns
+    -------
+    list of int
+        The first that is called a time; otherwise those whose names hold such a word, those that begin with clock
+        times, and the first column that has a name or holds anything.
+    """
+    for column, name in enumerate(names):
+        if is_time_name(name):
+            return [column]
+    beginning = [{row[column] for row in rows if column < len(row) and row[column]} for column in range(len(names))]
+    first = next((column for column, name in enumerate(names) if name or beginning[column]), 0)
+    return [
+        column
+        for column, name in enumerate(names)
+        if column == first
+        or _holds_time_word(name)
+        or any(seconds_of_day(cell) is not None for cell in beginning[column])
+    ]
 
 
 def seconds_of_day(cell: str) -> float | None:
@@ -187,13 +217,13 @@ def clock_of(columns: Columns, rate: Rate | None, file: str) -> Clock:
         If none of these is there, or the time has gaps or text in it.
     """
     names = columns.names
-    column = next((index for index, name in enumerate(names) if is_time_name(name)), None)
+    column = next((index for index in columns.values if is_time_name(names[index])), None)
     if column is None:
-        column = next((index for index in range(len(names)) if _is_time_in_other_words(columns, index)), None)
+        column = next((index for index in columns.values if _is_time_in_other_words(columns, index)), None)
     if column is None:
         column = next(iter(columns.clocks), None)
     if column is None and _first_is_time(columns, rate):
-        column = 0
+        column = min(columns.values)
     if column is not None:
         return _from_column(columns, column, rate, file)
     if rate is not None:
@@ -211,21 +241,26 @@ def _base(name: str) -> tuple[str, str | None]:
     return (match[1].strip(), match[2].strip().lower()) if match else (name.strip(), None)
 
 
+def _holds_time_word(name: str) -> bool:
+    base, unit = _base(name[:200])
+    words = re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])", " ", base).lower())
+    return bool(TIME_NAMES - {"t"} & set(words)) and (unit is None or unit in TIME_UNITS)
+
+
 def _is_time_in_other_words(columns: Columns, index: int) -> bool:
     """Say whether a name holds the word time among others, as SampleTimeFine, and its numbers mostly increase."""
-    base, unit = _base(columns.names[index][:200])
-    words = re.findall(r"[^\W\d_]+", re.sub(r"(?<=[a-zà-ÿ])(?=[A-Z])", " ", base).lower())
-    if not TIME_NAMES - {"t"} & set(words) or index in columns.wrong or (unit is not None and unit not in TIME_UNITS):
+    if not _holds_time_word(columns.names[index]) or index in columns.wrong:
         return False
     with np.errstate(all="ignore"):
-        time, _ = _unwrapped(columns.clocks.get(index, columns.values[index]), columns.lines)
+        time, _ = _unwrapped(columns.clocks.get(index, columns.values[index]), columns.line)
     return bool(np.mean(np.diff(time) > 0) > 0.9) if len(time) > 1 else True
 
 
 def _first_is_time(columns: Columns, rate: Rate | None) -> bool:
-    time, unit = columns.values[0], _base(columns.names[0])[1] or columns.units[0].lower() or "s"
+    first = min(columns.values)
+    time, unit = columns.values[first], _base(columns.names[first])[1] or columns.units[first].lower() or "s"
     with np.errstate(all="ignore"):
-        increases = 0 not in columns.wrong and bool((np.diff(time) > 0).all()) and unit in TIME_UNITS
+        increases = first not in columns.wrong and bool((np.diff(time) > 0).all()) and unit in TIME_UNITS
     return increases and (rate is None or _unit_from(rate, time) is not None)
 
 
@@ -243,7 +278,7 @@ def _from_column(columns: Columns, column: int, rate: Rate | None, file: str) ->
     time = columns.clocks.get(column, columns.values[column])
     gaps = np.isnan(time)
     if gaps.any():
-        line = columns.lines[int(gaps.argmax())]
+        line = columns.line(int(gaps.argmax()))
         where, found = f"{file}: line {line}, column '{name}'", f"no time beside the samples of line {line}"
         raise InputError([Problem(where, found, "the time in every line", "Fill it in.")])
     with np.errstate(all="ignore"):
@@ -254,7 +289,7 @@ def _from_column(columns: Columns, column: int, rate: Rate | None, file: str) ->
         unit = columns.units[column].lower() or None if unit is None else unit
         if unit is not None and unit not in TIME_UNITS:
             raise InputError([Problem(f"{file}: column '{name}'", f"'{unit}'", "a unit of time", _unit_meant(unit))])
-        time, notes = _unwrapped(time, columns.lines)
+        time, notes = _unwrapped(time, columns.line)
         if unit is not None:
             return Clock(column, TIME_UNITS[unit] * time, notes)
         if name.lower() in _OWN_UNIT:
@@ -269,7 +304,7 @@ def _unit_meant(unit: str) -> str:
     return did_you_mean(unit[:40], TIME_UNITS)
 
 
-def _unwrapped(time: NDArray[np.float64], lines: NDArray[np.int64]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+def _unwrapped(time: NDArray[np.float64], line: Callable[[int], int]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     """Join the parts of a counter of 32 bits that began again."""
     if len(time) < 3 or not (np.abs(time) < WRAP).all():
         return time, ()
@@ -277,5 +312,5 @@ def _unwrapped(time: NDArray[np.float64], lines: NDArray[np.int64]) -> tuple[NDA
     again = (steps < 0) & (steps + WRAP > 0) & (steps + WRAP < 1000 * np.median(steps))
     if not again.any():
         return time, ()
-    note = f"the time begins again at 2^32 in line {lines[int(again.argmax()) + 1]}, and was joined"
+    note = f"the time begins again at 2^32 in line {line(int(again.argmax()) + 1)}, and was joined"
     return time + WRAP * np.concatenate(([0], np.cumsum(again))), (note,)

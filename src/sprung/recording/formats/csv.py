@@ -1,26 +1,42 @@
-"""Text tables of every dialect: whatever stands above, then names, perhaps units, then one line per sample."""
+"""Text tables of every dialect: whatever stands above, then names, perhaps units, then one line per sample.
+
+The file is gone through once for its lines and its time, and again for the columns that are asked for.
+"""
 
 from __future__ import annotations
 
 import codecs
-from array import array
-from dataclasses import dataclass, field
+from bisect import bisect_right
+from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sprung.errors import Problem
-from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS, Columns, Rate, clock_of, rate_of, seconds_of_day
-from sprung.recording.formats.dialect import COLUMNS, EMPTY, NUMBER, Layout, cells_of, layout_of, lines_of, text_of
-from sprung.recording.formats.refusals import refuse
+from sprung.recording.formats.blocks import Block, Encoding, blocks, encoding_of
+from sprung.recording.formats.cells import Cells
+from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS, Columns, Rate, clock_of, may_be_time, rate_of
+from sprung.recording.formats.dialect import Layout, cells_of, layout_of
+from sprung.recording.formats.refusals import reading, refuse
+from sprung.recording.formats.store import Samples, Store, holding, in_steps, joined
 from sprung.recording.formats.table import Table, split_unit
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
     from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from sprung.errors import Problem
 
 __all__ = ["TIME_NAMES", "TIME_UNITS", "CsvFormat"]
 
 _BLANK = " \t,;|"
+_SMALL = 1 << 22
+"""Bytes up to which a file is read at once, as going through it twice would take longer."""
+
+_LOOKED_AT = 50
+"""Lines in which clock times show, if there are any."""
 
 
 class CsvFormat:
@@ -41,10 +57,13 @@ class CsvFormat:
         """
         file = path.name
         try:
-            text = text_of(path.read_bytes())
+            encoding = encoding_of(path)
         except UnicodeDecodeError as error:
             do = "Export the recording again, as UTF-8."
             raise refuse(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
+        ahead = blocks(path, encoding)
+        head = next(ahead, Block(0, []))
+        text = "\n".join(head.lines)
         end = _end(text)
         if not text[:end].strip():
             expected = "a line with the names of the columns, then the samples"
@@ -52,18 +71,7 @@ class CsvFormat:
         layout = layout_of(text, end)
         rate = _rate(text, layout, file)
         _check(layout, rate, end, file)
-        return _table(text, end, layout, rate, file)
-
-
-@dataclass(slots=True)
-class _Cells:
-    """The cells of the samples: numbers row by row, and by column what is no number."""
-
-    numbers: array[float] = field(default_factory=lambda: array("d"))
-    lines: array[int] = field(default_factory=lambda: array("q"))
-    text: dict[int, tuple[int, str, int]] = field(default_factory=dict)
-    clocks: dict[int, tuple[array[int], array[float]]] = field(default_factory=dict)
-    clock_cells: dict[int, tuple[int, str]] = field(default_factory=dict)
+        return _table(_Text(path, encoding, layout), chain([head], ahead), rate, _may_be_time(text, layout))
 
 
 def _end(text: str) -> int:
@@ -101,144 +109,139 @@ def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
     if len(layout.names) < 2 and rate is None:
         expected = "the time and at least one channel, separated by comma, semicolon, tab, pipe or spaces"
         do = "Export it with separators, or add a line such as 'Sample rate: 500 Hz' above the names."
-        raise refuse(where, f"a single column, '{_short(layout.names[0])}'", expected, do)
+        raise refuse(where, f"a single column, '{layout.names[0][:80]}'", expected, do)
     if layout.start >= end:
         raise refuse(file, "a header and no samples", "one line per sample below the names", "Export it again.")
 
 
-def _table(text: str, end: int, layout: Layout, rate: Rate | None, file: str) -> Table:
+def _may_be_time(text: str, layout: Layout) -> list[int]:
+    """Give the columns that may be the time, by their names or by what stands in their first cells."""
+    rows = [cells_of(line, layout.delimiter) for line in text[layout.start :].split("\n", _LOOKED_AT)[:_LOOKED_AT]]
+    return may_be_time(layout.names, rows)
+
+
+@dataclass(frozen=True, eq=False)
+class _Text:
+    """A file.
+
+    Attributes
+    ----------
+    path, encoding, layout
+        Where it is and how it is written.
+    marks
+        Of every block of lines, once it was gone through: the sample and the line with which it begins, and the byte.
+    """
+
+    path: Path
+    encoding: Encoding
+    layout: Layout
+    marks: Sequence[tuple[int, int, int]] = ()
+
+    @property
+    def size(self) -> int:
+        """Its bytes."""
+        return self.path.stat().st_size
+
+    def cells(self, columns: Sequence[int], first: int, last: int) -> Iterator[tuple[int, Cells]]:
+        """Read the blocks with some samples; give the first sample of each as well."""
+        sample, number, start = self.marks[bisect_right(self.marks, first, key=lambda mark: mark[0]) - 1]
+        pieces = blocks(self.path, self.encoding, start)
+        while sample < last:
+            with reading(self.path, "a text table"):
+                lines = _samples(next(pieces), number, self.layout)
+                cells = Cells(self.path.name, self.layout, columns, self.size, first - sample, last - sample)
+                cells.add(lines.lines, lines.start)
+            yield sample, cells
+            number, sample = lines.start + len(lines.lines), sample + cells.count
+
+    def read(self, columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
+        """Read as a store does."""
+        found = self.cells(columns, first, last)
+        return in_steps((cells.values[:, max(first - sample, 0) :] for sample, cells in found), step)
+
+    def spoilt(self, column: int, first: int, last: int) -> Problem | None:
+        """Say what is no number, as a store does."""
+        whole = Cells(self.path.name, self.layout, [column], self.size)
+        for _, cells in self.cells([column], first, last):
+            for all_, own in ((whole.text, cells.text), (whole.clock_cells, cells.clock_cells)):
+                for line, cell, count in own.values():
+                    begin, text, before = all_.get(column, (line, cell, 0))
+                    all_[column] = (begin, text, before + count)
+        return whole.spoilt(column)
+
+
+def _samples(block: Block, number: int, layout: Layout) -> Block:
+    """Give the lines of a block that are not above the samples, and the number of the first of them."""
+    above = max(layout.line - number, 0)
+    return Block(number + min(above, len(block.lines)), block.lines[above:])
+
+
+def _gone_through(text: _Text, ahead: Iterable[Block], columns: Sequence[int]) -> tuple[_Text, Cells, int]:
+    """Go through a file for its lines and some columns; give the number of its last line too if that is cut short."""
+    layout = text.layout
+    cells = Cells(text.path.name, layout, columns, text.size)
+    marks: list[tuple[int, int, int]] = []
+    number, held = 1, (0, "")
+    before = ""
+    for block in ahead:
+        start, lines = _samples(block, number, layout)
+        last = next((index for index in range(len(lines) - 1, -1, -1) if lines[index].strip(_BLANK)), None)
+        if last is not None:
+            # The last line that holds anything waits: it may be cut short, as when a logger loses power.
+            if held[0]:
+                cells.add([held[1]], held[0])
+            marks.append((cells.count, number, block.start))
+            cells.add(lines[:last], start)
+            before = next((line for line in reversed(lines[:last]) if line.strip(_BLANK)), held[1])
+            held = (start + last, lines[last])
+        number = start + len(lines)
+    found, full = (len(cells_of(line, layout.delimiter)) for line in (held[1], before))
+    cut = held[0] if cells.count and found < len(layout.names) <= full else 0
+    if held[0] and not cut:
+        cells.add([held[1]], held[0])
+    return replace(text, marks=marks), cells, cut
+
+
+def _table(text: _Text, ahead: Iterable[Block], rate: Rate | None, candidates: Sequence[int]) -> Table:
+    layout = text.layout
+    small = text.size <= _SMALL
+    read = range(len(layout.names)) if small else candidates
+    text, cells, cut = _gone_through(text, ahead, read)
     notes = [f"line {line}, between names and samples, was passed over" for line in layout.passed]
-    cut = _cut_short(text, layout, end)
-    if cut is not None:
-        notes.append(f"line {text.count(chr(10), 0, end) + 1}, the last, is cut short and was left out")
-        end = cut
-    cells = _read(text, end, layout, file)
-    count, width = len(cells.lines), len(layout.names)
-    values = np.frombuffer(cells.numbers, dtype=float).reshape(count, width).T
-    lines = np.frombuffer(cells.lines, dtype=np.int64)
-    used = [index for index, name in enumerate(layout.names) if name or not _is_empty(index, values, cells)]
-    clocks: dict[int, np.ndarray] = {}
-    for index, (rows, seconds) in cells.clocks.items():
-        clocks[used.index(index)] = np.full(count, np.nan)
-        clocks[used.index(index)][np.frombuffer(rows, dtype=np.int64)] = np.frombuffer(seconds, dtype=float)
+    if cut:
+        notes.append(f"line {cut}, the last, is cut short and was left out")
+    clocks: dict[int, NDArray[np.float64]] = {}
+    for column, (rows, seconds) in ((column, cells.clocks[column]) for column in candidates if column in cells.clocks):
+        clocks[column] = np.full(cells.count, np.nan)
+        clocks[column][np.frombuffer(rows, dtype=np.int64)] = np.frombuffer(seconds, dtype=np.float64)
+    samples, lines = (np.frombuffer(run, dtype=np.int64) for run in cells.runs)
+
+    def line(sample: int) -> int:
+        run = int(np.searchsorted(samples, sample, side="right")) - 1
+        return int(lines[run]) + sample - int(samples[run])
+
+    units = (*layout.units, *("",) * (len(layout.names) - len(layout.units)))
     columns = Columns(
-        names=tuple(layout.names[index] for index in used),
-        units=tuple(layout.units[index] if index < len(layout.units) else "" for index in used),
-        values=values[used] if len(used) < width else values,
+        names=layout.names,
+        units=units,
+        values={column: cells.values[read.index(column)] for column in candidates},
         clocks=clocks,
-        wrong={used.index(index): _problem(index, cells.text[index], layout, file) for index in cells.text},
-        lines=lines,
+        wrong={column: problem for column in candidates if (problem := cells.wrong(column)) is not None},
+        line=line,
     )
-    clock = clock_of(columns, rate, file)
-    channels = [index for index in range(len(used)) if index != clock.column]
-    named = [split_unit(columns.names[index]) for index in channels]
-    # As channels, columns of clock times are spoilt too.
-    days = {
-        used.index(index): _problem(index, (*cells.clock_cells[index], len(rows)), layout, file)
-        for index, (rows, _) in cells.clocks.items()
-    }
-    spoilt = {**days, **columns.wrong}
+    clock = clock_of(columns, rate, text.path.name)
+    channels = [column for column, name in enumerate(layout.names) if name and column != clock.column]
+    named = [split_unit(layout.names[column]) for column in channels]
+    in_memory = holding(cells.values) if small else None
+    store = Store(len(layout.names), cells.count, in_memory.read if in_memory else text.read, text.spoilt)
     return Table(
         channels=tuple(name for name, _ in named),
         units=tuple(
-            unit if unit is not None else columns.units[index] or None
-            for (_, unit), index in zip(named, channels, strict=True)
+            unit if unit is not None else units[column] or None
+            for (_, unit), column in zip(named, channels, strict=True)
         ),
-        values=columns.values[channels],
+        store=joined([Samples(store, column) for column in channels]),
         clock=clock.time,
-        lines=lines,
-        spoilt={name: spoilt[index] for (name, _), index in zip(named, channels, strict=True) if index in spoilt},
+        place=lambda sample: f"line {line(sample)}",
         notes=(*notes, *clock.notes),
     )
-
-
-def _is_empty(index: int, values: np.ndarray, cells: _Cells) -> bool:
-    return index not in cells.text and index not in cells.clocks and bool(np.isnan(values[index]).all())
-
-
-def _cut_short(text: str, layout: Layout, end: int) -> int | None:
-    """Say where the line before the last ends, if recording stopped within the last, as when a logger loses power."""
-    last = text.rfind("\n", layout.start, end)
-    before = text.rfind("\n", layout.start, last) if last > 0 else -1
-    if last < 0 or before < 0:
-        return None
-    cells, full = (len(cells_of(line, layout.delimiter)) for line in (text[last + 1 : end], text[before + 1 : last]))
-    return last if cells < len(layout.names) <= full else None
-
-
-def _read(text: str, end: int, layout: Layout, file: str) -> _Cells:
-    """Read the samples: a line of nothing but numbers at once, any other cell by cell."""
-    cells, width, missing = _Cells(), len(layout.names), 0
-    numbers, lines = cells.numbers, cells.lines
-    separator = None if layout.delimiter == " " else layout.delimiter
-    other, comma = (".", True) if layout.decimal == "," else ("_", False)
-    for number, line in enumerate(lines_of(text, layout.start, end), layout.line):
-        # float takes 1_000 and the digits of other alphabets as well; no logger means these.
-        if line.isascii() and other not in line and "_" not in line:
-            split = (line.replace(",", ".") if comma else line).split(separator)
-            if len(split) == width:
-                try:
-                    numbers.extend(map(float, split))
-                except ValueError:
-                    del numbers[len(lines) * width :]
-                else:
-                    lines.append(number)
-                    continue
-        if line.count('"') % 2:
-            do = "Look for a quotation mark that is not closed."
-            raise refuse(f"{file}: line {number}", "a line that is no table", "one line per sample", do)
-        row = cells_of(line, layout.delimiter) if line.count(layout.delimiter) <= COLUMNS else line.split(separator)
-        if not any(row):
-            continue
-        _refuse_unnamed(row, layout, f"{file}: line {number}")
-        missing += max(width - len(row), 0)
-        if missing > len(text):
-            found = f"{len(row)} cells, and few in many lines before"
-            expected = f"{width}, as many as the header has names"
-            raise refuse(f"{file}: line {number}", found, expected, "Export it again.")
-        numbers.extend(_number(cell, index, number, layout.decimal, cells) for index, cell in enumerate(row[:width]))
-        numbers.extend([np.nan] * (width - len(row)))
-        lines.append(number)
-    return cells
-
-
-def _refuse_unnamed(row: list[str], layout: Layout, where: str) -> None:
-    filled = max(index for index, cell in enumerate(row, 1) if cell)
-    if filled > len(layout.names):
-        do = f"Name every column in {'the first line' if layout.header == 1 else f'line {layout.header}'}."
-        if layout.delimiter == ",":
-            do += " If the commas are decimal marks, export with semicolons or tabs between the columns."
-        expected = f"{len(layout.names)}, as many as the header has names"
-        raise refuse(where, f"{filled} cells", expected, do)
-
-
-def _number(cell: str, column: int, line: int, decimal: str, cells: _Cells) -> float:
-    """Give the number in a cell, NaN where there is none; keep the first text of every column, and all clock times."""
-    if cell.lower() in EMPTY:
-        return float(cell) if cell.lower().endswith("inf") else np.nan
-    if NUMBER.fullmatch(cell) and cell.isascii() and ("." if decimal == "," else ",") not in cell:
-        return float(cell.replace(",", "."))
-    seconds = seconds_of_day(cell) if ":" in cell else None
-    if seconds is not None:
-        rows, times = cells.clocks.setdefault(column, (array("q"), array("d")))
-        rows.append(len(cells.lines))
-        times.append(seconds)
-        cells.clock_cells.setdefault(column, (line, cell))
-    else:
-        first, text, count = cells.text.get(column, (line, cell, 0))
-        cells.text[column] = (first, text, count + 1)
-    return np.nan
-
-
-def _problem(column: int, text: tuple[int, str, int], layout: Layout, file: str) -> Problem:
-    line, cell, count = text
-    more = f" (the first of {count} such cells)" if count > 1 else ""
-    do = "Correct or empty that cell, or export the recording again."
-    if NUMBER.fullmatch(cell.replace(",", "").replace(".", "")):
-        do = f"Export it without thousands separators, with '{layout.decimal}' as the only decimal mark."
-    where = f"{file}: line {line}, column '{layout.names[column]}'"
-    return Problem(where, f"'{_short(cell)}'{more}", "a number", do)
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= 80 else f"{text[:77]}..."

@@ -6,7 +6,6 @@ delimiter is the one with which such a run is found, and the names stand in the 
 
 from __future__ import annotations
 
-import codecs
 import csv
 import re
 from dataclasses import dataclass
@@ -79,27 +78,6 @@ class _Run:
     width: int = 0
     lines: int = 0
     weight: float = 0.0
-
-
-def text_of(content: bytes) -> str:
-    """Decode a file: UTF-16 with its mark, UTF-8 with or without, otherwise the Windows or the Latin alphabet.
-
-    Raises
-    ------
-    UnicodeDecodeError
-        If it is marked as UTF-16 and is none.
-    """
-    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        text = content.decode("utf-16")
-    else:
-        try:
-            text = content.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            try:
-                text = content.decode("cp1252")
-            except UnicodeDecodeError:
-                text = content.decode("latin-1")  # every byte is a character of it
-    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def lines_of(text: str, start: int, end: int) -> Iterator[str]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sprung.recording.formats.datasets import unread
 from sprung.recording.formats.nested import DEEPEST, Foreign, Node
 from sprung.recording.formats.optional import library
 from sprung.recording.formats.refusals import Allowance, reading
@@ -43,37 +44,8 @@ class Hdf5Format:
         """
         h5py = library("h5py", "hdf5", path)
         with reading(path, "an HDF5 file"), h5py.File(path, "r") as file:
-            node = _group(h5py, file, Allowance(path), {file})
+            node = _group(h5py, file, Allowance(path), {file}, path)
         return table_of(node, path, "Write the time and the channels as one-dimensional datasets.")
-
-
-def numbers_in(dataset: Any, allowance: Allowance) -> np.ndarray | Foreign:
-    """Read a dataset of numbers, unless it lies outside of its file.
-
-    Parameters
-    ----------
-    dataset
-        Of h5py.
-    allowance
-        What it may take up.
-
-    Returns
-    -------
-    ndarray or Foreign
-
-    Raises
-    ------
-    InputError
-        If it takes up more.
-    """
-    if dataset.shape is None:
-        return np.empty(0)
-    if dataset.external or dataset.is_virtual:
-        return Foreign("numbers in another file")
-    allowance.take(dataset.size * (dataset.dtype.itemsize + 8))
-    chunk = dataset.chunks or ()
-    allowance.take(int(np.prod(chunk, dtype=object)) * dataset.dtype.itemsize)
-    return np.asarray(dataset[()])
 
 
 def named(items: Any) -> list[str]:
@@ -87,7 +59,7 @@ def named(items: Any) -> list[str]:
     return [name for name in items if isinstance(name, str)]
 
 
-def _group(h5py: Any, group: Any, allowance: Allowance, seen: set[Any], depth: int = 0) -> Node:
+def _group(h5py: Any, group: Any, allowance: Allowance, seen: set[Any], path: Path, depth: int = 0) -> Node:
     allowance.take(PER_OBJECT)
     if depth > DEEPEST:
         return Foreign("nested too deeply")
@@ -102,24 +74,23 @@ def _group(h5py: Any, group: Any, allowance: Allowance, seen: set[Any], depth: i
             continue
         seen.add(item)
         if isinstance(item, h5py.Group):
-            node[name] = _group(h5py, item, allowance, seen, depth + 1)
+            node[name] = _group(h5py, item, allowance, seen, path, depth + 1)
         elif isinstance(item, h5py.Dataset):
-            values = _dataset(h5py, item, allowance)
+            values = _dataset(h5py, item, allowance, path)
             attributes = _attributes(h5py, item, allowance)
             node[name] = {"": values, **attributes} if attributes else values
     return node
 
 
-def _dataset(h5py: Any, dataset: Any, allowance: Allowance) -> Node:
+def _dataset(h5py: Any, dataset: Any, allowance: Allowance, path: Path) -> Node:
     allowance.take(PER_OBJECT)
     if h5py.check_string_dtype(dataset.dtype) is not None:
         return _words(h5py, dataset, allowance)
     if dataset.dtype.hasobject:
         return Foreign("references or lists of varying length")
-    values = numbers_in(dataset, allowance)
-    if isinstance(values, np.ndarray) and values.dtype.names:
-        return {name: values[name] for name in values.dtype.names}
-    return values
+    if dataset.shape is None:
+        return np.empty(0)
+    return unread(dataset, path, allowance)
 
 
 def _words(h5py: Any, dataset: Any, allowance: Allowance) -> Node:

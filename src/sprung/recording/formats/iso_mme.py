@@ -2,36 +2,45 @@
 
 from __future__ import annotations
 
-from array import array
 from collections import Counter
+from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain, islice
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sprung.errors import InputError, Problem, Problems
+from sprung.recording.formats.blocks import Encoding, blocks, encoding_of
 from sprung.recording.formats.clock import TIME_UNITS
-from sprung.recording.formats.dialect import EMPTY, lines_of, text_of
+from sprung.recording.formats.dialect import EMPTY
+from sprung.recording.formats.store import Samples, Store, in_steps, joined, nothing
 from sprung.recording.formats.table import Table
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
 _NONE = "novalue"
+_MISSING = EMPTY | {_NONE}
 _NAMES = ("customer channel name", "name of the channel", "channel code")
 
 
 @dataclass(frozen=True, eq=False)
 class _Channel:
-    """One channel file: its header with the keys in small letters, and its samples, NaN where there is none."""
+    """One channel file: its header with the keys in small letters, how many samples it has, and where they begin."""
 
-    file: str
+    path: Path
+    encoding: Encoding
     header: Mapping[str, str]
-    values: NDArray[np.float64]
-    spoilt: Problem | None
+    count: int
+    start: int
+
+    @property
+    def file(self) -> str:
+        return self.path.name
 
     @property
     def name(self) -> str:
@@ -86,20 +95,17 @@ class IsoMmeFormat:
             raise InputError([Problem(path.name, "no channel that says its sampling interval", "one for each", do)])
         first, interval, count, reference = clock = usual[0][0]
         time = first + interval * np.arange(count, dtype=np.float64) if reference is None else _times(codes[reference])
-        spoilt: dict[str, Problem] = {}
-        for channel in measured:
-            if clocks[id(channel)] != clock:
-                spoilt[channel.name] = _other(channel, clocks[id(channel)], clock)
-            elif channel.spoilt is not None:
-                spoilt[channel.name] = channel.spoilt
+        samples = [
+            Samples(_store(channel), 0)
+            if clocks[id(channel)] == clock
+            else nothing(count, _other(channel, clocks[id(channel)], clock))
+            for channel in measured
+        ]
         return Table(
             channels=tuple(channel.name for channel in measured),
             units=tuple(channel.header.get("unit") for channel in measured),
-            values=np.array(
-                [channel.values if clocks[id(channel)] == clock else np.full(count, np.nan) for channel in measured]
-            ),
+            store=joined(samples),
             clock=time,
-            spoilt=spoilt,
         )
 
 
@@ -122,54 +128,92 @@ def _files(path: Path) -> list[Path]:
     return files
 
 
-def _channel(path: Path) -> _Channel:
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
     try:
-        text = text_of(path.read_bytes())
+        yield
     except OSError as error:
         found = f"a file that cannot be read ({error.strerror})"
         raise InputError([Problem(path.name, found, "a channel", "See to its permissions.")]) from error
     except UnicodeDecodeError as error:
         found = f"a file marked as UTF-16 that is none ({error.reason})"
         raise InputError([Problem(path.name, found, "text", "Export the channel again.")]) from error
+
+
+def _channel(path: Path) -> _Channel:
     header: dict[str, str] = {}
-    numbers = array("d")
-    wrong: tuple[int, str, int] | None = None
-    for line, written in enumerate(lines_of(text, 0, len(text)), 1):
-        cell = written.strip()
-        key, colon, value = cell.partition(":")
-        if not cell:
-            continue
-        if colon and not numbers:
-            if value.strip() and value.strip().lower() != _NONE:
-                header.setdefault(key.strip().lower(), value.strip())
-            continue
-        try:
-            numbers.append(float(cell.replace(",", ".")))
-        except ValueError:
-            numbers.append(np.nan)
-            if cell.lower() != _NONE and cell.lower() not in EMPTY:
-                first, text_there, count = wrong or (line, cell, 0)
-                wrong = (first, text_there, count + 1)
-    return _Channel(path.name, header, np.frombuffer(numbers, dtype=float), _spoilt(path.name, wrong))
+    count = start = above = 0
+    with _reading(path):
+        encoding = encoding_of(path)
+        for block in blocks(path, encoding):
+            lines = block.lines
+            if not start:
+                found = next((index for index, line in enumerate(lines) if not _is_header(line)), len(lines))
+                for line in lines[:found]:
+                    key, _, value = (part.strip() for part in line.partition(":"))
+                    if value and value.lower() != _NONE:
+                        header.setdefault(key.lower(), value)
+                above += found
+                start, lines = above + 1 if found < len(lines) else 0, lines[found:]
+            count += sum(not line.isspace() for line in lines if line)
+    return _Channel(path, encoding, header, count, start)
 
 
-def _spoilt(file: str, wrong: tuple[int, str, int] | None) -> Problem | None:
-    if wrong is None:
-        return None
-    line, cell, count = wrong
+def _is_header(line: str) -> bool:
+    return ":" in line or not line.strip()
+
+
+def _cells(channel: _Channel) -> Iterator[list[tuple[int, str]]]:
+    """Give the lines with samples block by block, and their numbers."""
+    number = 1
+    with _reading(channel.path):
+        for block in blocks(channel.path, channel.encoding):
+            lines = enumerate(map(str.strip, block.lines), number)
+            yield [(line, cell) for line, cell in lines if cell and line >= channel.start]
+            number += len(block.lines)
+
+
+def _number(cell: str) -> float:
+    try:
+        return float(cell.replace(",", "."))
+    except ValueError:
+        return np.nan
+
+
+def _store(channel: _Channel) -> Store:
+    def pieces(first: int, last: int) -> Iterator[NDArray[np.float64]]:
+        place = 0
+        for cells in _cells(channel):
+            own = cells[max(first - place, 0) : max(last - place, 0)]
+            yield np.array([[_number(cell) for _, cell in own]])
+            place += len(cells)
+
+    def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
+        return (np.repeat(piece, len(columns), axis=0) for piece in in_steps(pieces(first, last), step))
+
+    def spoilt(_column: int, first: int, last: int) -> Problem | None:
+        within = islice(chain.from_iterable(_cells(channel)), first, last)
+        words = ((line, cell) for line, cell in within if np.isnan(_number(cell)) and cell.lower() not in _MISSING)
+        found = next(words, None)
+        return _spoilt(channel.file, *found, 1 + sum(1 for _ in words)) if found else None
+
+    return Store(1, channel.count, read, spoilt)
+
+
+def _spoilt(file: str, line: int, cell: str, count: int) -> Problem:
     more = f" (the first of {count} such lines)" if count > 1 else ""
     return Problem(f"{file}: line {line}", f"'{cell[:80]}'{more}", "a number", "Export the channel again.")
 
 
 def _clock(channel: _Channel, codes: Mapping[str, _Channel], problems: Problems) -> _Clock | None:
     """Say when a channel was sampled; None if nothing says so."""
-    count = len(channel.values)
+    count = channel.count
     reference = channel.header.get("reference channel name")
     if (
         reference is not None
         and reference in codes
         and codes[reference] is not channel
-        and len(codes[reference].values) == count
+        and codes[reference].count == count
     ):
         return 0.0, 0.0, count, reference
     first = channel.number("time of first sample", problems) or 0.0
@@ -188,11 +232,12 @@ def _times(channel: _Channel) -> NDArray[np.float64]:
     unit = channel.header.get("unit", "s").strip("[]() ").lower()
     if unit not in TIME_UNITS:
         problems.add(f"{channel.file}: unit", f"'{unit[:40]}'", "a unit of time", "Correct it.")
-    if np.isnan(channel.values).any():
-        found = f"no number for sample {int(np.isnan(channel.values).argmax()) + 1} of the times"
+    times = Samples(_store(channel), 0).all()
+    if np.isnan(times).any():
+        found = f"no number for sample {int(np.isnan(times).argmax()) + 1} of the times"
         problems.add(channel.file, found, "the time of every sample", "Export the channel again.")
     problems.raise_if_any()
-    return TIME_UNITS[unit] * channel.values
+    return TIME_UNITS[unit] * times
 
 
 def _other(channel: _Channel, clock: _Clock | None, usual: _Clock) -> Problem:

@@ -1,26 +1,27 @@
-"""MATLAB's files: version 4 by SciPy, versions 5 to 7 by `mat5`, version 7.3, which is HDF5 inside, by h5py."""
+"""MATLAB's files: version 4 by `mat4`, versions 5 to 7 by `mat5`, version 7.3, which is HDF5 inside, by h5py."""
 
 from __future__ import annotations
 
-import warnings
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sprung.recording.formats.hdf5 import PER_OBJECT, SIGNATURE, named, numbers_in
-from sprung.recording.formats.mat5 import HEADER, variables
+from sprung.recording.formats import mat4, mat5
+from sprung.recording.formats.datasets import numbers_in, unread
+from sprung.recording.formats.hdf5 import PER_OBJECT, SIGNATURE, named
 from sprung.recording.formats.nested import DEEPEST, Foreign, Node
 from sprung.recording.formats.optional import library
 from sprung.recording.formats.refusals import Allowance, reading
 from sprung.recording.formats.vectors import table_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from sprung.recording.formats.table import Table
 
 _KIND = "a MATLAB file of vectors"
-_DO = "In MATLAB, save the time in s and the channels as plain vectors, such as t = seconds(tt.Time); a = tt.a;"
+_DO = "In MATLAB, save the time in s and the channels as plain vectors, such as t = seconds(tt.Time) and a = tt.a."
 _BYTE_ORDERS = frozenset((b"IM", b"MI"))
 _KINDS = frozenset(("", "double", "single", "logical", "int8", "int16", "int32", "int64", "uint8", "uint16"))
 _KINDS |= {"uint32", "uint64", "char", "cell", "struct"}
@@ -46,33 +47,16 @@ class MatFormat:
             If it is damaged, holds no recording, or is of version 7.3 and h5py is missing.
         """
         with path.open("rb") as file:
-            head = file.read(HEADER)
+            head = file.read(mat5.HEADER)
         if head[126:128] not in _BYTE_ORDERS:
-            return table_of(_read_4(path), path, _DO)
+            return table_of(_read(mat4.variables, path), path, _DO)
         new = head[124:126] in {b"\0\x02", b"\x02\0"}
-        return table_of(_read_7_3(path) if new else _read_5(path), path, _DO)
+        return table_of(_read_7_3(path) if new else _read(mat5.variables, path), path, _DO)
 
 
-def _read_4(path: Path) -> Node:
-    from scipy.io import loadmat  # noqa: PLC0415 (heavy, and needed only once such a file is met)
-
-    with reading(path, _KIND), path.open("rb") as file, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of variables that it does not know
-        read: Any = loadmat  # which its annotations do not allow to read an open file
-        found: dict[str, Any] = read(file)
-    return {name: _plain(value) for name, value in found.items() if not name.startswith("__")}
-
-
-def _plain(value: Any) -> Node:
-    if not isinstance(value, np.ndarray):
-        return Foreign("a sparse matrix")
-    return _words([str(word) for word in value.flat]) if value.dtype.kind == "U" else value
-
-
-def _read_5(path: Path) -> Node:
-    allowance = Allowance(path)
+def _read(variables: Callable[[Path, Allowance], dict[str, Node]], path: Path) -> Node:
     with reading(path, _KIND):
-        return variables(path.read_bytes(), allowance)
+        return variables(path, Allowance(path))
 
 
 def _words(rows: list[str]) -> Node:
@@ -83,10 +67,11 @@ def _read_7_3(path: Path) -> Node:
     h5py = library("h5py", "hdf5", path)
     allowance = Allowance(path)
     with reading(path, _KIND), h5py.File(path, "r") as file:
-        return {name: _item(h5py, file, file[name], allowance, 0) for name in named(file) if not name.startswith("#")}
+        items = {name: file[name] for name in named(file) if not name.startswith("#")}
+        return {name: _item(h5py, path, item, allowance, 0) for name, item in items.items()}
 
 
-def _item(h5py: Any, file: Any, item: Any, allowance: Allowance, depth: int) -> Node:
+def _item(h5py: Any, path: Path, item: Any, allowance: Allowance, depth: int) -> Node:
     """Bring what h5py gives into plain form: what MATLAB calls it stands in an attribute."""
     allowance.take(PER_OBJECT)
     said = item.attrs.get("MATLAB_class", b"")
@@ -95,17 +80,18 @@ def _item(h5py: Any, file: Any, item: Any, allowance: Allowance, depth: int) -> 
     if foreign or depth > DEEPEST:
         return Foreign(f"an object of class {kind}, which only MATLAB can read")
     if isinstance(item, h5py.Group):
-        return _struct({name: _item(h5py, file, item[name], allowance, depth + 1) for name in named(item)})
-    values = np.empty(0) if "MATLAB_empty" in item.attrs else numbers_in(item, allowance)
-    if isinstance(values, Foreign) or values.dtype.names:
-        return values if isinstance(values, Foreign) else Foreign("complex numbers")
-    if h5py.check_ref_dtype(values.dtype) is not None:
-        children = [_item(h5py, file, file[ref], allowance, depth + 1) for ref in values.flat if ref]
+        return _struct({name: _item(h5py, path, item[name], allowance, depth + 1) for name in named(item)})
+    if item.shape is None or "MATLAB_empty" in item.attrs:
+        return np.empty(0)
+    is_list = h5py.check_ref_dtype(item.dtype) is not None
+    if item.external or item.is_virtual or not (is_list or kind == "char"):
+        return Foreign("complex numbers") if item.dtype.names else unread(item, path, allowance, transposed=True)
+    values = numbers_in(item, allowance)
+    if is_list:
+        children = [_item(h5py, path, item.file[ref], allowance, depth + 1) for ref in values.flat if ref]
         return children if kind == "cell" else _Array(children)
-    if kind == "char":
-        rows = np.atleast_2d(values.T).astype(np.uint16).tolist()
-        return _words(["".join(map(chr, row)) for row in rows])
-    return values.T
+    rows = np.atleast_2d(values.T).astype(np.uint16).tolist()
+    return _words(["".join(map(chr, row)) for row in rows])
 
 
 class _Array(list[Node]):

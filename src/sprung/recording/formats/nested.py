@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
+
+from sprung.recording.formats.store import Samples, holding
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -14,25 +16,31 @@ if TYPE_CHECKING:
 DEEPEST = 32
 """How many names may lie within each other; recordings need a handful."""
 
-Node: TypeAlias = "Mapping[str, Node] | Sequence[Node] | NDArray[Any] | Moments | Foreign | str"
-"""Something that stands in a file: more names, a list, numbers, times, or text. Values of a thing that also has
-attributes stand beside them under the empty name."""
+Node: TypeAlias = "Mapping[str, Node] | Sequence[Node] | NDArray[Any] | Numbers | Foreign | str"
+"""Something that stands in a file: more names, a list, numbers that were read or are still unread, or text. Values of a
+thing that also has attributes stand beside them under the empty name."""
 
 Path: TypeAlias = tuple[str, ...]
 """The names that lead to something, outermost first."""
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
-    """Numbers that the file itself declares to be times.
+class Numbers:
+    """Real numbers, still unread.
 
     Attributes
     ----------
-    seconds
-        Shape (time,), s.
+    shape
+        Without the sides of length 1: one side, or two of a matrix.
+    along
+        Gives the vectors that lie along a side, the first or the second.
+    moments
+        Whether the file declares them to be times, which are then in s.
     """
 
-    seconds: NDArray[np.float64]
+    shape: tuple[int, ...]
+    along: Callable[[int], Sequence[Samples]]
+    moments: bool = False
 
 
 @dataclass(frozen=True)
@@ -56,15 +64,12 @@ class Block:
     ----------
     path
         The names that lead to them.
-    values
+    numbers
         A vector, a matrix of which one side is time, or vectors of one length.
-    moments
-        Whether the file declares them to be times.
     """
 
     path: Path
-    values: NDArray[Any] | tuple[NDArray[Any], ...]
-    moments: bool = False
+    numbers: Numbers | tuple[Numbers, ...]
 
 
 @dataclass(frozen=True)
@@ -138,8 +143,8 @@ class _Gathered(NamedTuple):
         match node:
             case str():
                 self.texts.append(Text(path, (node,)))
-            case Moments():
-                self.blocks.append(Block(path, node.seconds, moments=True))
+            case Numbers():
+                self._numbers(path, node)
             case Foreign():
                 self.foreign.append(f"{'.'.join(path)}: {node.what}")
             case np.ndarray():
@@ -152,10 +157,10 @@ class _Gathered(NamedTuple):
 
     def _list(self, path: Path, nodes: Sequence[Node]) -> list[tuple[Path, Node]]:
         words = tuple(node for node in nodes if isinstance(node, str))
-        vectors = tuple(node.ravel() for node in nodes if isinstance(node, np.ndarray) and _is_vector(node))
+        vectors = tuple(vector for node in nodes if (vector := _vector(node)) is not None)
         if words and len(words) == len(nodes):
             self.texts.append(Text(path, words))
-        elif len(vectors) == len(nodes) > 1 and len({len(vector) for vector in vectors}) == 1:
+        elif len(vectors) == len(nodes) > 1 and len({vector.shape for vector in vectors}) == 1:
             self.blocks.append(Block(path, vectors))
         elif len(nodes) == 1:
             return [(path, nodes[0])]
@@ -164,17 +169,47 @@ class _Gathered(NamedTuple):
         return []
 
     def _array(self, path: Path, array: NDArray[Any]) -> None:
-        flat = array.reshape([side for side in array.shape if side != 1] or [1])
-        if array.dtype.kind not in "fiub":
-            kind = "complex numbers" if array.dtype.kind == "c" else f"values of type {array.dtype}"
-            self.foreign.append(f"{'.'.join(path)}: {kind}")
-        elif flat.size == 1:
-            self.numbers.append(Number(path, float(flat.item())))
-        elif flat.ndim > 2:
-            self.foreign.append(f"{'.'.join(path)}: an array of {flat.ndim} dimensions")
-        elif flat.size:
-            self.blocks.append(Block(path, flat))
+        if (other := kind_of(array.dtype)) is not None:
+            self.foreign.append(f"{'.'.join(path)}: {other}")
+        elif array.size == 1:
+            self.numbers.append(Number(path, float(array.item())))
+        else:
+            self._numbers(path, numbers_of(array))
+
+    def _numbers(self, path: Path, numbers: Numbers) -> None:
+        if len(numbers.shape) > 2:
+            self.foreign.append(f"{'.'.join(path)}: an array of {len(numbers.shape)} dimensions")
+        elif all(numbers.shape):
+            self.blocks.append(Block(path, numbers))
 
 
-def _is_vector(array: NDArray[Any]) -> bool:
-    return array.dtype.kind in "fiub" and array.size == max(array.shape, default=0) > 1
+def kind_of(dtype: np.dtype[Any]) -> str | None:
+    """Say what values are that are no real numbers; None if they are."""
+    if dtype.kind in "fiub":
+        return None
+    return "complex numbers" if dtype.kind == "c" else f"values of type {dtype}"
+
+
+def numbers_of(array: NDArray[Any]) -> Numbers:
+    """Take numbers that are in memory for unread ones.
+
+    Parameters
+    ----------
+    array
+        Of real numbers, any shape.
+    """
+    flat = array.reshape([side for side in array.shape if side != 1] or [1])
+
+    def along(side: int) -> list[Samples]:
+        store = holding(np.atleast_2d(flat if side == flat.ndim - 1 else flat.T))
+        return [Samples(store, column) for column in range(store.width)]
+
+    return Numbers(flat.shape, along)
+
+
+def _vector(node: Node) -> Numbers | None:
+    if isinstance(node, Numbers):
+        return node if len(node.shape) == 1 else None
+    if isinstance(node, np.ndarray) and kind_of(node.dtype) is None and node.size == max(node.shape, default=0) > 1:
+        return numbers_of(node)
+    return None

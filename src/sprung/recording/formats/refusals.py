@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sprung.errors import InputError, Problem
 
 if TYPE_CHECKING:
@@ -76,7 +78,7 @@ def contained(where: str, kind: str) -> Iterator[None]:
 
 @contextmanager
 def reading(path: Path, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises over a file into bad input.
+    """Turn whatever a library raises over a file into bad input; numbers that are none are no reason for a warning.
 
     Parameters
     ----------
@@ -91,7 +93,8 @@ def reading(path: Path, kind: str) -> Iterator[None]:
         If the block raises anything.
     """
     try:
-        yield
+        with np.errstate(invalid="ignore"):
+            yield
     except InputError:
         raise
     except Exception as error:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint, entry_points
+from functools import cache
+from importlib import metadata
+from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING, Protocol
 
 from sprung.errors import InputError, Problem, did_you_mean
@@ -15,6 +17,9 @@ if TYPE_CHECKING:
 
 GROUP = "sprung.formats"
 HEAD = 8192
+
+# To look through everything that is installed takes as long as to read a file, of which a campaign has many.
+entry_points = cache(metadata.entry_points)
 
 # Known even where no package metadata is installed, as when running from the sources.
 _OWN = tuple(

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sprung.errors import did_you_mean
 from sprung.recording.formats.axes import Clock, Column, even, one_table
-from sprung.recording.formats.refusals import allowance, cut_short, refuse
+from sprung.recording.formats.refusals import allowance, cut_short, reading, refuse
+from sprung.recording.formats.store import Samples, Store, by_ranges
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -40,8 +42,8 @@ class RpcFormat:
         InputError
             If its header lacks something, or if it ends before the samples that the header declares.
         """
-        content, file = path.read_bytes(), path.name
-        header = _Header(_pairs(content, file), file)
+        file, written = path.name, path.stat().st_size
+        header = _Header(_pairs(path, written), file)
         kind = header.one_of("DATA_TYPE", _TYPES, "SHORT_INTEGER")
         header.one_of("FILE_TYPE", {"TIME_HISTORY": ""}, "TIME_HISTORY")
         dtype = np.dtype(header.one_of("FORMAT", _ORDERS, "") + kind)
@@ -52,27 +54,29 @@ class RpcFormat:
             samples = min(samples, header.whole("SAMPLES"))
         start, groups = _BLOCK * header.whole("NUM_HEADER_BLOCKS"), -(-frames * frame // group)
         size = groups * count * group * dtype.itemsize
-        if len(content) - start < size:
-            raise cut_short(file, f"{max(len(content) - start, 0)} of the {size} bytes that the header declares")
-        data = np.frombuffer(content, dtype, groups * count * group, start).reshape(groups, count, group)
+        if written - start < size:
+            raise cut_short(file, f"{max(written - start, 0)} of the {size} bytes that the header declares")
         step, uncertainty = header.step()
         clock = even(0.0, step, samples, uncertainty, f"{file}: header DELTA_T")
         # Only integers are scaled: floats are written in the unit of the channel.
         scales = [header.number(f"SCALE.CHAN_{i + 1}") if kind == "i2" else 1.0 for i in range(count)]
-        columns = [_column(header.pairs, data[:, i], i + 1, scale, clock) for i, scale in enumerate(scales)]
-        return one_table(columns, file, allowance(len(content)))
+        store = _store(path, _Samples(start, dtype, group, samples), scales)
+        columns = [_column(header.pairs, Samples(store, i), clock) for i in range(count)]
+        return one_table(columns, file, allowance(written))
 
 
-def _pairs(content: bytes, file: str) -> dict[str, str]:
+def _pairs(path: Path, written: int) -> dict[str, str]:
     """Read the header; its second and third key say how long it is."""
-    text = [content[i : i + _RECORD].decode("latin-1") for i in range(0, 3 * _RECORD, _RECORD)]
-    first = dict(_pair(record) for record in text)
-    header = _Header(first, file)
-    blocks, count = header.whole("NUM_HEADER_BLOCKS"), header.whole("NUM_PARAMS")
-    if blocks * _BLOCK > len(content):
-        raise cut_short(file, f"{len(content)} of the {blocks * _BLOCK} bytes of its header")
-    records = range(0, min(count * _RECORD, blocks * _BLOCK), _RECORD)
-    pairs = dict(_pair(content[i : i + _RECORD].decode("latin-1")) for i in records)
+    with path.open("rb") as stream:
+        content = stream.read(3 * _RECORD)
+        text = [content[i : i + _RECORD].decode("latin-1") for i in range(0, 3 * _RECORD, _RECORD)]
+        header = _Header(dict(_pair(record) for record in text), path.name)
+        blocks, count = header.whole("NUM_HEADER_BLOCKS"), header.whole("NUM_PARAMS")
+        if blocks * _BLOCK > written:
+            raise cut_short(path.name, f"{written} of the {blocks * _BLOCK} bytes of its header")
+        wanted = min(count * _RECORD, blocks * _BLOCK)
+        content = (content + stream.read(max(wanted - len(content), 0)))[:wanted]
+    pairs = dict(_pair(content[i : i + _RECORD].decode("latin-1")) for i in range(0, len(content), _RECORD))
     return {key: value for key, value in pairs.items() if key}
 
 
@@ -124,12 +128,38 @@ class _Header:
         return refuse(f"{self._file}: header {key}", found, expected, "Export the recording again.")
 
 
-def _column(pairs: Mapping[str, str], data: NDArray[np.generic], number: int, scale: float, clock: Clock) -> Column:
-    def read() -> NDArray[np.float64]:
-        return scale * data.reshape(-1)[: clock.count].astype(np.float64)
+@dataclass(frozen=True)
+class _Samples:
+    """Where the samples stand: group after group, in each of them channel after channel."""
 
+    start: int
+    dtype: np.dtype[Any]
+    group: int
+    count: int
+
+
+def _store(path: Path, samples: _Samples, scales: Sequence[float]) -> Store:
+    size = samples.dtype.itemsize * samples.group
+
+    def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
+        values = np.empty((len(columns), last - first))
+        with reading(path, "an RPC III file"), path.open("rb") as stream:
+            for group in range(first // samples.group, -(-last // samples.group)):
+                begin, end = max(first - group * samples.group, 0), min(last - group * samples.group, samples.group)
+                place = group * samples.group + begin - first
+                for row, column in zip(values, columns, strict=True):
+                    channel = group * len(scales) + column
+                    stream.seek(samples.start + channel * size + begin * samples.dtype.itemsize)
+                    raw = stream.read((end - begin) * samples.dtype.itemsize)
+                    row[place : place + end - begin] = np.frombuffer(raw, samples.dtype)
+        values *= np.array([[scales[column]] for column in columns])
+        return values
+
+    return by_ranges(len(scales), samples.count, get)
+
+
+def _column(pairs: Mapping[str, str], samples: Samples, clock: Clock) -> Column:
+    number = samples.column + 1
     name, unit = (pairs.get(f"{key}.CHAN_{number}", "") for key in ("DESC", "UNITS"))
-    reader: Callable[[], NDArray[np.float64] | None] = read
-    return Column(
-        name, f"{name} (channel {number})".strip() if name else f"channel {number}", unit or None, clock, reader
-    )
+    otherwise = f"{name} (channel {number})".strip() if name else f"channel {number}"
+    return Column(name, otherwise, unit or None, clock, samples)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -10,6 +10,8 @@ import numpy as np
 
 from sprung.errors import InputError, Problems, did_you_mean
 from sprung.recording.formats.axes import Clock, Column, even, one_table, stamped
+from sprung.recording.formats.refusals import refuse
+from sprung.recording.formats.store import Samples, holding
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,8 +22,11 @@ if TYPE_CHECKING:
 REQUIRED = ("name", "data", "unit_str")
 OPTIONAL = ("fs", "time", "start_timestamp", "quantity", "location")
 
+Signals = Mapping[str, Sequence[Mapping[str, object]]]
+"""Recordings by name, each a list of dictionaries, one per signal."""
 
-def from_sep005(signals: Sequence[Mapping[str, object]]) -> Table:
+
+def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") -> Table:
     """Make a table of signals.
 
     Parameters
@@ -30,6 +35,8 @@ def from_sep005(signals: Sequence[Mapping[str, object]]) -> Table:
         One dictionary per signal: ``name``, ``data`` of shape (time,), ``unit_str``, and ``fs`` in Hz or ``time`` in s,
         shape (time,). Of ``start_timestamp``, ``quantity`` and ``location`` only the last is used, where several
         signals have one name. Other keys are left alone.
+    name
+        What to call them where something is wrong.
 
     Returns
     -------
@@ -44,18 +51,18 @@ def from_sep005(signals: Sequence[Mapping[str, object]]) -> Table:
     given: object = signals
     if not isinstance(given, Sequence) or isinstance(given, str) or not given:
         found = "no signals" if isinstance(given, Sequence) and not given else type(given).__name__
-        problems.add("signals", found, "a list of dictionaries, one per signal", "Put each signal in a dictionary.")
+        problems.add(name, found, "a list of dictionaries, one per signal", "Put each signal in a dictionary.")
         problems.raise_if_any()
     columns: list[Column] = []
     for index, signal in enumerate(signals):
         with problems.collecting():
-            columns.append(_column(signal, f"signals[{index}]"))
+            columns.append(_column(signal, f"{name}[{index}]"))
     starts = {start for signal in signals if (start := _start(signal))}
     if len(starts) > 1:
         do = "Give all the time of one clock, and none a start_timestamp of its own."
-        problems.add("signals", f"start_timestamp {', '.join(sorted(starts))}", "one and the same", do)
+        problems.add(name, f"start_timestamp {', '.join(sorted(starts))}", "one and the same", do)
     problems.raise_if_any()
-    return one_table(columns, "signals", np.inf)
+    return one_table(columns, name, np.inf)
 
 
 def to_sep005(recording: Recording) -> list[dict[str, object]]:
@@ -81,7 +88,8 @@ def to_sep005(recording: Recording) -> list[dict[str, object]]:
 
 
 def _start(signal: object) -> str:
-    return str(signal.get("start_timestamp") or "") if isinstance(signal, Mapping) else ""
+    start = signal.get("start_timestamp") if isinstance(signal, Mapping) else None
+    return "" if start is None else str(start)
 
 
 def _column(signal: object, where: str) -> Column:
@@ -97,7 +105,7 @@ def _column(signal: object, where: str) -> Column:
             problems.add(f"{where}.{key}", "nothing", "one of the keys that every signal has", f"Add it. {near}")
     for key in ("name", "unit_str", "quantity", "location"):
         if signal.get(key) is not None and not isinstance(signal[key], str):
-            problems.add(f"{where}.{key}", f"{signal[key]!r}"[:80], "text", "Write it in quotation marks.")
+            problems.add(f"{where}.{key}", _written(signal[key]), "text", "Write it in quotation marks.")
     data = np.empty(0)
     with problems.collecting():
         if "data" in signal:
@@ -106,25 +114,22 @@ def _column(signal: object, where: str) -> Column:
     with problems.collecting():
         clock = _clock(signal, len(data), where)
     problems.raise_if_any()
-    name, location = str(signal["name"]).strip(), str(signal.get("location") or "").strip()
+    name, location = str(signal["name"] or "").strip(), str(signal.get("location") or "").strip()
     otherwise = f"{location}.{name}" if location else name or where
-    reader: Callable[[], NDArray[np.float64] | None] = data.copy
-    return Column(name, otherwise, str(signal["unit_str"]).strip() or None, clock, reader)
+    unit = str(signal["unit_str"] or "").strip() or None
+    return Column(name, otherwise, unit, clock, Samples(holding(data[None]), 0))
 
 
 def _clock(signal: Mapping[str, object], count: int, where: str) -> Clock:
     """Take the clock from the times, or else from the rate; where both are, they must agree."""
-    rate, problems = signal.get("fs"), Problems()
-    if rate is not None and not (isinstance(rate, Real) and np.isfinite(float(rate)) and float(rate) > 0):
-        problems.add(f"{where}.fs", f"{rate!r}"[:80], "samples per second, a positive number", "Correct it.")
-        problems.raise_if_any()
+    rate, problems = _rate(signal.get("fs"), f"{where}.fs"), Problems()
     if signal.get("time") is None:
-        if not isinstance(rate, Real):
+        if rate is None:
             do = "Add fs, in Hz, or time, in s."
             problems.add(f"{where}.fs", "neither fs nor time", "when the samples were taken", do)
             raise InputError(problems)
-        clock = even(0.0, 1 / float(rate), count, 0.0, f"{where}.fs")
-        return Clock(0.0, clock.end, count, float(rate))
+        clock = even(0.0, 1 / rate, count, 0.0, f"{where}.fs")
+        return Clock(0.0, clock.end, count, rate)
     times = _numbers(signal["time"], f"{where}.time")
     backward = np.flatnonzero(~(np.diff(times) > 0))
     if len(times) != count:
@@ -135,11 +140,27 @@ def _clock(signal: Mapping[str, object], count: int, where: str) -> Clock:
         problems.add(f"{where}.time", f"times that do not increase{first}", "times that increase, in s", "Correct it.")
     problems.raise_if_any()
     clock = stamped(times)
-    if isinstance(rate, Real) and clock.rate is not None and abs(clock.rate / float(rate) - 1) > 1e-6:
-        found, do = f"{float(rate):.9g} Hz beside times at {clock.rate:.9g} Hz", "Leave one of them out."
+    if rate is not None and clock.rate is not None and abs(clock.rate / rate - 1) > 1e-6:
+        found, do = f"{rate:.9g} Hz beside times at {clock.rate:.9g} Hz", "Leave one of them out."
         problems.add(f"{where}.fs", found, "a rate that agrees with time", do)
         raise InputError(problems)
     return clock
+
+
+def _rate(given: object, where: str) -> float | None:
+    if given is None:
+        return None
+    try:
+        rate = float(given) if isinstance(given, Real) else np.nan
+    except OverflowError:  # an integer larger than any float
+        rate = np.nan
+    if not (np.isfinite(rate) and rate > 0):
+        raise refuse(where, _written(given), "samples per second, a positive number", "Correct it.")
+    return rate
+
+
+def _written(given: object) -> str:
+    return " ".join(repr(given).split())[:80]
 
 
 def _numbers(given: object, where: str) -> NDArray[np.float64]:
@@ -147,6 +168,8 @@ def _numbers(given: object, where: str) -> NDArray[np.float64]:
     problems = Problems()
     try:
         array = np.asarray(given)
+        if isinstance(given, np.ma.MaskedArray) and given.dtype.kind in "fiub":
+            array = np.ma.filled(given.astype(np.float64), np.nan)
     except ValueError:
         array = np.empty((0, 0))  # lists of different lengths
     if array.dtype.kind not in "fiub" or array.ndim != 1 or not array.size:

@@ -11,10 +11,11 @@ from sprung.recording.formats.axes import Clock, Column, even, one_table, stampe
 from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS
 from sprung.recording.formats.optional import library
 from sprung.recording.formats.refusals import allowance, contained, cut_short, refuse, refuse_too_large
+from sprung.recording.formats.store import Samples, Store, steps
 from sprung.recording.formats.table import split_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -55,8 +56,9 @@ class TdmsFormat:
             timeless: list[str] = []
             with contained(file, "TDMS"):
                 zero = _zero([channel for channels in groups.values() for channel in channels])
+                samples = _samples([channel for channels in groups.values() for channel in channels], path)
                 for name, channels in groups.items():
-                    found, without = _columns(channels, name, zero, file)
+                    found, without = _columns(channels, name, zero, file, samples)
                     columns += found
                     timeless += without
             notes = [f"left out, as neither a step nor a channel says their time: {', '.join(timeless)}"]
@@ -86,7 +88,9 @@ def _refuse_cut_short(path: Path) -> None:
                 raise cut_short(path.name, "a segment that goes on behind the end of the file")
 
 
-def _columns(channels: Sequence[Any], group: str, zero: Any, file: str) -> tuple[list[Column], list[str]]:
+def _columns(
+    channels: Sequence[Any], group: str, zero: Any, file: str, samples: Mapping[str, Samples]
+) -> tuple[list[Column], list[str]]:
     """Give the channels of a group, and the names of those that have no time."""
     times = next((channel for channel in channels if _is_time(channel)), None)
     shared = None if times is None else _times(times, file)
@@ -100,7 +104,7 @@ def _columns(channels: Sequence[Any], group: str, zero: Any, file: str) -> tuple
             timeless.append(f"{group}/{channel.name}")
             continue
         name, unit = _name_and_unit(channel)
-        columns.append(Column(name, f"{group}/{name}", unit, clock, _reader(channel, file)))
+        columns.append(Column(name, f"{group}/{name}", unit, clock, samples.get(channel.path)))
     return columns, timeless
 
 
@@ -151,11 +155,34 @@ def _name_and_unit(channel: Any) -> tuple[str, str | None]:
     return (str(channel.name).strip(), unit) if unit else split_unit(str(channel.name))
 
 
-def _reader(channel: Any, file: str) -> Callable[[], NDArray[np.float64] | None]:
-    def read() -> NDArray[np.float64] | None:
-        with contained(f"{file}: channel '{channel.name}'", "TDMS"):
-            if channel.dtype.kind not in "fiub":
-                return None
-            return np.asarray(channel[:]).astype(np.float64)
+def _samples(channels: Sequence[Any], path: Path) -> dict[str, Samples]:
+    """Give the samples of all channels of numbers by their paths in the file; those of one length share a store."""
+    lengths: dict[int, list[str]] = {}
+    for channel in channels:
+        if channel.dtype.kind in "fiub":
+            lengths.setdefault(len(channel), []).append(channel.path)
+    stores = {length: _store(path, paths, length) for length, paths in lengths.items()}
+    return {
+        own: Samples(stores[length], column) for length, paths in lengths.items() for column, own in enumerate(paths)
+    }
 
-    return read
+
+def _store(path: Path, channels: Sequence[str], length: int) -> Store:
+    def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
+        nptdms = library("nptdms", "tdms", path)
+        with path.open("rb") as stream:
+            with contained(path.name, "TDMS"):
+                content = nptdms.TdmsFile.open(stream)
+                own = {channel.path: channel for group in content.groups() for channel in group.channels()}
+            for begin, end in steps(first, last, step):
+                values = np.empty((len(columns), end - begin))
+                for row, column in zip(values, columns, strict=True):
+                    channel = own[channels[column]]
+                    with contained(f"{path.name}: channel '{channel.name}'", "TDMS"):
+                        samples = channel.read_data(begin, end - begin)
+                        if len(samples) < end - begin:
+                            raise cut_short(path.name, f"{begin + len(samples)} of {length} samples")
+                        row[:] = samples
+                yield values
+
+    return Store(len(channels), length, read)

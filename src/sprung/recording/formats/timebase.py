@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sprung.recording.formats.nested import Content, Path
+    from sprung.recording.formats.store import Samples
 
 RATES = frozenset(("fs", "rate", "samplerate", "samplingrate", "samplefrequency", "samplingfrequency", "samplefreq"))
 RATES |= {"samplingfreq", "sfreq", "fsample", "fsampling", "samplespersecond", "abtastrate", "abtastfrequenz"}
@@ -38,8 +39,8 @@ class Vector:
         The names that lead to it.
     called
         The same, ending with what it is called, without the unit.
-    values
-        Shape (time,), in its own unit.
+    samples
+        They themselves, in its own unit.
     unit
         What the file says; None where it says nothing.
     moments
@@ -48,7 +49,7 @@ class Vector:
 
     path: Path
     called: Path
-    values: NDArray[Any]
+    samples: Samples
     unit: str | None = None
     moments: bool = False
 
@@ -61,9 +62,18 @@ class Vector:
         """Say whether it is called time, or declared to be times."""
         return self.moments or named_time(self.called[-1]) is not None
 
+    def __len__(self) -> int:
+        """Give the number of its samples."""
+        return self.samples.store.length
+
     def increases(self) -> bool:
-        """Say whether every sample is larger than the one before."""
-        return bool((self.values[1:] > self.values[:-1]).all())
+        """Say whether every sample is larger than the one before; of others no more is read than shows it."""
+        before = -np.inf
+        for piece in self.samples.pieces():
+            if not (piece[:1] > before).all() or not (piece[1:] > piece[:-1]).all():
+                return False
+            before = float(piece[-1])
+        return True
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +168,7 @@ def _time(times: Sequence[Vector], rates: dict[float, Number], file: str) -> Clo
             found = f"two different times, {best.name} and {other.name}"
             raise InputError([Problem(file, found, "one time for all channels", "Keep one recording per file.")])
     notes = tuple(f"{other.name} was left out, as {best.name} is the time" for other in ranked[1:])
-    span = float(seconds[-1] - seconds[0])
+    span = float(seconds[-1]) - float(seconds[0])
     for rate, number in rates.items():
         if span > 0 and abs(span * rate / (len(seconds) - 1) - 1) > 0.01:
             notes += (f"{_dotted(number.path)} says {rate:.6g} samples per second, {best.name} says otherwise",)
@@ -170,7 +180,8 @@ def _seconds(vector: Vector, file: str) -> NDArray[np.float64]:
     if unit not in TIME_UNITS:
         do = did_you_mean(unit, TIME_UNITS)
         raise InputError([Problem(f"{file}: {vector.name}", f"'{vector.unit}'", "a unit of time", do)])
-    return TIME_UNITS[unit] * vector.values.astype(np.float64)
+    with np.errstate(all="ignore"):
+        return TIME_UNITS[unit] * vector.samples.all()
 
 
 def _said_rates(content: Content, belonging: Belonging) -> dict[Number, str | None]:
@@ -206,7 +217,7 @@ def _rate(number: Number, unit: str | None, file: str) -> float:
     unit = unit or of or ("Hz" if is_rate else "s")
     known = RATE_UNITS if is_rate else TIME_UNITS
     value = number.value * known.get(unit.lower(), np.nan)
-    if not (np.isfinite(value) and value > 0):
+    if not 1e-6 <= (value if is_rate else 1 / value if value else 0.0) <= 1e9:
         expected = f"a positive number in one of {', '.join(known)}"
         found = f"{number.value:g} {unit}"
         raise InputError([Problem(f"{file}: {_dotted(number.path)}", found, expected, "Correct it.")])

@@ -12,8 +12,10 @@ from sprung.recording.formats.axes import Clock, Column, even, one_table, stampe
 from sprung.recording.formats.clock import TIME_UNITS
 from sprung.recording.formats.optional import library
 from sprung.recording.formats.refusals import allowance, contained, cut_short, refuse
+from sprung.recording.formats.store import Samples, Store, steps
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -45,8 +47,7 @@ class UffFormat:
             If pyuff is not installed, if the file is cut short or damaged, or if it holds no time response.
         """
         pyuff, file = library("pyuff", "uff", path), path.name
-        marks = sum(1 for _ in _MARK.finditer(path.read_bytes()))
-        if marks % 2:
+        if sum(1 for _ in _MARK.finditer(path.read_bytes())) % 2:
             raise cut_short(file, "a data set without its end")
         columns: list[Column] = []
         others: list[int] = []
@@ -64,30 +65,40 @@ class UffFormat:
                 do = "Export it again, with numbers in the IEEE 754 format."
                 raise refuse(where, f"binary numbers of format {head['fp_format']}", f"format {_IEEE}, IEEE 754", do)
             with contained(where, "UFF"):
-                columns.append(_column(content.read_sets(number), where))
+                columns.append(_column(content, number, head, where))
         notes = [f"left out {len(others)} functions that are no real time responses"] if others else []
         return one_table(columns, file, allowance(path.stat().st_size), notes)
 
 
-def _column(function: dict[str, Any], where: str) -> Column:
-    values: NDArray[np.float64] = np.asarray(function["data"], dtype=np.float64)
-    declared = int(function["num_pts"])
-    if len(values) < declared or declared < 0:
-        raise cut_short(where, f"{len(values)} of {declared} samples")
-    values = values[:declared]  # line ends behind binary numbers may look like one more
-    clock = _clock(function, declared, where)
-    point = _point(function)
-    name, unit = _text(function["id1"]), _text(function["ordinate_axis_units_lab"])
-    return Column(name or point, point, unit or None, clock, lambda: values)
+def _column(content: Any, number: int, head: dict[str, Any], where: str) -> Column:
+    declared = int(head["num_pts"])
+    if declared < 0:
+        raise cut_short(where, f"{declared} samples")
+    times = None if head["abscissa_spacing"] else np.asarray(content.read_sets(number)["x"], dtype=np.float64)
+    if times is not None and len(times) < declared:
+        raise cut_short(where, f"{len(times)} of {declared} samples")
+
+    def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
+        with contained(where, "UFF"):  # the library reads a function as a whole
+            values = np.asarray(content.read_sets(number)["data"], dtype=np.float64)
+        if len(values) < declared:
+            raise cut_short(where, f"{len(values)} of {declared} samples")
+        for begin, end in steps(first, last, step):  # line ends behind binary numbers may look like one more
+            yield np.repeat(values[None, begin:end], len(columns), axis=0)
+
+    point = _point(head)
+    name, unit = _text(head["id1"]), _text(head["ordinate_axis_units_lab"])
+    clock = _clock(head, times, declared, where)
+    return Column(name or point, point, unit or None, clock, Samples(Store(1, declared, read), 0))
 
 
-def _clock(function: dict[str, Any], count: int, where: str) -> Clock:
+def _clock(function: dict[str, Any], times: NDArray[np.float64] | None, count: int, where: str) -> Clock:
     label = _text(function["abscissa_axis_units_lab"]).lower().strip("[]().") or "s"
     if label not in TIME_UNITS:
         raise refuse(f"{where}: abscissa", f"'{label}'", "a unit of time", did_you_mean(label, TIME_UNITS))
     factor = TIME_UNITS[label]
-    if function["abscissa_spacing"] == 0:
-        return stamped(factor * np.asarray(function["x"], dtype=np.float64)[:count])
+    if times is not None:
+        return stamped(factor * times[:count])
     step = factor * float(function["abscissa_inc"])
     # The field has room for six digits: 1/2048 s reads 4.88281e-04.
     uncertainty = 0.51e-5 * 10.0 ** np.floor(np.log10(step)) if 0 < step < np.inf else 0.0

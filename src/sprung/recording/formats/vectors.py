@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from sprung.errors import InputError, Problem
 from sprung.recording.formats.belonging import Belonging, items
 from sprung.recording.formats.clock import TIME_UNITS
-from sprung.recording.formats.nested import content_of
+from sprung.recording.formats.nested import Numbers, content_of
+from sprung.recording.formats.store import joined
 from sprung.recording.formats.table import Table, split_unit
 from sprung.recording.formats.timebase import Vector, clock_of, named_time
 
@@ -19,9 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path as File
 
-    from numpy.typing import NDArray
-
     from sprung.recording.formats.nested import Block, Content, Node, Path, Text
+    from sprung.recording.formats.store import Samples
 
 
 def table_of(node: Node, file: File, do: str) -> Table:
@@ -63,11 +61,8 @@ def table_of(node: Node, file: File, do: str) -> Table:
     if not channels:
         found = f"only the time, {clock.taken[0].name}"
         raise InputError([Problem(file.name, found, "at least one channel of the same length", "Export it again.")])
-    values = np.empty((len(channels), len(channels[0].values)))
-    with np.errstate(invalid="ignore"):  # of what is no number
-        for row, vector in zip(values, channels, strict=True):
-            row[:] = vector.values
-    strays = [f"{v.name} ({len(v.values)} samples)" for v in every if len(v.values) != values.shape[1]]
+    store = joined([vector.samples for vector in channels])
+    strays = [f"{vector.name} ({len(vector)} samples)" for vector in every if len(vector) != store.length]
     left_out = [*strays, *content.foreign]
     if left_out:
         more = f" and {len(left_out) - 8} more" if len(left_out) > 8 else ""
@@ -75,7 +70,7 @@ def table_of(node: Node, file: File, do: str) -> Table:
     return Table(
         channels=_shortest([vector.called for vector in channels]),
         units=tuple(vector.unit for vector in channels),
-        values=values,
+        store=store,
         clock=clock.time,
         notes=(*clock.notes, *notes),
     )
@@ -83,7 +78,7 @@ def table_of(node: Node, file: File, do: str) -> Table:
 
 def _vectors(content: Content, belonging: Belonging, notes: list[str]) -> list[Vector]:
     """Take matrices apart, and find what everything is called."""
-    lengths = {len(block.values) for block in content.blocks if np.ndim(block.values[0]) == 0}
+    lengths = {shape[0] for block in content.blocks if len(shape := _shape(block)) == 1}
     called = Counter(belonging.called(block.path) for block in content.blocks)
     vectors: list[Vector] = []
     for block in content.blocks:
@@ -96,36 +91,44 @@ def _vectors(content: Content, belonging: Belonging, notes: list[str]) -> list[V
             paths = [(*path[:-1], name) for name in names]
         else:
             paths = [(*path[:-1], f"{''.join(path[-1:])}_{index}") for index in range(1, len(columns) + 1)]
-        for full, values in zip(paths, columns, strict=True):
+        moments = isinstance(block.numbers, Numbers) and block.numbers.moments
+        for full, samples in zip(paths, columns, strict=True):
             unit = named_time(full[-1])
             name, unit = split_unit(full[-1]) if unit is None else (full[-1], unit)
-            vectors.append(Vector(block.path, (*full[:-1], name), values, unit or None, block.moments))
+            vectors.append(Vector(block.path, (*full[:-1], name), samples, unit or None, moments))
     return vectors
 
 
-def _columns(block: Block, lengths: set[int], notes: list[str]) -> Sequence[NDArray[Any]]:
+def _shape(block: Block) -> tuple[int, ...]:
+    """Give the sides of a block; those of vectors of one length are two."""
+    if isinstance(block.numbers, Numbers):
+        return block.numbers.shape
+    return (*block.numbers[0].shape, len(block.numbers))
+
+
+def _columns(block: Block, lengths: set[int], notes: list[str]) -> Sequence[Samples]:
     """Give the vectors in a block: a matrix lies along the side that some vector shares, or along its longer one."""
-    if isinstance(block.values, tuple):
-        return block.values
-    if block.values.ndim == 1:
-        return [block.values]
-    down, across = block.values.shape
+    if not isinstance(block.numbers, Numbers):
+        return [vector.along(0)[0] for vector in block.numbers]
+    if len(block.numbers.shape) == 1:
+        return block.numbers.along(0)
+    down, across = block.numbers.shape
     if (down in lengths) == (across in lengths):
         if down == across:
             notes.append(f"{'.'.join(block.path)} is as wide as long; its columns were taken for channels")
         upright = down >= across
     else:
         upright = down in lengths
-    return list(block.values.T if upright else block.values)
+    return block.numbers.along(0 if upright else 1)
 
 
 def _recording(every: Sequence[Vector]) -> list[Vector]:
     """Give the vectors of the length that the recording has."""
-    counts = Counter(len(vector.values) for vector in every)
-    timed = {len(vector.values) for vector in every if vector.is_time()}
+    counts = Counter(len(vector) for vector in every)
+    timed = {len(vector) for vector in every if vector.is_time()}
     timed = {length for length in timed if counts[length] > 1} or set(counts)
     length = max(timed, key=lambda length: (length * counts[length], length))
-    return [vector for vector in every if len(vector.values) == length]
+    return [vector for vector in every if len(vector) == length]
 
 
 def _with_units(vectors: Sequence[Vector], belonging: Belonging, notes: list[str]) -> list[Vector]:

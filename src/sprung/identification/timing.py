@@ -1,0 +1,232 @@
+"""Timing: how the clocks of several loggers stand, from what a rough vehicle makes of the release and of the decay.
+
+The release is one moment for all loggers. Just after it, before any wheel lands, the motion follows from the vehicle alone,
+so that each logger that shows it tells when the release was on its own clock, to a small part of a millisecond. A
+logger whose sensors hardly moved then is held against what the others say of the decay.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from sprung.errors import SprungError
+from sprung.identification.likelihood import Likelihood
+from sprung.identification.summit import Summit
+from sprung.prepare import Decay, Seen
+from sprung.recording import Drop
+from sprung.vehicle import Load, Rows, Sensor, Vehicle, drop_from_blocks
+
+Real = NDArray[np.float64]
+
+_FLIGHT = 0.04
+"""s after the release that are enough."""
+
+_IN_THE_AIR, _LOW = 0.7, 0.02
+"""Part of the time to the landing that is certainly flight, and height of blocks where nobody says it, m."""
+
+_AWAY = 0.008
+"""s by which the release may have been before or after the first motion that a logger shows."""
+
+_FINE = 1e-4
+"""s: step at which the flight is computed, and to which the release is looked for at first."""
+
+_CLEAR = 20.0
+"""Peak of the flight over a channel's noise from which its logger tells the release."""
+
+_LIKE_IT = 0.2
+"""Part of the flight that may be left unexplained: beyond it the release was not at one moment, and tells nothing."""
+
+_FLOOR = 1.5e-5
+"""s: by so much crystals drift between the release and the liveliest part of a decay."""
+
+_HIGH, _NUDGE = 1.0, 1e-4
+"""m, and part of a parameter by which it is moved to see what that does to the flight."""
+
+_UNTOLD = 0.01
+"""s of uncertainty from which a clock is not told."""
+
+_FARTHEST, _COARSE = 0.1, 0.001
+"""s by which the first motion of a sensor that hardly moves may come after the release, and step of looking for it."""
+
+
+def timed_by_release(
+    decay: Decay, seen: Seen, drop: Drop, vehicle: Vehicle, load: Load, sensors: Sequence[Sensor]
+) -> Decay:
+    """Give a decay with the clocks that the release tells; the others keep what they had.
+
+    Parameters
+    ----------
+    decay
+        Of several loggers.
+    seen
+        The recording it is from.
+    drop
+        How it was dropped.
+    vehicle, load
+        A vehicle, however rough, and its load.
+    sensors
+        One for each channel.
+
+    Returns
+    -------
+    Decay
+    """
+    parameters = _apart(vehicle.parameters)
+    try:
+        fall = drop_from_blocks(vehicle, load, drop.wheels, drop.height or _LOW, duration=_FLIGHT)
+        flight, slopes = _flights(parameters, drop, load, sensors, vehicle.cg_height)
+    except SprungError:  # so rough a vehicle that it does not even stand
+        return decay
+    if seen.release is None:
+        return decay
+    air = next((event.time for event in fall.events if event.kind == "landing"), _FLIGHT) * _IN_THE_AIR
+    rate, noise = seen.recording.rate, seen.rest.noise.std(axis=1)
+    first = max(seen.release - int(2 * _AWAY * rate), 0)
+    window = slice(first, seen.release + int(air * rate) + 1)
+    values = seen.recording.values[:, window] - seen.rest.level[:, None]
+    times = (np.arange(window.start, window.stop) - seen.release) / rate
+    told: dict[int, _Moment] = {}
+    released = seen.recording.start + seen.release / rate
+    taken = {part.name: part.time for part in seen.recording.parts}
+    for number, clock in enumerate(decay.clocks):
+        own = [channel for channel in clock.channels if decay.usable[channel]]
+        when = taken[clock.name] - clock.ahead - released if clock.share < 1 else times
+        found = _released(values[own], times, when, flight[own], slopes[:, own], noise[own]) if own else None
+        if found is not None:
+            told[number] = found
+    if not told:
+        return decay
+    common = float(np.median([one.time for one in told.values()]))
+    here = np.array(list(parameters.values()))
+    clocks = tuple(
+        replace(
+            clock,
+            # Expected at parameters of zero, so that the slopes alone lead to what is expected elsewhere.
+            late=common - told[number].time + float(told[number].slopes @ here),
+            std=told[number].std,
+            follows=dict(zip(parameters, (-told[number].slopes).tolist(), strict=True)),
+        )
+        if number in told
+        else clock
+        for number, clock in enumerate(decay.clocks)
+    )
+    return replace(decay, clocks=clocks)
+
+
+class _Moment(NamedTuple):
+    """When a logger saw the release, s from where it was thought to be.
+
+    Attributes
+    ----------
+    time, std
+        s.
+    slopes
+        How it would move with each parameter of the vehicle that the flight was computed with, s per SI unit.
+    """
+
+    time: float
+    std: float
+    slopes: Real
+
+
+def _apart(parameters: Mapping[str, float]) -> dict[str, float]:
+    """Give parameters with the half-distances of springs and dampers each by their own names."""
+    shared = [name for name in ("t_f", "t_r") if name in parameters]
+    apart = {f"{name}{which}": parameters[name] for name in shared for which in "12"}
+    return {name: value for name, value in parameters.items() if name not in shared} | apart
+
+
+def _flights(
+    parameters: Mapping[str, float], drop: Drop, load: Load, sensors: Sequence[Sensor], cg_height: float | None
+) -> tuple[Real, Real]:
+    """Give what the sensors read after the release, and by how much more with each parameter.
+
+    Shapes (channel, time) and (parameter, channel, time), m/s² and that per SI unit, in steps of `_FINE`.
+    """
+    names, samples = tuple(parameters), int((_FLIGHT + 2 * _AWAY) / _FINE)
+
+    def flight(values: Mapping[str, float]) -> Real:
+        vehicle = Vehicle.from_parameters(values, cg_height=cg_height)
+        # From high blocks, for until the landing their height makes no difference.
+        fall = drop_from_blocks(vehicle, load, drop.wheels, _HIGH, duration=_FLIGHT + 2 * _AWAY)
+        rows = Rows.of([sensor.row for sensor in sensors], names).at(np.array(list(values.values())))
+        return np.asarray(rows @ fall.motion(_FINE, samples).acceleration, dtype=np.float64)
+
+    steps = {name: _NUDGE * (abs(value) or 1.0) for name, value in parameters.items()}
+    here = flight(parameters)
+    moved = [(flight({**parameters, name: parameters[name] + step}) - here) / step for name, step in steps.items()]
+    return here, np.array(moved)
+
+
+def _released(values: Real, times: Real, taken: Real, flight: Real, slopes: Real, noise: Real) -> _Moment | None:
+    """Find when a logger saw the release; its samples at `times` are those or made of those it took at other ones."""
+    taken = taken[(taken > times[0] - _AWAY) & (taken < times[-1] + _AWAY)] if taken is not times else times
+    grid = _FINE * np.arange(flight.shape[1])
+    if not np.any(np.abs(flight[:, grid < times[-1]]).max(axis=1, initial=0.0) > _CLEAR * noise):
+        return None
+
+    def model(moment: float, waves: Real = flight) -> Real:
+        read = np.array([np.interp(taken - moment, grid, one, left=0.0) for one in waves])
+        return read if taken is times else CubicSpline(taken, read, axis=1)(times)
+
+    def cost(moment: float) -> float:
+        return float(np.sum((values - model(moment)) ** 2))
+
+    tried = np.arange(-_AWAY, _AWAY + _FINE, _FINE)
+    moment = float(tried[np.argmin([cost(one) for one in tried])])
+    for _ in range(5):
+        slope = (model(moment + _FINE / 2) - model(moment - _FINE / 2)) / _FINE
+        steepness = max(float(np.sum(slope**2)), np.finfo(float).tiny)
+        moment = float(np.clip(moment + np.sum(slope * (values - model(moment))) / steepness, -_AWAY, _AWAY))
+    left = cost(moment)
+    if left > _LIKE_IT**2 * np.sum(model(moment) ** 2):
+        return None
+    follows = [-float(np.sum(slope * model(moment, one))) / steepness for one in slopes]
+    spread = (left / max(values.size - 1, 1) / steepness) ** 0.5
+    return _Moment(moment, float(np.hypot(spread, _FLOOR)), np.array(follows))
+
+
+def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]:
+    """Set the clocks that the release did not tell by what makes the decay most likely.
+
+    Parameters
+    ----------
+    decays
+        Of several loggers; the clocks that are told have a small uncertainty.
+    summit
+        A fit of these decays without the other loggers' channels.
+
+    Returns
+    -------
+    tuple of Decay
+    """
+    likelihood = summit.climb.likelihood
+    models = dict(zip(likelihood.records.loads, likelihood.models, strict=True))
+    place = Likelihood.of(decays, models, likelihood.sensors).at(summit.values)
+    untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.std > _UNTOLD}
+    timed = list(decays)
+    shifts = np.arange(-_FARTHEST, _FARTHEST + _COARSE, _COARSE)
+    for i, found in place.slid(1 / summit.noise**2, shifts).items():
+        clocks = zip(timed[i].clocks, found.tolist(), strict=True)
+        timed[i] = replace(
+            timed[i],
+            clocks=tuple(
+                replace(clock, late=late, std=4 * _COARSE) if (i, clock.name) in untold else clock
+                for clock, late in clocks
+            ),
+        )
+    return tuple(timed)
+
+
+def told_alone(decay: Decay) -> Decay:
+    """Leave out the channels of loggers that the release did not tell."""
+    untold = [channel for clock in decay.clocks if clock.std > _UNTOLD for channel in clock.channels]
+    values = decay.values.copy()
+    values[untold] = np.nan
+    return replace(decay, values=values)

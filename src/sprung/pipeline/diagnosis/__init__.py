@@ -1,0 +1,14 @@
+"""When the records make no sense as they are: what, being otherwise, makes sense of them, and what is done about it.
+
+Everything that may be wrong is a hypothesis, and all of them compete on the same samples in one currency, the likelihood of
+all records. A channel or a drop is left out and the rest is fitted; what was left out is then held against the vehicle that
+explains the rest, which says what it is. Nothing is named on suspicion: a hypothesis has to explain the records, beyond
+chance, and no other one may do so about as well.
+"""
+
+from sprung.pipeline.diagnosis.bench import Bench, without_looking_at_wheels
+from sprung.pipeline.diagnosis.competition import diagnose
+from sprung.pipeline.diagnosis.hypotheses import Hypothesis
+from sprung.pipeline.diagnosis.suspicion import Suspicion, suspicious
+
+__all__ = ["Bench", "Hypothesis", "Suspicion", "diagnose", "suspicious", "without_looking_at_wheels"]

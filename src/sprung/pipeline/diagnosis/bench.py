@@ -1,0 +1,224 @@
+"""The bench: a campaign whose every drop is cut to one length, on which whatever may be wrong is tried by a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification import NEAR, Likelihood, Place, Summit, ascend, of_colour, residual_records
+from sprung.pipeline.choice import choose_model
+from sprung.pipeline.diagnosis.changes import silenced, without_drops
+from sprung.pipeline.diagnosis.tally import Noise, Tally, noise_of, tally_of
+from sprung.prepare import Decay, prepare
+from sprung.recording import Campaign
+from sprung.vehicle import LinearModel, Rows, Tracks
+
+Real = NDArray[np.float64]
+
+Span = tuple[float, float]
+"""First and last sample of a decay, s on the file's own clock."""
+
+_SLOWLY, _WALKS = 0.5, 0.75
+"""s over which what drifts stays what it is, unlike what vibrates; and the part of it that means over that time keep."""
+
+_STARTS = 2
+"""Starts of a fit whose vehicle nobody knows yet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A campaign fitted, or a part of it.
+
+    Attributes
+    ----------
+    campaign
+        What was fitted; every drop has its start and end.
+    decays
+        Its decays.
+    models
+        Equations of motion by load name.
+    summit
+        Where the fit ended.
+    tally
+        What it left, by the drops and channels of the whole campaign.
+    noise
+        What its sensors do at rest.
+    """
+
+    campaign: Campaign
+    decays: tuple[Decay, ...]
+    models: Mapping[str, LinearModel]
+    summit: Summit
+    tally: Tally
+    noise: Noise
+
+    @property
+    def explained(self) -> bool:
+        """Whether it leaves nothing but noise."""
+        return self.tally.explained(self.noise)
+
+    @property
+    def unexplained(self) -> float:
+        """What it leaves that is more than noise, in twice the log-likelihood."""
+        return self.tally.unexplained(self.noise)
+
+    @cached_property
+    def walking(self) -> NDArray[np.bool_]:
+        """Of which channels what is left walks slowly, shape (channel,): means over some time keep most of it."""
+        kept = energy = np.zeros(len(self.campaign.sensors))
+        point = self.summit.point
+        for record, decay in zip(
+            residual_records(point.place.fitted(point.weights), self.decays), self.decays, strict=True
+        ):
+            length = max(int(_SLOWLY * decay.rate), 1)
+            count = decay.samples // length
+            left = np.nan_to_num(record[:, : count * length]).reshape(len(record), count, length)
+            kept = kept + length * np.sum(left.mean(axis=2) ** 2, axis=1)
+            energy = energy + np.sum(left**2, axis=(1, 2))
+        excess = energy - self.noise.level**2 * self.tally.counts.sum(axis=0)
+        return np.asarray(kept > _WALKS * np.maximum(excess, np.finfo(float).tiny))
+
+    @cached_property
+    def inflation(self) -> float:
+        """By how much its records tell less than white ones."""
+        return max(colour_left(self.decays, self.summit), self.summit.disagreement)
+
+    def left_by(self, decays: Sequence[Decay]) -> Real:
+        """Give what this vehicle leaves of other decays, whatever their states; sums of squares, shape (decay, channel)."""
+        return self._at(decays).misfit(self.summit.point.weights)[0]
+
+    def states_of(self, decays: Sequence[Decay]) -> Real:
+        """Give {X, Ẋ} of this vehicle at the start of other decays, SI, shape (decay, 14)."""
+        return self._at(decays).states(self.summit.point.weights)
+
+    def _at(self, decays: Sequence[Decay]) -> Place:
+        rows = Rows.of([sensor.row for sensor in self.campaign.sensors], self.summit.names)
+        return Likelihood.of(decays, self.models, rows).at(self.summit.values)
+
+
+@dataclass(frozen=True, eq=False)
+class Bench:
+    """A campaign whose every drop is cut to one length for good, so that whatever is tried is tried on the same samples.
+
+    Attributes
+    ----------
+    campaign
+        With the start and the end of every drop.
+    decays
+        Its decays.
+    files
+        The recordings, in order.
+    tracks, extras
+        Of the model.
+    """
+
+    campaign: Campaign
+    decays: tuple[Decay, ...]
+    files: tuple[str, ...]
+    tracks: Tracks
+    extras: tuple[str, ...]
+
+    @classmethod
+    def of(cls, campaign: Campaign, decays: Sequence[Decay], tracks: Tracks, extras: tuple[str, ...]) -> Bench:
+        """Cut a campaign to its decays."""
+        cut = _cut(campaign, {decay.file: (decay.start, decay.end) for decay in decays})
+        return cls(cut, tuple(decays), tuple(recording.name for recording in cut.recordings), tracks, extras)
+
+    @cached_property
+    def base(self) -> Trial:
+        """The campaign fitted as it is."""
+        return self.fit(self.campaign)
+
+    @property
+    def noise(self) -> Noise:
+        """What the sensors do at rest."""
+        return self.base.noise
+
+    def fit(
+        self,
+        campaign: Campaign,
+        start: Mapping[str, float] | None = None,
+        decays: tuple[Decay, ...] | None = None,
+        roughly: bool = False,
+    ) -> Trial:
+        """Fit the campaign otherwise.
+
+        Parameters
+        ----------
+        campaign
+            As it may be.
+        start
+            Parameter values, SI, to start from.
+        decays
+            Its decays, where they are at hand already.
+        roughly
+            Whether one step from the direct start will do.
+        """
+        decays = self._decays(campaign) if decays is None else decays
+        choice = choose_model(campaign, self.tracks, self.extras)
+        sensors, known = campaign.sensors, choice.known
+        starts, enough = (1, np.inf) if roughly else (_STARTS, NEAR)
+        summit = ascend(decays, choice.models, sensors, known, start=start, starts=starts, enough=enough)
+        as_recorded = campaign.recordings is self.campaign.recordings and "base" in self.__dict__
+        noise = self.base.noise if as_recorded else noise_of(decays, summit)
+        return Trial(campaign, decays, choice.models, summit, tally_of(self.files, decays, summit), noise)
+
+    def after(self, trial: Trial) -> Bench:
+        """Give the bench on which what was tried is the campaign."""
+        return replace(self, campaign=trial.campaign, decays=trial.decays)
+
+    def _decays(self, campaign: Campaign) -> tuple[Decay, ...]:
+        """Give the decays of a campaign that was changed: the same samples, as long as nobody has touched them."""
+        before = [sensor.high_pass for sensor in self.campaign.sensors]
+        if campaign.recordings is not self.campaign.recordings or before != [one.high_pass for one in campaign.sensors]:
+            return prepare(campaign).decays
+        named = zip(campaign.drops, campaign.recordings, strict=True)
+        loads = {recording.name: drop.load for drop, recording in named}
+        return tuple(replace(decay, load=loads[decay.file]) for decay in self.decays)
+
+
+def colour_left(decays: Sequence[Decay], summit: Summit) -> float:
+    """Give by how much the residuals of a fit tell less than white ones."""
+    point = summit.point
+    left = residual_records(point.place.fitted(point.weights), decays)
+    return float(of_colour(left, [decay.rate for decay in decays]).max())
+
+
+def without_looking_at_wheels(campaign: Campaign, decays: Sequence[Decay]) -> tuple[Decay, ...]:
+    """Let every decay begin where it would if no sensor told of the landing: one of them may have told something wrong.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    decays
+        As they were found.
+    """
+    blind = campaign
+    for channel, sensor in enumerate(campaign.sensors):
+        if sensor.on != "body":
+            blind = silenced(channel)(blind)
+    starts = {decay.file: decay.start for decay in prepare(blind).decays}
+    if not any(decay.clocks for decay in decays):
+        ends = {decay.file: decay.end for decay in decays}
+        spans = {file: (starts[file], ends[file]) for file in starts if file in ends}
+        return prepare(_cut(campaign, spans)).decays or tuple(decays)
+    # The clocks of several loggers have been set in these, and only in these.
+    shifts = [round((starts.get(one.file, one.start) - one.start) * one.rate) for one in decays]
+    return tuple(
+        one.moved(max(shift, -one.earlier.shape[1])) if shift < one.samples / 2 else one
+        for one, shift in zip(decays, shifts, strict=True)
+    )
+
+
+def _cut(campaign: Campaign, spans: Mapping[str, Span]) -> Campaign:
+    campaign = without_drops(*(one.name for one in campaign.recordings if one.name not in spans))(campaign)
+    drops = [
+        drop.model_copy(update=dict(zip(("start", "end"), spans[recording.name], strict=True)))
+        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
+    ]
+    return replace(campaign, drops=tuple(drops))

@@ -1,0 +1,71 @@
+"""Suspicion: whether there is reason to look for what is wrong; all that a sound campaign pays for the diagnosis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from sprung.identification import Summit, suspects
+from sprung.pipeline.diagnosis.bench import colour_left
+from sprung.pipeline.diagnosis.tally import noise_of, tally_of
+from sprung.prepare import Decay
+from sprung.recording import Campaign
+
+Suspicion = Literal["none", "contradicted", "senseless"]
+"""Nothing is wrong; a channel, a place or a drop being otherwise would explain the records better; they are not explained."""
+
+SURE = 25.0
+"""Gain in twice the log-likelihood, in units of the inflation, from which chance is no explanation: five standard errors."""
+
+MOST_OF_IT = 0.5
+"""Part of what is unexplained that has to be explained."""
+
+MATTERS = {"gain": 0.003, "late": 0.0003, "position": 0.01, "load-position": 0.02}
+"""Below this nobody needs to be told: a part, s, m and m."""
+
+_DISAGREEMENT = 1.3
+"""Birge's ratio, squared, from which drops contradict each other."""
+
+_FAR = 4.0
+"""Times the others' contradiction from which one drop stands out."""
+
+_SEEN = 1e-9
+"""Information, as a part of the largest, below which one drop says nothing about a direction."""
+
+
+def suspicious(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> Suspicion:
+    """Say whether there is reason to look for what is wrong.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    decays
+        What was fitted.
+    summit
+        Where the fit ended.
+    """
+    noise, tally = noise_of(decays, summit), tally_of([decay.file for decay in decays], decays, summit)
+    if not tally.explained(noise):
+        return "senseless"
+    loads = {load.name: load for load in campaign.loads}
+    listed = suspects(summit, campaign.sensors, loads, campaign.cg_height)
+    gain = max((one.gain for one in listed if abs(one.value) > MATTERS[one.kind]), default=0.0)
+    serious = gain > max(SURE, MOST_OF_IT * tally.unexplained(noise))
+    if serious and gain > SURE * max(colour_left(decays, summit), 1.0):
+        return "contradicted"
+    return "contradicted" if summit.disagreement > _DISAGREEMENT and _stands_out(summit) else "none"
+
+
+def _stands_out(summit: Summit) -> bool:
+    """Say whether one drop contradicts the others by far more than these each other."""
+    scores, informations = summit.climb.by_drop(summit.point)
+    away = []
+    for score, information in zip(scores, informations, strict=True):
+        eigenvalues, vectors = np.linalg.eigh(information)
+        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
+        away.append(float(np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen])))
+    *others, most = sorted(away)
+    return bool(others) and most > _FAR * max(float(np.mean(others)), 1.0)

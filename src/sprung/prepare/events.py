@@ -1,0 +1,149 @@
+"""What happened when in a drop, and what its recording shows beside its decay: for people who want to see why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.prepare.release import Release, Rest, no_rest
+from sprung.recording import Recording
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Sensor, Wheel
+
+_DROPPED = 0.05
+"""s after the release within which every wheel of the drop has lost its block."""
+
+
+@dataclass(frozen=True)
+class Events:
+    """When what happened, and why the decay is used from where to where.
+
+    Attributes
+    ----------
+    release
+        First motion, s on the recording's clock; None where no rest was found before it.
+    landing
+        When the last wheel that fell met the ground, s; None where no sensor tells.
+    last_lift_off
+        Last moment at which a tyre may have been off the ground, s; None where no sensor tells.
+    why_start, why_end
+        The reason for each limit of the decay, in words that go on after the time.
+    """
+
+    release: float | None = None
+    landing: float | None = None
+    last_lift_off: float | None = None
+    why_start: str = ""
+    why_end: str = ""
+
+
+class Mark(NamedTuple):
+    """Samples of a channel with which something is the matter.
+
+    Attributes
+    ----------
+    code
+        The fault's.
+    channel
+        Position of the channel.
+    samples
+        Positions of the samples, shape (sample,).
+    """
+
+    code: str
+    channel: int
+    samples: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What one drop's recording shows, whether or not it can be used.
+
+    Attributes
+    ----------
+    recording
+        The whole of it, in SI, put right; channels that clip within the decay are still in it.
+    release
+        Position of the first sample that moves; None where no rest was found before it.
+    rest
+        What the sensors read before it.
+    marks
+        Samples with which something is the matter.
+    fell
+        For each wheel with a sensor, as far as the release shows it: whether it lost its block.
+    """
+
+    recording: Recording
+    release: int | None = None
+    rest: Rest = field(default_factory=lambda: no_rest(0))
+    marks: tuple[Mark, ...] = ()
+    fell: Mapping[Wheel, bool] = field(default_factory=dict)
+
+
+def marked(code: str, samples: NDArray[np.bool_]) -> tuple[Mark, ...]:
+    """Give a mark for each channel that has any.
+
+    Parameters
+    ----------
+    code
+        The fault's.
+    samples
+        Shape (channel, time).
+    """
+    some = np.flatnonzero(np.asarray(samples.any(axis=1))).tolist()
+    return tuple(Mark(code, channel, np.flatnonzero(samples[channel])) for channel in some)
+
+
+def filled_in(before: Recording, after: Recording) -> NDArray[np.bool_]:
+    """Say which samples were replaced by others.
+
+    Parameters
+    ----------
+    before, after
+        One recording.
+
+    Returns
+    -------
+    ndarray
+        Shape (channel, time).
+    """
+    there = np.isfinite(before.values) & np.isfinite(after.values)
+    replaced: NDArray[np.bool_] = there & (before.values != after.values)
+    return replaced
+
+
+def seen_in(recording: Recording, release: Release | None, sensors: Sequence[Sensor], marks: tuple[Mark, ...]) -> Seen:
+    """Put together what a recording shows.
+
+    Parameters
+    ----------
+    recording
+        Put right.
+    release
+        Its release.
+    sensors
+        One for each channel.
+    marks
+        Samples with which something is the matter.
+    """
+    if release is None:
+        return Seen(recording, None, no_rest(len(recording.channels)), marks)
+    return Seen(recording, release.sample, release.rest, marks, _fell(recording, release, sensors))
+
+
+def _fell(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> dict[Wheel, bool]:
+    """Say which wheels lost their blocks: gravity and the spring drive such a wheel down with more than 1 g at once.
+
+    A wheel that stands feels no more of it than its spring's slow change; what is between says neither.
+    """
+    window = slice(release.sample, release.sample + max(int(_DROPPED * recording.rate), 2))
+    fell: dict[Wheel, bool] = {}
+    for channel, sensor in enumerate(sensors):
+        down = float(release.rest.level[channel] - recording.values[channel, window].min())
+        if sensor.on != "body" and (down > STANDARD_GRAVITY or down < STANDARD_GRAVITY / 2):
+            fell[sensor.on] = down > STANDARD_GRAVITY
+    return fell

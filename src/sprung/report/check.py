@@ -1,0 +1,106 @@
+"""What a look at the recordings shows, for the terminal."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+from statistics import median
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sprung.pipeline import ChannelReport, Check, DropReport
+from sprung.report.layout import figures, hanging, table
+from sprung.report.terminal import fault_list
+
+_FEW = 3
+"""Drops that are named; of more the number is said."""
+
+
+def check_view(check: Check) -> RenderableType:
+    """Show what a look at the recordings gave.
+
+    Parameters
+    ----------
+    check
+        From `sprung.check`.
+    """
+    parts = [_drops(check.drops)]
+    if reasons := list(_reasons(check.drops)):
+        parts += [Text(), _listed("Limits of the decays", reasons)]
+    if others := [drop for drop in check.drops if drop.contradicted]:
+        parts += [Text(), _listed("Otherwise than stated", map(_otherwise, others))]
+    if any(drop.channels for drop in check.drops):
+        parts += [Text(), _channels(check.drops)]
+    if check.faults:
+        parts += [Text(), fault_list(check.faults)]
+    return Group(*parts)
+
+
+def _drops(drops: Sequence[DropReport]) -> RenderableType:
+    headers = ("recording", "load", "dropped", "release", "landing", "lift-off", "from", "to", "length", "faults")
+    rows = []
+    for drop in drops:
+        moments = [_moment(moment) for moment in (drop.release, drop.landing, drop.last_lift_off, drop.start, drop.end)]
+        length = "" if drop.start is None or drop.end is None else f"{drop.end - drop.start:.2f}"
+        if drop.start is None:
+            moments[-1] = "left out"
+        rows.append([drop.file, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
+    title = "Drops, s on each recording's own clock; the decay is used from ... to"
+    return table(title, headers, rows, headers[3:9], ("length", "faults", "load", "lift-off", "landing", "release"))
+
+
+def _moment(moment: float | None) -> str:
+    return "-" if moment is None else f"{moment:.3f}"
+
+
+def _reasons(drops: Sequence[DropReport]) -> Iterator[str]:
+    """Say every reason once, and of which drops it is the one."""
+    used = [drop for drop in drops if drop.start is not None]
+    for side in ("start", "end"):
+        reasons: defaultdict[str, list[str]] = defaultdict(list)
+        for drop in used:
+            if why := getattr(drop, f"why_{side}"):
+                reasons[why].append(drop.file)
+        for why, files in reasons.items():
+            yield f"{'from' if side == 'start' else 'to'}: {why} ({_which(files, len(used))})"
+    rates: defaultdict[str, list[str]] = defaultdict(list)
+    for drop in drops:
+        if drop.rate is not None:
+            rates[f"{drop.rate:.6g} samples per second"].append(drop.file)
+    for rate, files in rates.items():
+        yield f"{rate} ({_which(files, len(drops))})"
+
+
+def _which(files: Sequence[str], everything: int) -> str:
+    if len(files) == everything and everything > 1:
+        return "all drops"
+    return ", ".join(files) if len(files) <= _FEW else f"{len(files)} drops"
+
+
+def _otherwise(drop: DropReport) -> str:
+    seen = ", ".join(drop.wheels_seen or ()) or "no wheel"
+    return f"{drop.file}: {', '.join(drop.wheels)} stated to be dropped; the release shows {seen} to have fallen"
+
+
+def _channels(drops: Sequence[DropReport]) -> RenderableType:
+    """Show each channel over all drops."""
+    by_name: defaultdict[str, list[tuple[DropReport, ChannelReport]]] = defaultdict(list)
+    for drop in drops:
+        for channel in drop.channels:
+            by_name[channel.name].append((drop, channel))
+    rows = []
+    for name, found in by_name.items():
+        noise = [channel.noise for _, channel in found if channel.noise is not None]
+        peaks = [channel.peak for _, channel in found if channel.peak is not None]
+        out = [drop.file for drop, channel in found if drop.start is not None and not channel.used]
+        usual, most = (figures(size(noise), 2) if noise else "-" for size in (median, max))
+        peak = figures(max(peaks), 3) if peaks else "-"
+        rows.append([name, found[0][1].on, usual, most, peak, _which(out, len(found)) if out else ""])
+    headers = ("channel", "on", "noise", "largest", "peak", "left out of")
+    title = "Channels, m/s²: noise at rest (median and largest), largest peak after a release"
+    return table(title, headers, rows, headers[2:5], ("left out of", "on", "largest"))
+
+
+def _listed(title: str, lines: Iterable[str]) -> RenderableType:
+    return Group(Text(title, style="bold"), *(hanging("  - ", line) for line in lines))

@@ -1,0 +1,64 @@
+"""Campaigns of several loggers, from the files to the parameters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from wireless import Wireless, wireless
+
+import sprung
+from sprung.pipeline import Result
+from sprung.vehicle import TABLE_1_CAR
+
+LATE = 0.3e-3
+"""s within which every clock is to be found that the records determine (the issue's figure)."""
+
+
+def off(found: Wireless, result: Result) -> tuple[list[float], list[float]]:
+    """Give what every clock misses the truth by, s, and its standard uncertainty."""
+    channels = found.campaign.recordings[0].channels
+    missed, stated = [], []
+    for drop, ahead, report in zip(found.campaign.drops, found.ahead, result.drops, strict=True):
+        of = {clock.logger: clock for clock in report.clocks}
+        position = {f"{drop.files[i]}": i for i in range(len(channels))}
+        first = position[report.clocks[0].logger]
+        for logger, clock in of.items():
+            missed.append(clock.ahead - float(ahead[position[logger]] - ahead[first]))
+            stated.append(clock.std)
+    return missed, stated
+
+
+@pytest.mark.parametrize(
+    "rates", [(500.0,) * 8, (200.0, 400.0, 500.0, 512.0, 1000.0, 800.0, 600.0, 500.0)], ids=["one rate", "many rates"]
+)
+def test_eight_loggers_give_the_vehicle_and_their_clocks(rates: tuple[float, ...]) -> None:
+    simulated = wireless(rates=rates, seed=2)
+    result = sprung.identify(simulated.campaign)
+    assert result.verdict.state == "accept", result.verdict.reasons
+    for name, truth in TABLE_1_CAR.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - truth) < 4 * found.std, name
+        assert found.std < 0.005 * truth, name
+    missed, stated = off(simulated, result)
+    well = np.array(stated) < LATE / 4
+    assert well.sum() > 50  # of 80, less the wheels that hardly move
+    assert np.abs(np.array(missed))[well].max() < LATE
+    assert np.all(np.abs(missed) < 5 * np.array(stated) + 1e-9)
+
+
+def test_files_of_eight_loggers_are_read_back(tmp_path: Path) -> None:
+    simulated = wireless(seed=3).campaign
+    read = sprung.read(sprung.write(simulated, tmp_path))
+    assert [sensor.channel for sensor in read.sensors] == [sensor.channel for sensor in simulated.sensors]
+    for one, other in zip(read.recordings, simulated.recordings, strict=True):
+        assert len(one.parts) == 8
+        for part, original in zip(one.parts, other.parts, strict=True):
+            assert part.rate == pytest.approx(original.rate, rel=1e-9)
+            assert part.start == pytest.approx(original.start, abs=1e-9)
+            np.testing.assert_allclose(part.values, original.values, rtol=1e-8)
+    again, before = (sprung.identify(one).parameters["k_sf"] for one in (read, simulated))
+    assert again.value == pytest.approx(before.value, abs=0.05 * (before.std or 0.0))

@@ -1,0 +1,58 @@
+"""Full scales that the file, the sensor or nobody tells."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sprung.prepare import prepare
+from sprung.prepare.clipping import clipped_samples, with_full_scale
+from sprung.recording import Recording
+from sprung.simulation import simulate
+from sprung.vehicle import TABLE_1_CAR
+
+FULL = 5 * 9.80665  # m/s²
+CLEAN = simulate(TABLE_1_CAR, noise=0.02, seed=1)
+RANGED = tuple(sensor.model_copy(update={"range": 5.0}) for sensor in CLEAN.sensors)
+
+
+def at_full_scale() -> Recording:
+    """Give a recording of which single samples are at full scale, which no plateau would show."""
+    one = CLEAN.recordings[0]
+    return replace(one, values=np.clip(one.values, -FULL, FULL))
+
+
+def test_the_file_tells_the_unit_of_the_range() -> None:
+    clipped = at_full_scale()
+    told = with_full_scale(replace(clipped, full_scale=(FULL,) * 8), RANGED)
+    assert told.faults == ()
+    np.testing.assert_array_equal(clipped_samples(told), np.abs(clipped.values) == FULL)
+    assert clipped_samples(told).any()
+
+
+def test_without_a_file_the_sensor_does_and_otherwise_it_is_si() -> None:
+    in_g = tuple(sensor.model_copy(update={"unit": "g"}) for sensor in RANGED)
+    assert with_full_scale(at_full_scale(), in_g).full_scale == (FULL,) * 8
+    assert with_full_scale(replace(CLEAN.recordings[0], values=np.zeros((8, 9))), RANGED).full_scale == (5.0,) * 8
+    assert with_full_scale(CLEAN.recordings[0], CLEAN.sensors).full_scale == (None,) * 8
+
+
+def test_a_range_that_is_exceeded_is_none() -> None:
+    """5 g, taken for 5 m/s², would be exceeded by gravity already: nothing may be called clipped for it."""
+    prepared = prepare(replace(CLEAN, sensors=RANGED))
+    faults = prepared.decays[0].faults
+    assert [fault.code for fault in faults] == ["unit"] * 8
+    assert "beyond its range of 5 m/s²; the range was not used" in faults[0].what
+    assert prepared.decays[0].usable.all()
+
+
+def test_a_range_changes_with_its_unit() -> None:
+    """Numbers in g that nobody says are: range and readings are put right together."""
+    clipped = at_full_scale()
+    in_g = [replace(one, values=np.clip(one.values, -FULL, FULL) / 9.80665) for one in CLEAN.recordings]
+    codes = {
+        f.code for decay in prepare(replace(CLEAN, sensors=RANGED, recordings=tuple(in_g))).decays for f in decay.faults
+    }
+    assert codes == {"unit", "clipped"}
+    assert (np.abs(clipped.values) == FULL).any()
