@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import dataclasses
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -258,3 +260,26 @@ def test_a_read_only_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 def test_names_that_lead_out_are_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(ValueError, match="leads out of the folder"):
         write_whole(tmp_path, {name: b""})
+
+
+@pytest.mark.parametrize("moment", range(6))
+def test_a_run_that_is_killed_leaves_old_files_new_files_or_none(tmp_path: Path, moment: int) -> None:
+    write_whole(tmp_path, {"series.npz": b"old", "results.json": b"old"})
+    # Every rename counts one; at the chosen one the process dies, without any clearing up.
+    program = (
+        "import os, pathlib, sys\n"
+        "from sprung.recording import write_whole\n"
+        f"left, rename = [{moment}], pathlib.Path.replace\n"
+        "def dying(self, target):\n"
+        "    left[0] -= 1\n"
+        "    if left[0] < 0:\n"
+        "        os._exit(9)\n"
+        "    return rename(self, target)\n"
+        "pathlib.Path.replace = dying\n"
+        "write_whole(sys.argv[1], {'series.npz': b'new', 'results.json': b'new'})\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program, str(tmp_path)], check=False)  # noqa: S603 (our own interpreter)
+    assert done.returncode == (9 if moment < 4 else 0)
+    there = {path.name: path.read_bytes() for path in tmp_path.iterdir() if not path.name.startswith(".")}
+    if "results.json" in there:
+        assert there["series.npz"] == there["results.json"]

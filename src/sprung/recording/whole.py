@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 def write_whole(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
     """Write several files that belong together: all of them, or none, leaving what was there as it was.
 
-    Every file is written under a temporary name beside its place first; only when all of them are on the disk do they
-    take their names, in the order given. Put the file last by which others find the rest.
+    Every file is written under a temporary name beside its place first; only when all of them are on the disk are the old
+    ones put aside, the last one first, and do the new ones take their names, in the order given. Put the file last by which
+    others find the rest: it is never there beside files that do not belong to it.
 
     Parameters
     ----------
@@ -42,6 +43,9 @@ def write_whole(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> N
     try:
         for place, content in zip(places, files.values(), strict=True):
             place.prepare(content)
+        # First the one by which others find the rest: killed at any moment, this leaves all the old, all the new, or none.
+        for place in reversed(places):
+            place.put_aside()
         for place in places:
             place.take()
             placed.append(place)
@@ -79,9 +83,11 @@ class _Place:
             file.flush()
             os.fsync(file.fileno())  # a name must never stand for content that a power cut would lose
 
-    def take(self) -> None:
+    def put_aside(self) -> None:
         if self.target.exists():
             self.target.replace(self.old)
+
+    def take(self) -> None:
         self.new.replace(self.target)
 
 
