@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 import sprung
 from sprung.estimate import Known
-from sprung.identification import Fit, fit_jointly
+from sprung.identification import Fit, Summit, ascend, ascend_stepped, fit_jointly
 from sprung.pipeline.choice import choose_model
 from sprung.prepare import Decay, prepare
-from sprung.vehicle import TABLE_1_CAR, LinearModel, Sensor
+from sprung.vehicle import TABLE_1_CAR, LinearModel, NonlinearModel, Sensor, Vehicle
 
 Real = NDArray[np.float64]
 
@@ -90,3 +90,56 @@ def _simulated(times: int) -> sprung.Campaign:
 def _starts() -> tuple[float, ...]:
     found = [drop.start for drop in sprung.identify(_simulated(1)).drops]
     return tuple(start for start in found if start is not None)
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionTask:
+    """The same drops of the same car with dry friction.
+
+    Attributes
+    ----------
+    campaign, decays, models, sensors, known
+        As of `Task`, the models with friction.
+    linear
+        Where the linear fit ended, from which the other one starts.
+    found
+        Where our fit with friction ends.
+    """
+
+    campaign: sprung.Campaign
+    decays: tuple[Decay, ...]
+    models: Mapping[str, NonlinearModel]
+    sensors: tuple[Sensor, ...]
+    known: Mapping[str, Known]
+    linear: Summit
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return next(iter(self.models.values())).names
+
+    def fit(self) -> Summit:
+        """Fit as `sprung` does, from the linear fit on."""
+        start = self.linear.parameters
+        start |= {f"F_{axle}": 0.002 * start[f"k_s{axle}"] for axle in "fr"}
+        start |= {f"s_{axle}": 10 * start[f"k_s{axle}"] for axle in "fr"}
+        return ascend_stepped(
+            self.decays, self.models, self.sensors, self.known, start=start, states=self.linear.states
+        )
+
+    @cached_property
+    def found(self) -> Summit:
+        """Where it ends."""
+        return self.fit()
+
+
+def ten_rubbing_drops() -> FrictionTask:
+    """Simulate the campaign with 100 N of dry friction at each wheel: 1500 samples in each decay."""
+    friction = {"F_f": 100.0, "F_r": 100.0, "s_f": 2e5, "s_r": 2e5}
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | friction, name="rubbing car")
+    campaign = sprung.simulate(car, loads=[_LOAD], rate=RATE, duration=_RECORDED, noise=0.02, seed=1)
+    choice = choose_model(campaign, "shared", ("friction",))
+    plain = choice.having(())
+    decays = tuple(replace(decay, values=decay.values[:, :SAMPLES]) for decay in prepare(campaign).decays)
+    linear = ascend(decays, plain.models, campaign.sensors, plain.known)
+    return FrictionTask(campaign, decays, choice.stepped, campaign.sensors, choice.known, linear)

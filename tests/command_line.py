@@ -20,26 +20,6 @@ SEDAN = Path(__file__).resolve().parent / "data" / "sedan"
 LEAFBUS = SEDAN.with_name("leafbus")
 DROPS = ("empty_bounce", "empty_pitch_front", "empty_roll_left", "loaded_bounce")
 
-CAR = """[vehicle]
-name = "car"
-[parameters]
-m_s = 1380
-I_yy = 2440
-I_xx = 380
-m_uf = 40.5
-m_ur = 45.4
-k_sf = 17000
-k_sr = 22000
-k_tf = 192000
-k_tr = 192000
-c_sf = 1500
-c_sr = 1500
-a = 1.25
-b = 1.51
-t_f = 0.74
-t_r = 0.74
-"""
-
 
 @dataclass(frozen=True)
 class Run:
@@ -105,6 +85,14 @@ class Folder:
     def listing(self) -> list[str]:
         """Everything in the folder."""
         return sorted(str(path.relative_to(self.path)) for path in self.path.rglob("*"))
+
+
+def linear_leafbus(folder: Path) -> Path:
+    """Copy the recordings of the bus with leaf springs, with the plain linear model asked for."""
+    shutil.copytree(LEAFBUS, folder)
+    file = folder / "campaign.toml"
+    file.write_text(file.read_text().replace("[known]", "[model]\nextras = []\n\n[known]"))
+    return folder
 
 
 def copy_sedan(folder: Path, drops: tuple[str, ...] = DROPS) -> Folder:

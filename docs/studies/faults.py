@@ -147,7 +147,8 @@ each of the vehicles' campaigns every fault was done, one at a time; where and h
 {done}
 
 A fault is *noticed* if a fault of the result, which the sound campaign's has not, has its code or names the channel,
-recording or load that was spoilt; it is *named rightly* if one has its code and names all of these. *Left out* counts the
+recording or load that was spoilt; it is *named rightly* if one has its code and names all of these, or where the
+campaign is to be refused, if the refusal names them and says what is wrong. *Left out* counts the
 campaigns of which a channel or drop was not used, *put right* those in which it was noticed, and everything used and
 accepted all the same. *Off* are the parameters' distances from those of the sound campaign, in that one's standard
 uncertainties, of the campaigns that were accepted; *harm* counts those accepted with a parameter that is off by more than

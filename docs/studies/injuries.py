@@ -55,12 +55,15 @@ class Injury:
         What is done, in words.
     act
         Does it; a random generator chooses where, and how much.
+    refused
+        What the refusal of such a campaign has to say, where it is to be refused.
     """
 
     name: str
     codes: tuple[str, ...]
     what: str
     act: Act
+    refused: str | None = None
 
 
 Change = Callable[[Real], Real]

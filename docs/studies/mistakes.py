@@ -155,6 +155,6 @@ OF_TESTS: Sequence[Injury] = (
     Injury("brake", ("brake", "unlike-repeats"),
            "in one drop an axle's dampers are 1.6 times as strong, its springs 1.15 times as stiff", one_drop(brake)),
     Injury("passenger", ("unlike-repeats",), "in one drop the body has 15 % more mass", one_drop(passenger)),
-    Injury("other wheels", ("unlike-repeats",), "in one drop other wheels fell than stated", one_drop(fewer_wheels)),
+    Injury("other wheels", ("wheels", "unlike-repeats"), "in one drop other wheels fell than stated", one_drop(fewer_wheels)),
 )  # fmt: skip
 """Of the test and the campaign file."""

@@ -127,8 +127,9 @@ def try_one(number: int, seed: int, injury: Injury) -> Outcome | None:
         result = sprung.identify(_read_back(injured))
     except InputError as refusal:
         text = str(refusal)
-        noticed = bool(injured.names) and any(name in text for name in injured.names)
-        return Outcome(injury.name, test.vehicle.name, seed, noticed, False, "refused", *_NOTHING, (), text)
+        noticed = any(name in text for name in injured.names)
+        named = injury.refused is not None and injury.refused in text and all(name in text for name in injured.names)
+        return Outcome(injury.name, test.vehicle.name, seed, noticed, named, "refused", *_NOTHING, (), text)
     except Exception as crash:  # noqa: BLE001 (a crash is just what this study would have to tell)
         text = f"{type(crash).__name__}: {crash}"
         return Outcome(injury.name, test.vehicle.name, seed, False, False, "crash", *_NOTHING, (), text)

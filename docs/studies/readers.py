@@ -17,6 +17,7 @@ from types import FrameType
 from typing import Any
 
 import numpy as np
+from car import CAR
 from every_format import (
     Signals,
     csv,
@@ -285,31 +286,12 @@ load = "ballast"
 window = [0.0, 0.07]
 height = 0.05
 """
-_VEHICLE = """[vehicle]
-name = "car"
-[parameters]
-m_s = 1380
-I_yy = 2440
-I_xx = 380
-m_uf = 40.5
-m_ur = 45.4
-k_sf = 17000
-k_sr = 22000
-k_tf = 192000
-k_tr = 192000
-c_sf = 1500
-c_sr = 1500
-a = 1.25
-b = 1.51
-t_f = 0.74
-t_r = 0.74
-"""
 
 
 def _simulated() -> str:
     """Give a vehicle file with sensors, loads and drops of its own."""
     wanted = _CAMPAIGN[_CAMPAIGN.index("[known]") :].splitlines()
-    return "\n".join([_VEHICLE, *(line for line in wanted if not line.startswith(("file", "start", "window")))])
+    return "\n".join([CAR, *(line for line in wanted if not line.startswith(("file", "start", "window")))])
 
 
 _THINGS: tuple[object, ...] = (
@@ -361,7 +343,7 @@ READERS = {
     "iso_mme": Reader(_channels, "x.002", lay=_beside_channels),
     "sep005": Reader(_decisions, "x", use=lambda path: used(from_sep005(_signals(path)), "signals")),  # type: ignore[arg-type]
     "campaign": Reader(lambda _: [_CAMPAIGN.encode()], "campaign.toml", lay=_beside_recordings, use=read),
-    "vehicle": Reader(lambda _: [_VEHICLE.encode(), _simulated().encode()], "v.toml", use=read_vehicle),
+    "vehicle": Reader(lambda _: [CAR.encode(), _simulated().encode()], "v.toml", use=read_vehicle),
     "uff": Reader(_written(uff, partial(uff, binary=0)), "x.uff", ("pyuff",)),
     "tdms": Reader(_written(tdms), "x.tdms", ("nptdms",)),
     "mdf": Reader(_written(mdf4, partial(mdf4, compression=2)), "x.mf4", ("asammdf",)),

@@ -143,7 +143,7 @@ OF_RECORDINGS: Sequence[Injury] = (
     Injury("clock, jitter", ("clock",), "one file's times, not its samples, are 30 % of a step off", lines_of_one(jittered)),
     Injury("clock, uneven", ("clock",), "one file's samples are 30 % of a step off, as its times say", uneven),
     Injury("clock, lines lost", ("clock", "missing"), "three lines of one file are gone", lines_of_one(lines_lost)),
-    Injury("rate", ("rate",), "one file has 50 samples a second", lines_of_one(too_slow)),
+    Injury("rate", ("rate",), "one file has 50 samples a second", lines_of_one(too_slow), "50 samples per second"),
     Injury("no release", ("no-release",), "one recording begins 0.03 to 0.1 s after the release", cut(just_after, True)),
     Injury("no decay", ("no-decay",), "one recording ends 0.3 s after the release", cut(lambda _: 0.3, False)),
     Injury("clock, too fast", ("clock",), "one recording's clock runs 2 to 5 % fast or slow", fast_clock),

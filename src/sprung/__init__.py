@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sprung import report as report
     from sprung import study as study
-    from sprung.pipeline import Result, check, draft, identify, load, modes, plan, plan_campaign, plan_file
+    from sprung.pipeline import Result, check, draft, identify, load, modes, plan, plan_campaign, plan_file, validate
     from sprung.recording import Campaign, Drop, read, schema_text, to_sep005, write
     from sprung.simulation import simulate, simulate_file
     from sprung.vehicle import Load, Sensor, Vehicle
@@ -42,6 +42,7 @@ __all__ = [
     "simulate",
     "simulate_file",
     "to_sep005",
+    "validate",
     "write",
 ]
 
@@ -67,6 +68,7 @@ _HOME = {
     "simulate": "simulation",
     "simulate_file": "simulation",
     "to_sep005": "recording",
+    "validate": "pipeline",
     "write": "recording",
 }
 _ROOMS = ("report", "study")

@@ -9,8 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from car import CAR
 
-from command_line import CAR, DROPS, Folder, copy_sedan, run
+from command_line import DROPS, Folder, copy_sedan, run
 
 Spoil = Callable[[Folder], object]
 

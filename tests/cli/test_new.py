@@ -75,7 +75,7 @@ def test_json_is_one_document_of_the_same(tmp_path: Path) -> None:
     assert document["campaign"] == str(tmp_path / "campaign.toml")
     (drop,) = document["drops"]
     assert (drop["files"], drop["load"], drop["wheels"], drop["kind"]) == (
-        ["vorne leer.csv"], "empty", ["fl", "fr"], "front",
+        ["vorne leer.csv"], "empty", ["fl", "fr"], "pitch front",
     )  # fmt: skip
     assert drop["release"] == pytest.approx(0.4, abs=0.004)
     assert len(document["sensors"]) == 8

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from command_line import DROPS, LEAFBUS, Folder, Identified, copy_sedan, run
+from command_line import DROPS, Folder, Identified, copy_sedan, linear_leafbus, run
 
 
 def test_a_vehicle_file(vehicle_file: Path) -> None:
@@ -71,11 +71,12 @@ def test_identify_says_what_would_help(one_drop: Identified, sedan: Identified) 
     assert sedan.json.json["next_step"].startswith("nothing more is needed")
 
 
-def test_a_rejected_campaign_is_no_ground_for_a_plan(leafbus: Identified) -> None:
-    said = run("plan", LEAFBUS, "--json")
+def test_a_rejected_campaign_is_no_ground_for_a_plan(leafbus: Identified, tmp_path: Path) -> None:
+    campaign = linear_leafbus(tmp_path / "campaign")
+    said = run("plan", campaign, "--json")
     assert said.status == 3
     assert "does not explain the records" in said.json["rejected"][0]
-    text = run("plan", LEAFBUS).out
+    text = run("plan", campaign).out
     assert "bounds do not hold" in " ".join(text.split())
     assert "Next:" not in text
     assert leafbus.json.json["next_step"] is None

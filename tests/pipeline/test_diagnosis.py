@@ -264,3 +264,30 @@ def test_what_belongs_to_nothing_is_left_out_and_not_explained_away() -> None:
     assert {code for code, _ in said(result)} <= {"unlike-others", "drift", "unit", "offset"}
     assert all("body_rr" in where for _, where in said(result))
     assert said(result)
+
+
+def test_a_drift_too_small_to_spoil_the_fit_is_named_all_the_same() -> None:
+    """A line from -0.012 to 0.012 m/s² is lost in 0.02 m/s² of noise; not so in all drops together."""
+
+    def walk(values: Real) -> None:
+        values[1] += np.linspace(-0.012, 0.012, values.shape[1])
+
+    result = sprung.identify(samples(walk)(CLEAN))
+    assert [(fault.code, fault.where) for fault in result.faults] == [("drift", CHANNELS[1])]
+    assert result.verdict.state == "accept"
+
+
+@pytest.mark.parametrize("kind", ["low-passed", "coarse"])
+def test_nothing_is_named_where_the_noise_is_not_white(kind: str) -> None:
+    random, kept, step = np.random.default_rng(8), np.exp(-1 / (RATE * 0.02)), 20 * 9.80665 / 2**12
+    exact = dropped(noise=0.0)
+    recordings = []
+    for recording in exact.recordings:
+        noise = random.standard_normal((len(CHANNELS), recording.values.shape[1] + 200))
+        if kind == "low-passed":
+            noise = np.asarray(lfilter([np.sqrt(1 - kept**2)], [1, -kept], noise, axis=1))
+        values = recording.values + 0.02 * noise[:, 200:]
+        recordings.append(replace(recording, values=values if kind == "low-passed" else step * np.round(values / step)))
+    result = sprung.identify(replace(exact, recordings=tuple(recordings)))
+    assert result.faults == ()
+    assert result.verdict.state == "accept"

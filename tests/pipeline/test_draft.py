@@ -217,6 +217,48 @@ def test_two_loggers_of_one_drop_are_put_together(tmp_path: Path, campaign: Camp
     assert [drop.wheels for drop in draft.drops] == [drop.wheels for drop in campaign.drops[:5]]
 
 
+@pytest.mark.parametrize(
+    "loggers",
+    [tuple("ABCDEFGH"), (*(f"body_{i}" for i in range(1, 5)), "front_left", "front_right", "rear_left", "rear_right")],
+    ids=["letters", "places"],
+)
+def test_wireless_loggers_that_all_call_their_channel_z(
+    tmp_path: Path, campaign: Campaign, loggers: tuple[str, ...]
+) -> None:
+    random = np.random.default_rng(1)
+    for drop, recording in zip(campaign.drops, campaign.recordings, strict=True):
+        for logger, values in zip(loggers, recording.values, strict=True):
+            first = int(random.integers(0, 60))  # no two are started together
+            path = tmp_path / f"{drop.name}_{logger}.csv"
+            write_table(path, values[None, first:], recording.rate, ("z",), start=float(random.uniform(0, 100)))
+    draft = sprung.draft(tmp_path)
+    assert {sensor.logger: sensor.on for sensor in draft.sensors} == dict(zip(loggers, truth().values(), strict=True))
+    assert sorted((drop.load, drop.wheels) for drop in draft.drops) == sorted(
+        (drop.load, drop.wheels) for drop in campaign.drops
+    )
+    path = draft.write()
+    assert {sensor["channel"] for sensor in tomllib.loads(draft.text)["sensor"]} == {"z"}
+    # Every gap of a position is of a channel z: they are filled in one after the other.
+    blank, lines = "position = ", path.read_text().splitlines()
+    places = iter(
+        next(
+            list(one.position or ())
+            for name, one in zip(loggers, campaign.sensors, strict=True)
+            if name == sensor.logger
+        )
+        for sensor in draft.sensors
+        if sensor.on == "body"
+    )
+    path.write_text("\n".join(f"{blank}{next(places)}" if line.startswith("position") else line for line in lines))
+    items = "[{ mass = 140, position = [-1.0, 0.2, 0.6] }, { mass = 60, position = [-2.6, 0, 0.6] }]"
+    fill_in(path, {"wheelbase": "2.76", "total_mass": "", "items": items})
+    read = sprung.read(path)
+    assert len(read.recordings[0].parts) == 8
+    check = sprung.check(read)
+    assert all(drop.start is not None for drop in check.drops)
+    assert {fault.code for fault in check.faults} <= {"clock"}
+
+
 def test_recordings_that_cannot_be_read_are_named_with_the_reason(tmp_path: Path, campaign: Campaign) -> None:
     write_session(tmp_path, campaign)
     (tmp_path / "broken.csv").write_text("")

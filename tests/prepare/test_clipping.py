@@ -56,3 +56,15 @@ def test_a_range_changes_with_its_unit() -> None:
     }
     assert codes == {"unit", "clipped"}
     assert (np.abs(clipped.values) == FULL).any()
+
+
+def test_a_flat_turn_of_a_coarse_sensor_is_not_clipped_and_a_cut_one_is() -> None:
+    """Twelve bits over ten g either way: a valley of which three samples fall on one step, as it turns, and a cut one."""
+    step = 20 * 9.80665 / 2**12
+    turn = np.array([4.12, 3.69, 3.26, 2.87, 2.49, 2.15, 1.87, 1.87, 1.87, 2.06, 2.3, 2.68, 3.16, 3.78, 4.4])
+    level = 9.8 + step * (np.arange(40) % 2)
+    one = np.concatenate([level, turn, level])
+    cut = np.concatenate([level, np.maximum(9.8 - 6 * np.hanning(15), 5.0), level])
+    values = step * np.round(np.array([one, cut]) / step)
+    recording = replace(CLEAN.recordings[0], channels=("turn", "cut"), values=values)
+    assert clipped_samples(recording).any(axis=1).tolist() == [False, True]

@@ -105,7 +105,10 @@ def test_wheels_and_kind_of_the_papers_drops(vehicle: Vehicle, height: float) ->
     drops = [{"wheels": wheels, "height": height} for wheels in (BOUNCE, FRONT, REAR, LEFT, RIGHT)]
     campaign = simulate(vehicle, drops=drops, seed=1)
     for drop, recording, kind in zip(
-        campaign.drops, campaign.recordings, ("bounce", "front", "rear", "left", "right"), strict=True
+        campaign.drops,
+        campaign.recordings,
+        ("bounce", "pitch front", "pitch rear", "roll left", "roll right"),
+        strict=True,
     ):
         (found,) = drops_in(recording.values, recording.rate, campaign.sensors)
         assert (found.wheels, found.kind) == (drop.wheels, kind)

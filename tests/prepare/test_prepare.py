@@ -110,3 +110,16 @@ def test_a_copy_tells_nothing_new() -> None:
     prepared = prepare(more)
     assert len(prepared.decays) == 5
     assert prepared.left_out[0][2][0].code == "copy"
+
+
+def test_two_parts_of_one_recording_are_no_copies() -> None:
+    campaign = simulate(TABLE_1_CAR, noise=0.02, seed=8)
+    parts = ({"start": 1.2, "end": 2.0}, {"start": 2.0, "end": 3.0})
+    twice = replace(
+        campaign,
+        drops=tuple(campaign.drops[0].model_copy(update=part) for part in parts),
+        recordings=(campaign.recordings[0], replace(campaign.recordings[0], name="empty_bounce.csv (2)")),
+    )
+    prepared = prepare(twice)
+    assert not prepared.left_out
+    assert [decay.name for decay in prepared.decays] == ["empty_bounce", "empty_bounce (2)"]

@@ -3,6 +3,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from car import CAR
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,24 +36,7 @@ file = "two.csv"
 load = "ballast"
 """
 
-PARAMETERS = """[parameters]
-m_s = 1380
-I_yy = 2440
-I_xx = 380
-m_uf = 40.5
-m_ur = 45.4
-k_sf = 17000
-k_sr = 22000
-k_tf = 192000
-k_tr = 192000
-c_sf = 1500
-c_sr = 1500
-a = 1.25
-b = 1.51
-t_f = 0.74
-t_r = 0.74
-[known]
-"""
+PARAMETERS = CAR[CAR.index("[parameters]") :] + "[known]\n"
 
 
 def recording_text(names: str = "time,body_fl,body_fr,body_rl", samples: int = 100, step: float = 0.002) -> str:

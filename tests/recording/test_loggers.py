@@ -9,7 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from sprung.errors import InputError
-from sprung.recording import Drop, Recording, merged, read
+from sprung.recording import Drop, Recording, drop_names, merged, read
+from sprung.recording.campaign import recording_names
 
 SENSORS = """
 [[sensor]]
@@ -76,6 +77,12 @@ def test_a_channel_of_two_files_needs_its_logger(tmp_path: Path) -> None:
         read(campaign(tmp_path, SENSORS.replace('logger = "front_left"\n', "").replace('logger = "front_right"', "")))
 
 
+def test_several_files_have_no_window_in_common(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no window in common: cut each file to the one drop") as caught:
+        read(campaign(tmp_path, SENSORS.replace("files = [", "window = [0.0, 1.0]\nfiles = [")))
+    assert len(caught.value.problems) == 1
+
+
 def test_a_logger_without_a_file_is_missing_from_the_drop(tmp_path: Path) -> None:
     recording = read(campaign(tmp_path, SENSORS.replace('"drop1_front_right.csv", ', ""))).recordings[0]
     fault = next(fault for fault in recording.faults if fault.code == "missing")
@@ -95,6 +102,29 @@ def test_a_logger_without_a_file_is_missing_from_the_drop(tmp_path: Path) -> Non
 )
 def test_files_are_called_by_what_they_have_in_common(files: tuple[str, ...], name: str) -> None:
     assert Drop(files=files).recording == name
+
+
+@pytest.mark.parametrize(
+    ("files", "recordings", "names"),
+    [
+        ([("a_1.csv", "a_2.csv"), ("b_1.csv", "b_2.csv")], ["a_*.csv", "b_*.csv"], ["a", "b"]),
+        # What the files of both drops have in common tells neither.
+        (
+            [("log_1.csv", "log_7.csv"), ("log_2.csv", "log_8.csv")],
+            ["log_1.csv and 1 more", "log_2.csv and 1 more"],
+            ["log_1", "log_2"],
+        ),
+        ([("monday/one.csv",), ("tuesday/one.csv",)], ["monday/one.csv", "tuesday/one.csv"], ["monday_one", "tuesday_one"]),
+        ([("one.csv",), ("one.csv",), ("two.csv",)], ["one.csv", "one.csv (2)", "two.csv"], ["one", "one (2)", "two"]),
+        ([("x.csv", "y.csv"), ("z.csv", "w.csv")], ["x.csv and 1 more", "z.csv and 1 more"], ["x", "z"]),
+    ],
+)  # fmt: skip
+def test_drops_and_their_recordings_are_called_by_names_of_their_own(
+    files: list[tuple[str, ...]], recordings: list[str], names: list[str]
+) -> None:
+    drops = [Drop(file=own[0]) if len(own) == 1 else Drop(files=own) for own in files]
+    assert list(recording_names(drops)) == recordings
+    assert list(drop_names(drops)) == names
 
 
 def part(name: str, rate: float, start: float, delay: float, samples: int) -> Recording:

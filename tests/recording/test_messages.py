@@ -89,10 +89,6 @@ FILE_FAULTS: dict[str, tuple[tuple[str, str], tuple[str, ...]]] = {
         ("[known]", '[model]\nextras = ["anti-rol"]'),
         ("model.extras: found 'anti-rol'", "'anti-roll'?"),
     ),
-    "later extra": (
-        ("[known]", '[model]\nextras = ["friction"]'),
-        ("model.extras: found 'friction'", "cannot fit friction yet"),
-    ),
     "unknown ban": (
         ("[known]", '[model]\nforbid = ["rebond"]'),
         ("model.forbid: found 'rebond'", "Did you mean 'rebound'?"),

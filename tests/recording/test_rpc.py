@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
+from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
 from sprung.recording.formats.rpc import RpcFormat
 
@@ -116,22 +116,8 @@ def test_against_another_library(tmp_path: Path, kind: type) -> None:
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=200, deadline=None)
-@given(
-    changes=st.lists(st.tuples(st.floats(0, 0.7), st.binary(min_size=1, max_size=8)), max_size=4),
-    end=st.one_of(st.none(), st.floats(0, 1)),
-)
-def test_whatever_happens_to_a_file(tmp_path: Path, changes: list[tuple[float, bytes]], end: float | None) -> None:
-    path, written = tmp_path / "x.rsp", bytearray(content())
-    for place, by in changes:
-        start = int(place * len(written))
-        written[start : start + len(by)] = by
-    path.write_bytes(written if end is None else written[: int(end * len(written))])
-    try:
-        table = RpcFormat().read(path)
-        values = table.take()
-    except InputError as error:
-        problems = error.problems
-    else:
-        assert values.shape == (len(set(table.channels)), len(table.time))
-        return
-    assert all(problem.where.startswith("x.rsp") and problem.do for problem in problems)
+@given(spoiling=spoilings(until=0.7))
+def test_whatever_happens_to_a_file(tmp_path: Path, spoiling: Spoiling) -> None:
+    path = tmp_path / "x.rsp"
+    path.write_bytes(spoiling.of(content()))
+    read_or_refused(RpcFormat(), path)

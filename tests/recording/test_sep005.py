@@ -42,10 +42,11 @@ def test_one_name_in_two_places() -> None:
     assert table.channels == ("left.a", "right.a")
 
 
-def test_signals_at_two_rates_are_spoilt_but_for_the_most() -> None:
-    table = from_sep005([signal("a"), signal("b"), signal("c", fs=500)])
+def test_signals_at_two_rates_are_read_at_that_of_the_most() -> None:
+    table = from_sep005([signal("a"), signal("b"), signal("c", fs=500), signal("d", fs=20)])
     assert table.clock == 2000.0
-    assert [table.spoilt(column) is not None for column in range(3)] == [False, False, True]
+    assert table.resampled[2].share == pytest.approx(0.25)
+    assert [table.spoilt(column) is not None for column in range(4)] == [False, False, False, True]
 
 
 @pytest.mark.parametrize(

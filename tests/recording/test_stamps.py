@@ -131,3 +131,16 @@ def test_even_clocks_are_left_alone() -> None:
         found = evened(times, values, "sample {}".format, "a.csv")
         assert found.values is values
         assert found.faults == ()
+
+
+def test_lines_lost_are_seen_though_a_step_is_the_last_digit() -> None:
+    """A thousand samples a second, stamped in ms: a lost line makes a step as long as one rounded up would be."""
+    even = np.arange(COUNT) / 1000.0
+    kept = np.delete(np.arange(COUNT), [700, 951, 1702])
+    found = evened(even[kept], vibration(even[kept]), "sample {}".format, "a.csv")
+    assert found.values.shape[1] == COUNT
+    assert found.rate == pytest.approx(1000.0)
+    assert "3 of 1800 lines are missing, the first before sample 700" in found.faults[0].what
+    # Three steps at even distances are what rounding makes of 998.5 samples a second.
+    rounded = (np.arange(COUNT) / 998.5).round(3)
+    assert evened(rounded, vibration(rounded), "sample {}".format, "a.csv").faults == ()

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
+from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
 from sprung.recording.formats import optional
 from sprung.recording.formats.tdms import TdmsFormat
@@ -116,24 +116,9 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=100, deadline=None)
-@given(
-    changes=st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.binary(min_size=1, max_size=8)), max_size=4),
-    end=st.one_of(st.none(), st.floats(0, 1)),
-)
-def test_whatever_happens_to_a_file(tmp_path: Path, changes: list[tuple[float, bytes]], end: float | None) -> None:
+@given(spoiling=spoilings())
+def test_whatever_happens_to_a_file(tmp_path: Path, spoiling: Spoiling) -> None:
     segment = [channel("a", VALUES[0], **EVEN), channel("Time", VALUES[1], "two"), channel("b", VALUES[1], "two")]
     path = written(tmp_path, segment)
-    content = bytearray(path.read_bytes())
-    for place, by in changes:
-        start = int(place * len(content))
-        content[start : start + len(by)] = by
-    path.write_bytes(content if end is None else content[: int(end * len(content))])
-    try:
-        table = TdmsFormat().read(path)
-        values = table.take()
-    except InputError as error:
-        problems = error.problems
-    else:
-        assert values.shape == (len(set(table.channels)), len(table.time))
-        return
-    assert all(problem.where.startswith("x.tdms") and problem.do for problem in problems)
+    path.write_bytes(spoiling.of(path.read_bytes()))
+    read_or_refused(TdmsFormat(), path)

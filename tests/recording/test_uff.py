@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
 from sprung.recording.formats import optional
 from sprung.recording.formats.uff import UffFormat
@@ -118,27 +119,9 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
-@given(
-    binary=st.integers(0, 1),
-    changes=st.lists(st.tuples(st.floats(0, 1, exclude_max=True), st.binary(min_size=1, max_size=8)), max_size=4),
-    end=st.one_of(st.none(), st.floats(0, 1)),
-)
-def test_whatever_happens_to_a_file(
-    tmp_path: Path, binary: int, changes: list[tuple[float, bytes]], end: float | None
-) -> None:
-    path = tmp_path / "x.uff"
-    path.unlink(missing_ok=True)
-    content = bytearray(written(tmp_path, function(0, binary=binary), function(1, binary=binary)).read_bytes())
-    for place, by in changes:
-        start = int(place * len(content))
-        content[start : start + len(by)] = by
-    path.write_bytes(content if end is None else content[: int(end * len(content))])
-    try:
-        table = UffFormat().read(path)
-        values = table.take()
-    except InputError as error:
-        problems = error.problems
-    else:
-        assert values.shape == (len(set(table.channels)), len(table.time))
-        return
-    assert all(problem.where.startswith("x.uff") and problem.do for problem in problems)
+@given(binary=st.integers(0, 1), spoiling=spoilings())
+def test_whatever_happens_to_a_file(tmp_path: Path, binary: int, spoiling: Spoiling) -> None:
+    (tmp_path / "x.uff").unlink(missing_ok=True)
+    path = written(tmp_path, function(0, binary=binary), function(1, binary=binary))
+    path.write_bytes(spoiling.of(path.read_bytes()))
+    read_or_refused(UffFormat(), path)

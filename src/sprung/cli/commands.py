@@ -78,6 +78,39 @@ def conclude(result: Any, folder: Path, as_json: bool) -> None:
         raise typer.Exit(REJECTED)
 
 
+@app.command(epilog="Example: [bold]sprung validate campaign.toml -o validation[/bold]")
+def validate(
+    campaign: CampaignFile,
+    output: Annotated[
+        Optional[Path],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Where to write numbers, series and drawings (default: nowhere)."
+        ),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Hold the identified vehicle against each drop: fitted, predicted by the other drops, and against amplitude."""
+    with working("reading the recordings") as progress:
+        found = sprung.validate(sprung.read(campaign), progress=progress)
+    written: tuple[Path, ...] = ()
+    if output is not None:
+        drawings: dict[str, str] = {}
+        try:
+            with working("drawing"):
+                drawings = sprung.report.draw_validation(found)
+        except InputError as error:
+            complain(f"No drawings: {error}")
+        written = sprung.report.write_validation(found, output.resolve(), drawings)
+    if as_json:
+        say_json(found.document())
+    else:
+        say(sprung.report.text_of(sprung.report.validation_view(found)))
+        if written:
+            say(f"\nWritten: {len(written)} files in {written[0].parent}\n")
+    if found.result.verdict.state == "reject":
+        raise typer.Exit(REJECTED)
+
+
 @app.command(epilog="Example: [bold]sprung check campaign.toml --no-drawings[/bold]")
 def check(
     campaign: CampaignFile,

@@ -1,18 +1,20 @@
 """From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
 
 from sprung.identification.added_mass import added_mass
+from sprung.identification.beyond import Prospect, ascend_stepped, lost_without, prospects
 from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK
 from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
-from sprung.identification.inflation import of_colour
-from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, residual_records
+from sprung.identification.inflation import corrections, of_colour
+from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, inflation_of, residual_records
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood, Place
 from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
+from sprung.identification.prediction import Prediction, predictions
 from sprung.identification.profile import profiled
 from sprung.identification.structured import StructuredFit, structured_least_squares
-from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around
+from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around, reference
 from sprung.identification.suspects import Suspect, suspects
 from sprung.identification.timing import timed_by_decay, timed_by_release, told_alone
 
@@ -31,6 +33,8 @@ __all__ = [
     "Likelihood",
     "ModeEstimate",
     "Place",
+    "Prediction",
+    "Prospect",
     "Scale",
     "StructuredFit",
     "Summit",
@@ -39,16 +43,23 @@ __all__ = [
     "added_mass",
     "ascend",
     "ascend_from_contact",
+    "ascend_stepped",
     "conclude",
+    "corrections",
     "describe",
     "estimate_of",
     "expected_gain",
     "fit_jointly",
+    "inflation_of",
     "look_around",
+    "lost_without",
     "mode_estimates",
     "of_colour",
     "parameters_from_matrices",
+    "predictions",
     "profiled",
+    "prospects",
+    "reference",
     "residual_records",
     "structured_least_squares",
     "suspects",

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sprung.identification.knowledge import Knowledge
 from sprung.identification.likelihood import Evaluation, Likelihood, Place
 from sprung.identification.rating import rate_vehicles
+from sprung.identification.stepped import SteppedLikelihood, SteppedPlace
 
 Real = NDArray[np.float64]
 
@@ -89,7 +90,7 @@ class Point:
     """
 
     u: Real
-    place: Place
+    place: Place | SteppedPlace
     weights: Real
     evaluation: Evaluation
     steps: int = 0
@@ -108,7 +109,7 @@ class Climb:
         What is known beforehand, and the coordinates.
     """
 
-    likelihood: Likelihood
+    likelihood: Likelihood | SteppedLikelihood
     knowledge: Knowledge
 
     @cached_property
@@ -151,12 +152,12 @@ class Climb:
         variance = self.variance(point.evaluation.residual, point.evaluation.leverage)
         return float(self._observations @ np.log(variance) + prior @ prior) + point.evaluation.penalty
 
-    def first_costs(self, starts: Sequence[Real]) -> Real:
+    def first_costs(self, likelihood: Likelihood, starts: Sequence[Real]) -> Real:
         """Rate starts: the same from a sketch of the records, its channels weighted by their energy; shape (start,)."""
         values = np.array([self.knowledge.coordinates.values(u) for u in starts])
         weights = self._observations / self._energy
         # In two halves, for the sake of memory.
-        shares = np.concatenate([rate_vehicles(self.likelihood, half, weights) for half in np.array_split(values, 2)])
+        shares = np.concatenate([rate_vehicles(likelihood, half, weights) for half in np.array_split(values, 2)])
         costs: Real = np.log(shares + NOISE_FLOOR**2) @ self._observations
         return costs
 
@@ -235,17 +236,19 @@ class Climb:
         Point
         """
         point = self.at(u)
-        before = np.inf
+        before, settled = np.inf, False
         while point.steps < (_ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
             slope = self.slope(point)
             if not slope.gradient.size:
                 return replace(point, converged=True)
             if summit is not None and slope.leads(slope.free.T @ (summit.u - point.u)):
                 return summit
+            if settled and slope.newton[1] < enough:
+                return replace(point, converged=True)
             moved, damping, gain = self._step(point, slope, damping)
             if moved is None:
                 return replace(point, converged=gain < 1e-3)
-            settled = np.abs(np.log(moved.weights / point.weights)).max() < _SETTLED
+            settled = bool(np.abs(np.log(moved.weights / point.weights)).max() < _SETTLED)
             point = moved
             # What the steps to come will gain, if they go on shrinking as the last two did.
             ratio = min(gain / before, 0.9) if before < np.inf else 0.9
@@ -260,7 +263,7 @@ class Climb:
         variance = self.variance(place.misfit(weights)[0], np.zeros_like(weights))
         return _evaluated(u, place, 1 / variance, 0)
 
-    def _at(self, u: Real) -> Place:
+    def _at(self, u: Real) -> Place | SteppedPlace:
         return self.likelihood.at(self.knowledge.coordinates.values(u))
 
     def slope(self, point: Point, inflation: float = 1.0) -> Slope:
@@ -298,7 +301,7 @@ class Climb:
 
     def _tried(self, point: Point, u: Real, now: float) -> tuple[Callable[[], Point], float]:
         """Give what going to other coordinates wins, and the way to stand there."""
-        place = self._at(u)
+        place = point.place.moved(self.knowledge.coordinates.values(u), point.weights)
         residual, penalty = place.misfit(point.weights)
 
         def moved() -> Point:
@@ -311,7 +314,7 @@ class Climb:
         return float(residual.sum(axis=0) @ weights + prior @ prior)
 
 
-def _evaluated(u: Real, place: Place, weights: Real, steps: int) -> Point:
+def _evaluated(u: Real, place: Place | SteppedPlace, weights: Real, steps: int) -> Point:
     return Point(u, place, weights, place.evaluate(weights), steps)
 
 

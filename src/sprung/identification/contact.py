@@ -12,10 +12,12 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.identification.likelihood import Place
+from sprung.identification.records import channel_shares
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import LinearModel
+from sprung.vehicle import HEAVE, LinearModel
 
 Real = NDArray[np.float64]
 
@@ -27,8 +29,8 @@ _PASSES = 4
 _NO_WORSE = 1.1
 """Noise after moving the starts over noise before, above which the records say that they were not to be moved."""
 
-_BACKWARD = 30.0
-"""Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
+_SHOCK, _FAR = 0.03, 5.0
+"""s for which a landing may last at most, and times the noise from which a residual is not noise."""
 
 _LONGEST = 2.0
 """s after the start of a decay for which wheels may still hop."""
@@ -44,7 +46,7 @@ def ascend_from_contact(
     decays: Sequence[Decay],
     models: Mapping[str, LinearModel],
     first: Summit,
-    again: Callable[[Sequence[Decay], Mapping[str, float]], Summit],
+    again: Callable[[Sequence[Decay], Summit, Real], Summit],
 ) -> tuple[tuple[Decay, ...], Summit]:
     """Let the fitted vehicle say where each decay begins, and fit again, until it stays with what it said.
 
@@ -57,7 +59,7 @@ def ascend_from_contact(
     first
         Where the fit of these decays ended.
     again
-        Fits decays from parameter values, to an expected gain in log-likelihood that is enough.
+        Fits decays that begin elsewhere: from a summit and the {X, Ẋ} that it has where they begin, (drop, 14).
 
     Returns
     -------
@@ -68,45 +70,56 @@ def ascend_from_contact(
     """
     best, found = tuple(decays), first
     settled = False
-    for _ in range(_PASSES):
-        shifts = _shifts(best, models, found)
+    for _ in range(_PASSES if isinstance(first.point.place, Place) else 1):
+        shifts, states = _shifts(best, models, found)
         if not any(shifts):
             break
         moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
-        next_one = again(moved, found.parameters).after(found)
+        next_one = again(moved, found, states).after(found)
         if np.any(next_one.noise > _NO_WORSE * found.noise):
             break
         best, found, settled = moved, next_one, True
-    return best, found if settled else again(best, found.parameters).after(found)
+    return best, found if settled else again(best, found, found.states).after(found)
 
 
-def _shifts(decays: Sequence[Decay], models: Mapping[str, LinearModel], found: Summit) -> list[int]:
-    """Give by how many samples the start of each decay has to be moved."""
-    shifts = np.zeros(len(decays), dtype=np.int64)
-    states = found.states
-    for load, rate in {(decay.load, decay.rate) for decay in decays}:
-        alike = [i for i, decay in enumerate(decays) if (decay.load, decay.rate) == (load, rate)]
-        matrices = models[load].matrices(found.values)
-        weight = matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * STANDARD_GRAVITY
+def _shifts(decays: Sequence[Decay], models: Mapping[str, LinearModel], found: Summit) -> tuple[list[int], Real]:
+    """Give by how many samples the start of each decay has to be moved, and {X, Ẋ} there, shape (drop, 14)."""
+    shifts, states = [], found.states.copy()
+    for i, decay in enumerate(decays):
+        matrices = models[decay.load].matrices(found.values)
+        weight = matrices.M @ HEAVE * STANDARD_GRAVITY
         static = np.linalg.solve(matrices.K, weight)[3:, None]  # how far the standing vehicle compresses its tyres
-        poles, shapes = np.linalg.eig(matrices.state)
-        before = max(decays[i].earlier.shape[1] for i in alike)
-        after = min(max(decays[i].samples for i in alike), int(_LONGEST * rate))
-        exponent = poles[:, None] * np.arange(-before, after) / rate
-        powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
-        for i in alike:
-            earlier, samples = decays[i].earlier.shape[1], decays[i].samples
-            amplitudes = np.linalg.solve(shapes, states[i])
-            motion = ((shapes[3:7] * amplitudes) @ powers[:, before - earlier : before + samples]).real
-            loose = np.flatnonzero((static - motion < _COMPRESSED * static).any(axis=0))
-            first = int(loose[-1]) + 1 + _wary(decays[i]) if loose.size else 0
-            shifts[i] = first - earlier if first - earlier < _MOST * samples else 0
-    return shifts.tolist()
+        # Friction cannot be followed backward.
+        earlier, samples = decay.earlier.shape[1] if isinstance(found.point.place, Place) else 0, decay.samples
+        motion = found.point.place.motion(found.point.weights, i, earlier, min(samples, int(_LONGEST * decay.rate)))
+        loose = np.flatnonzero((static - motion[3:7] < _COMPRESSED * static).any(axis=0))
+        first = int(loose[-1]) + 1 + _wary(decay) if loose.size else 0
+        shocked = _shocked(decay, found, i)
+        first = max(first, earlier + shocked) if shocked else first
+        shift = first - earlier if first - earlier < _MOST * samples else 0
+        shifts.append(shift)
+        states[i] = motion[:, min(earlier + shift, motion.shape[1] - 1)]
+    return shifts, states
+
+
+def _shocked(decay: Decay, found: Summit, position: int) -> int:
+    """Give the samples at the start of a decay in which the landing is not yet over.
+
+    Friction turns round within a millisecond then, and no sampling follows it. Only what is stepped is held to that: elsewhere
+    nothing turns so fast.
+    """
+    place = found.point.place
+    if isinstance(place, Place):
+        return 0
+    left = place.left(position)[:, : int(_SHOCK * decay.rate)]
+    return int(np.max(np.flatnonzero((np.abs(left) > _FAR * found.noise[:, None]).any(axis=0)) + 1, initial=0))
 
 
 def _wary(decay: Decay) -> int:
-    """Give samples by which to stay away from the last contact with several loggers.
+    """Give samples by which to stay away from the last contact with several clocks.
 
-    One may have taken its sample half a step before the others, and what was interpolated has something of its neighbours.
+    One logger may have taken its sample half a step before the others, and what was interpolated has something of its
+    neighbours.
     """
-    return max((1 if clock.share == 1 else round(_NEIGHBOURS / clock.share) for clock in decay.clocks), default=0)
+    slowest = float(channel_shares(decay).min())
+    return round(_NEIGHBOURS / slowest) if slowest < 1 else int(bool(decay.clocks))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,8 @@ _SCALE = (
     "drops with a known load, weigh the vehicle (total_mass, front_axle_mass, rear_axle_mass), or give one mass or rate that "
     "is known"
 )
+_REFUSED = "the numbers of a model that does not hold are worth nothing and are not given"
+
 _HARDLY = (
     "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
     "would determine it"
@@ -26,7 +28,7 @@ _HARDLY = (
 
 _DERIVED_UNITS = {"total_mass": "kg", "front_axle_mass": "kg", "rear_axle_mass": "kg", "wheelbase": "m"}
 
-_PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s"}
+_PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,11 @@ class Estimates:
     scale: Scale
     unidentifiable: tuple[Unidentifiable, ...]
     correlation: Correlation
+
+    def refused(self, reason: str) -> Estimates:
+        """Give the same where the model does not hold, for a reason: then nothing else explains what is not determined."""
+        names = tuple(name for name, one in self.parameters.items() if one.status == "unidentifiable")
+        return replace(self, unidentifiable=(Unidentifiable(names, f"{_REFUSED}: {reason}"),) if names else ())
 
 
 def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:

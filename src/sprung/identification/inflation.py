@@ -22,7 +22,9 @@ _SEEN = 1e-9
 """Information, as a part of the largest, below which one drop says nothing about a direction."""
 
 
-def of_colour(residuals: Iterable[Real], rates: Sequence[float], span: float = _SPAN) -> Real:
+def of_colour(
+    residuals: Iterable[Real], rates: Sequence[float], span: float = _SPAN, counted: Real | float = 1.0
+) -> Real:
     """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
 
     Parameters
@@ -33,11 +35,13 @@ def of_colour(residuals: Iterable[Real], rates: Sequence[float], span: float = _
         Samples per second of each.
     span
         s over which means are taken: as long as what correlates the residuals, and a small part of a record.
+    counted
+        Part of the samples that the fit counts, of each channel; fewer than there are where some were interpolated.
 
     Returns
     -------
     ndarray
-        For each channel the variance of means over that time, times the samples in them, over the variance of single samples
+        For each channel the variance of means over that time, times the samples counted in them, over that of single samples
         (batch means: Law and Kelton, Simulation Modeling and Analysis, section 9.5.3). Never below 1; 1 where the excess
         is not significant. Shape (channel,).
     """
@@ -53,7 +57,7 @@ def of_colour(residuals: Iterable[Real], rates: Sequence[float], span: float = _
         )
     total, means, samples, batches = np.sum(sums, axis=0)
     variance = np.maximum(total / np.maximum(samples, 1.0), np.finfo(float).tiny)
-    ratio = means / np.maximum(batches, 1.0) / variance
+    ratio = counted * means / np.maximum(batches, 1.0) / variance
     return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
 
 
@@ -78,13 +82,33 @@ def of_disagreement(scores: Real, informations: Real) -> float:
     A model error that is the same in every drop goes unseen here; one that depends on how far or which way the vehicle
     moved, as geometry and friction do, does not.
     """
-    total, freedom = 0.0, -scores.shape[1]
-    for score, information in zip(scores, informations, strict=True):
-        eigenvalues, vectors = np.linalg.eigh(information)
-        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
-        total += float(np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen]))
-        freedom += int(seen.sum())
+    squares, directions = corrections(scores, informations)
+    freedom = int(directions.sum()) - scores.shape[1]
     if freedom <= 0:
         return 1.0
-    ratio = total / freedom
+    ratio = float(squares.sum()) / freedom
     return ratio if ratio > 1 + _SIGNIFICANT * np.sqrt(2 / freedom) else 1.0
+
+
+def corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np.int64]]:
+    """Give each drop's own correction to the joint estimate, in units of its own uncertainty, squared and added up.
+
+    Parameters
+    ----------
+    scores, informations
+        As for `of_disagreement`.
+
+    Returns
+    -------
+    squares
+        Shape (drop,).
+    directions
+        In how many directions each drop says anything, shape (drop,).
+    """
+    squares, directions = np.zeros(len(scores)), np.zeros(len(scores), dtype=np.int64)
+    for drop, (score, information) in enumerate(zip(scores, informations, strict=True)):
+        eigenvalues, vectors = np.linalg.eigh(information)
+        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
+        squares[drop] = np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen])
+        directions[drop] = seen.sum()
+    return squares, directions

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -102,6 +102,33 @@ class Fit:
             logarithmic, self.values * np.exp(np.where(logarithmic, step, 0.0)), self.values + self.slopes * step
         )
 
+    def only(self, names: Sequence[str]) -> Fit:
+        """Give what the fit says of some of its parameters, whatever the others are."""
+        chosen = [self.names.index(name) for name in names]
+        square = np.ix_(chosen, chosen)
+        return replace(
+            self,
+            names=tuple(names),
+            values=self.values[chosen],
+            slopes=self.slopes[chosen],
+            relative_covariance=self.relative_covariance[square],
+            covariance=self.covariance[square],
+            undetermined=self.undetermined[chosen],
+        )
+
+    def widened(self, by: float) -> Fit:
+        """Give the fit with less said of everything that is not known exactly.
+
+        Parameters
+        ----------
+        by
+            Standard uncertainty to be added in every direction of the coordinates that is open, as a part.
+        """
+        variances, directions = np.linalg.eigh(self.relative_covariance)
+        open_ = directions[:, variances > RANK * variances.max(initial=0.0)]
+        wider = self.relative_covariance + by**2 * open_ @ open_.T
+        return replace(self, relative_covariance=wider, covariance=wider * np.outer(self.slopes, self.slopes))
+
     def spread(self, direction: Real, value: float) -> float | None:
         """Give the standard uncertainty of a function of the coordinates.
 
@@ -159,14 +186,10 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
     Fit
     """
     climb, best, knowledge = summit.climb, summit.point, summit.climb.knowledge
-    disagreement = summit.disagreement
     fitted = best.place.fitted(best.weights)
-    colours = of_colour(residual_records(fitted, decays), [decay.rate for decay in decays])
-    # Samples that were interpolated are coloured, but counted for no more than those that were taken.
-    there = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
-    colours = np.maximum(colours * climb.likelihood.observations.sum(axis=0) / np.maximum(there, 1), 1.0)
+    colours = _colours(summit, fitted, decays)
     colour = float(colours.max())
-    inflated = max(colour, disagreement)
+    inflated = max(colour, summit.disagreement)
     coloured = 1 < colour == inflated
 
     eigenvalues, directions = _directions(summit, inflated)
@@ -192,6 +215,28 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
         inflated_by="nothing" if inflated == 1 else "coloured residuals" if coloured else "drops that disagree",
         most_coloured=int(colours.argmax()) if coloured else None,
     )
+
+
+def inflation_of(summit: Summit, decays: Sequence[Decay]) -> float:
+    """Give by how much a fit's records tell less than white residuals of drops that agree would.
+
+    Parameters
+    ----------
+    summit
+        Where the fit ended.
+    decays
+        What was fitted.
+    """
+    fitted = summit.point.place.fitted(summit.point.weights)
+    return max(float(_colours(summit, fitted, decays).max()), summit.disagreement)
+
+
+def _colours(summit: Summit, fitted: Sequence[Real], decays: Sequence[Decay]) -> Real:
+    """Give by how much the colour of residuals enlarges variances, by channel."""
+    # Samples that were interpolated are coloured, but counted for no more than those that were taken.
+    there = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
+    counted = summit.climb.likelihood.observations.sum(axis=0) / np.maximum(there, 1)
+    return of_colour(residual_records(fitted, decays), [decay.rate for decay in decays], counted=counted)
 
 
 def residual_records(fitted: Sequence[Real], decays: Sequence[Decay]) -> Iterator[Real]:

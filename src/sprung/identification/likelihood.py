@@ -24,7 +24,10 @@ from sprung.vehicle import LinearModel, Rows
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-_DEFECTIVE = 100.0
+_BACKWARD = 30.0
+"""Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
+
+_DEFECTIVE = 300.0
 """Condition number of a pole from which two modes have all but met in one shape, and the long way is taken."""
 
 
@@ -107,6 +110,10 @@ class Likelihood:
         """Length of the longest record, s."""
         return max(float((run.samples * run.step[run.group]).max()) for run in self.records.runs)
 
+    def beginning(self, states: Real) -> Likelihood:
+        """Give itself: initial states are eliminated, whatever one starts from."""
+        return self
+
     def at(self, values: Real) -> Place:
         """Go to parameter values, SI, shape (parameter,)."""
         return Place(self, values)
@@ -156,6 +163,10 @@ class Place:
         # Delays turn shapes: they have no long way, and bear with what rounding leaves near a critical damping.
         delayed = any(run.late.shape[1] for run in self.likelihood.records.runs)
         return not delayed and self.modes.condition > _DEFECTIVE
+
+    def moved(self, values: Real, weights: Real) -> Place:
+        """Go to other parameter values, SI, shape (parameter,)."""
+        return self.likelihood.at(values)
 
     def misfit(self, weights: Real) -> tuple[Real, float]:
         """Give the residual sums of squares alone, (m/s²)², shape (drop, channel), and what delays cost beside them."""
@@ -290,6 +301,18 @@ class Place:
             right = self.modes.right[solved.sums.run.load][solved.sums.run.group]
             found.append((right @ solved.amplitudes[:, :, None])[:, :, 0].real)
         return self.likelihood.records.in_order(found)
+
+    def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
+        """Follow one drop from some samples before its first one to some after it: {X, Ẋ}, SI, shape (14, time)."""
+        run = next(run for run in self.likelihood.records.runs if position in run.order)
+        group = run.group[np.flatnonzero(run.order == position)[0]]
+        model = self.likelihood.models[run.load[group]]
+        poles, shapes = np.linalg.eig(model.matrices(self.values).state)
+        exponent = poles[:, None] * np.arange(-before, after) * run.step[group]
+        powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
+        amplitudes = np.linalg.solve(shapes, self.states(weights)[position].astype(np.complex128))
+        motion: Real = ((shapes * amplitudes) @ powers).real
+        return motion
 
     def _solve(self, weights: Real) -> list[Amplitudes]:
         return [sums.solve(weights) for sums in self._sums]

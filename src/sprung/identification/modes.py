@@ -16,6 +16,10 @@ from sprung.vehicle import LinearModel, Rows, Sensor
 Real = NDArray[np.float64]
 
 
+_TOLD = 0.5
+"""Part of itself by which a value may be uncertain, to count as told."""
+
+
 @dataclass(frozen=True)
 class ModeEstimate:
     """One mode of the identified vehicle.
@@ -89,7 +93,7 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
     def std(direction: Real, value: float, values: Real) -> float | None:
         near = fit.spread(direction, value)
         far = float(np.abs(values - value).max(initial=0.0))
-        return None if near is None or far > abs(value) else max(near, far)
+        return None if near is None or max(near, far) > _TOLD * abs(value) else max(near, far)
 
     return ModeEstimate(
         name=mode.name or "unnamed",

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sprung.identification.sums import BLOCK, blocks, correlate
 from sprung.prepare import Decay
 from sprung.recording import LoggerClock
+from sprung.vehicle import separate_names
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -84,7 +85,7 @@ class Run:
             load=np.array([load for load, *_ in alike]),
             step=np.array([step for _, step, _ in alike]),
             samples=samples,
-            present=decays[order[0]].usable * _shares(decays[order[0]]),
+            present=decays[order[0]].usable * channel_shares(decays[order[0]]),
             energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
             blocked=np.concatenate(cut),
             late=_loggers(decays[order[0]]),
@@ -208,8 +209,8 @@ class Records:
         loads = tuple(sorted({decay.load for decay in decays}))
         together: dict[tuple[object, ...], list[list[int]]] = {}
         for i in sorted(range(len(decays)), key=lambda i: (decays[i].load, decays[i].rate)):
-            loggers = tuple((clock.channels, clock.share) for clock in decays[i].clocks)
-            runs = together.setdefault((*decays[i].usable, loggers), [[]])
+            loggers = tuple(clock.channels for clock in decays[i].clocks)
+            runs = together.setdefault((*decays[i].usable, *channel_shares(decays[i]), loggers), [[]])
             if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK:
                 runs.append([])
             runs[-1].append(i)
@@ -227,11 +228,11 @@ class Records:
         return ordered
 
 
-def _shares(decay: Decay) -> Real:
+def channel_shares(decay: Decay) -> Real:
     """Give the samples that each channel's logger took for each one of the decay, shape (channel,)."""
-    shares = np.ones(len(decay.values))
+    shares = np.array(decay.shares or np.ones(len(decay.values)))
     for clock in decay.clocks:
-        shares[list(clock.channels)] = clock.share
+        shares[list(clock.channels)] *= clock.share
     return shares
 
 
@@ -245,5 +246,4 @@ def _loggers(decay: Decay) -> Real:
 
 def _by_parameter(clock: LoggerClock, names: Sequence[str]) -> list[float]:
     """Give how a clock follows the parameters of a fit, which may share half-distances; shape (parameter,)."""
-    parts = {"t_f": ("t_f1", "t_f2"), "t_r": ("t_r1", "t_r2")}
-    return [sum(clock.follows.get(part, 0.0) for part in parts.get(name, (name,))) for name in names]
+    return [sum(clock.follows.get(own, 0.0) for own in separate_names(name)) for name in names]

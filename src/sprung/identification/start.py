@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimate import Known
-from sprung.vehicle import Sensor
+from sprung.vehicle import NEUTRAL, Sensor
 
 BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 """Hz: from a limousine to an empty lorry."""
@@ -91,11 +91,10 @@ def catalogue(outline: Outline, known: Mapping[str, Known]) -> Iterator[dict[str
                 f"k_s{axle}": spring,
                 f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
                 f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
-                f"c_t{axle}": 0.0,
-                f"k_a{axle}": 0.0,
             }
             values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
         values |= {"a": a, "b": b}
+        values |= NEUTRAL
         yield values | {name: one.value for name, one in known.items() if name in values}
 
 

@@ -41,6 +41,9 @@ _AROUND, _FARTHEST, _PROBED = (4.0, 8.0), 0.5, 2
 _SHALLOW = 0.5
 """Part of the fall that the curvature says, below which the likelihood is worth another climb."""
 
+_TRAVEL = 0.03
+"""m of travel at which a spring's force is the size of a friction that is large."""
+
 STARTS = 3
 """How many starts are usually refined: enough to see whether they agree."""
 
@@ -169,12 +172,13 @@ def ascend(
     if start is not None:
         return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(start)), None, enough, CLOSE_BY)], enough)
     likelihood = climb.likelihood
+    assert isinstance(likelihood, Likelihood)  # noqa: S101 (made above; for the type checker)
     direct = direct_start(likelihood.records.runs, likelihood.models, sensors, outline)
     tried = [] if direct is None else [(at(direct), NEARER)]
     if len(tried) < starts:
         progress(f"trying {len(usual)} usual vehicles")
         places = [at(values) for values in usual]
-        order = np.argsort(climb.first_costs(places), kind="stable")
+        order = np.argsort(climb.first_costs(likelihood, places), kind="stable")
         tried += [(places[i], FAR) for i in order[: starts - len(tried)]]
     ends: list[Point] = []
     for number, (u, damping) in enumerate(tried, start=1):
@@ -252,7 +256,7 @@ def _climb(
 ) -> Climb:
     names = next(iter(models.values())).names
     likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
-    coordinates = Coordinates(names, np.array([_reference(name, typical) for name in names]))
+    coordinates = Coordinates(names, np.array([reference(name, typical) for name in names]))
     return Climb(likelihood, Knowledge(coordinates, known))
 
 
@@ -262,7 +266,12 @@ def _best(climb: Climb, ends: Sequence[Point], enough: float) -> Summit:
     return Summit(climb, best, best.steps, len(ends), agreeing)
 
 
-def _reference(name: str, typical: Mapping[str, float]) -> float:
+def reference(name: str, typical: Mapping[str, float]) -> float:
+    """Give the size by which a parameter's coordinate is multiplied, SI; 1 for those that are fitted by their logarithms."""
     if PARAMETERS[name].positive:
         return 1.0
+    if not PARAMETERS[name].scales:
+        return 1.0
+    if name.startswith("F"):
+        return _TRAVEL * typical[f"k_s{name[-1]}"]
     return typical["c_sf"] if name.startswith("c") else typical["k_sf"]

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.climb import told_directions
+from sprung.identification.likelihood import Place
 from sprung.identification.solution import ModalSlopes, respond
 from sprung.identification.summit import Summit
 from sprung.vehicle import LinearModel, Load, Rows, Sensor
@@ -82,10 +83,12 @@ def suspects(
     Returns
     -------
     tuple of Suspect
-        Those of which the records say anything; none where modal coordinates do not exist.
+        Those of which the records say anything; none where modal coordinates do not exist, as with nonlinear forces.
     """
     place, climb = summit.point.place, summit.climb
-    changes = list(_changes(summit, sensors, loads, cg_height))
+    if not isinstance(place, Place):
+        return ()
+    changes = list(_changes(summit, place, sensors, loads, cg_height))
     accused, slopes = [who for who, _ in changes], [slope for _, slope in changes]
     more = ModalSlopes(
         np.zeros((*place.modes.poles.shape[:-1], len(slopes), 14), dtype=np.complex128),
@@ -126,10 +129,9 @@ _Who = tuple[Kind, str, int, int]
 
 
 def _changes(
-    summit: Summit, sensors: Sequence[Sensor], loads: Mapping[str, Load], cg_height: float | None
+    summit: Summit, place: Place, sensors: Sequence[Sensor], loads: Mapping[str, Load], cg_height: float | None
 ) -> Iterator[tuple[_Who, ModalSlopes]]:
     """Give what each change does to the response of every load."""
-    place = summit.point.place
     modes, likelihood = place.modes, place.likelihood
     nothing = np.zeros((*modes.shapes.shape[:2], 1, 14), dtype=np.complex128)
     no_poles = np.zeros((len(modes.poles), 1, 14), dtype=np.complex128)

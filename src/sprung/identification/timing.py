@@ -20,7 +20,7 @@ from sprung.identification.likelihood import Likelihood
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay, Seen
 from sprung.recording import Drop
-from sprung.vehicle import Load, Rows, Sensor, Vehicle, drop_from_blocks
+from sprung.vehicle import Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
 
 Real = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def timed_by_release(
     -------
     Decay
     """
-    parameters = _apart(vehicle.parameters)
+    parameters = separated(vehicle.parameters)
     try:
         fall = drop_from_blocks(vehicle, load, drop.wheels, drop.height or _LOW, duration=_FLIGHT)
         flight, slopes = _flights(parameters, drop, load, sensors, vehicle.cg_height)
@@ -133,13 +133,6 @@ class _Moment(NamedTuple):
     time: float
     std: float
     slopes: Real
-
-
-def _apart(parameters: Mapping[str, float]) -> dict[str, float]:
-    """Give parameters with the half-distances of springs and dampers each by their own names."""
-    shared = [name for name in ("t_f", "t_r") if name in parameters]
-    apart = {f"{name}{which}": parameters[name] for name in shared for which in "12"}
-    return {name: value for name, value in parameters.items() if name not in shared} | apart
 
 
 def _flights(
@@ -207,6 +200,7 @@ def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]
     tuple of Decay
     """
     likelihood = summit.climb.likelihood
+    assert isinstance(likelihood, Likelihood)  # noqa: S101 (several loggers are not stepped; for the type checker)
     models = dict(zip(likelihood.records.loads, likelihood.models, strict=True))
     place = Likelihood.of(decays, models, likelihood.sensors).at(summit.values)
     untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.std > _UNTOLD}

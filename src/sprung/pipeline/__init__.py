@@ -6,6 +6,7 @@ from sprung.pipeline.identify import identify
 from sprung.pipeline.modes import modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.result import FitReport, Result, Series, load
+from sprung.pipeline.validate import Validation, validate
 
 __all__ = [
     "ChannelReport",
@@ -15,6 +16,7 @@ __all__ = [
     "FitReport",
     "Result",
     "Series",
+    "Validation",
     "check",
     "draft",
     "identify",
@@ -23,4 +25,5 @@ __all__ = [
     "plan",
     "plan_campaign",
     "plan_file",
+    "validate",
 ]

@@ -1,45 +1,99 @@
-"""Which model is fitted: what the user says, and what follows from what is known."""
+"""Which model is fitted: what the user says, what follows from what is known, and what is left to the records."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
 from sprung.recording import Campaign
-from sprung.vehicle import LINEAR_EXTRAS, LinearModel, Tracks, parameter_names, seven_degrees_of_freedom
+from sprung.vehicle import (
+    EXTRA_PARAMETERS,
+    EXTRAS,
+    LINEAR_EXTRAS,
+    LinearModel,
+    NonlinearModel,
+    Tracks,
+    forces_beside,
+    parameter_names,
+    seven_degrees_of_freedom,
+)
 
 _SEPARATE = ("t_f1", "t_f2", "t_r1", "t_r2")
 _SHARED = ("t_f", "t_r")
 
 
-class Choice(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Choice:
     """The model to fit.
 
     Attributes
     ----------
+    campaign
+        Of which loads.
     tracks
         Whether springs and dampers of an axle share their half-distance.
     extras
         What it carries beyond the paper's seven degrees of freedom.
     known
         Everything known beforehand about its parameters, the wheelbase included.
-    models
-        Equations of motion by load name.
     open
         Whether neither the user nor what is known says anything about the tracks, so that the records are to decide.
+    free
+        The extras about which the records are to decide.
+    tilting
+        Whether the sensors tilt with the body, so that they feel the less of gravity the further it turns: an effect of the
+        second order that only the model with forces beside it can show.
     """
 
+    campaign: Campaign
     tracks: Tracks
     extras: tuple[str, ...]
     known: Mapping[str, Known]
-    models: Mapping[str, LinearModel]
     open: bool
+    free: tuple[str, ...]
+    tilting: bool = False
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return parameter_names(self.tracks, self.extras)
+
+    @cached_property
+    def models(self) -> Mapping[str, LinearModel]:
+        """Equations of motion by load name, without the forces that no matrix carries."""
+        elements, height = seven_degrees_of_freedom(self.tracks, self.extras), self.campaign.cg_height
+        return {load.name: LinearModel.of(elements + load.elements(height), self.names) for load in self.campaign.loads}
+
+    @cached_property
+    def stepped(self) -> Mapping[str, NonlinearModel]:
+        """Equations of motion by load name, with the forces that no matrix carries."""
+        elements = seven_degrees_of_freedom(self.tracks, self.extras)
+        forces, height = forces_beside(self.tracks, self.extras), self.campaign.cg_height
+        return {
+            load.name: NonlinearModel.of(elements, forces, self.names, load, height) for load in self.campaign.loads
+        }
+
+    @property
+    def nonlinear(self) -> bool:
+        """Whether it has such forces."""
+        return any(extra not in LINEAR_EXTRAS for extra in self.extras)
+
+    @property
+    def linear_extras(self) -> tuple[str, ...]:
+        """Those of its extras that matrices carry."""
+        return tuple(extra for extra in self.extras if extra in LINEAR_EXTRAS)
+
+    def having(self, extras: tuple[str, ...], tracks: Tracks | None = None) -> Choice:
+        """Give the same with other extras, and other tracks."""
+        ordered = tuple(extra for extra in EXTRAS if extra in extras)
+        return replace(self, tracks=tracks or self.tracks, extras=ordered)
 
 
 def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple[str, ...] | None = None) -> Choice:
-    """Choose the model for a campaign.
+    """Choose the model for a campaign, as far as nobody has to look into the records for it.
 
     Parameters
     ----------
@@ -59,15 +113,12 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
     """
     problems = Problems()
     where = "campaign" if campaign.path is None else campaign.path.name
-    chosen_extras = tuple(extras if extras is not None else campaign.model.extras or ())
+    wanted = campaign.model.extras if extras is None else extras
+    chosen_extras = tuple(wanted or ())
     for extra in chosen_extras:
-        if extra not in LINEAR_EXTRAS:
-            problems.add(
-                f"{where}: model.extras",
-                f"'{extra}'",
-                "an extra of the linear model",
-                did_you_mean(extra, LINEAR_EXTRAS),
-            )
+        if extra not in EXTRAS:
+            do = did_you_mean(extra, EXTRAS)
+            problems.add(f"{where}: model.extras", f"'{extra}'", f"any of {', '.join(EXTRAS)}", do)
         elif extra in campaign.model.forbid and extras is None:
             problems.add(f"{where}: model", f"'{extra}' both wanted and forbidden", "one of the two", "Remove one.")
 
@@ -83,9 +134,8 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
             'Set tracks = "separate" in [model] or rename the known half-distances.',
         )
     names = parameter_names(chosen, chosen_extras) if not problems else ()
-    for name in campaign.known:
-        if name in ("c_tf", "c_tr", "k_af", "k_ar") and names and name not in names:
-            extra = "tyre-damping" if name.startswith("c") else "anti-roll"
+    for extra, brought in EXTRA_PARAMETERS.items():
+        for name in (one for one in brought if one in campaign.known and names and one not in names):
             problems.add(
                 f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",
                 f'Add extras = ["{extra}"] to [model], or remove it.',
@@ -95,7 +145,7 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
     known = dict(campaign.known)
     if campaign.wheelbase is not None:
         known["wheelbase"] = campaign.wheelbase
-    elements = seven_degrees_of_freedom(chosen, chosen_extras)
-    models = {load.name: LinearModel.of(elements + load.elements(campaign.cg_height), names) for load in campaign.loads}
     undecided = tracks is None and campaign.model.tracks is None and not apart and not together
-    return Choice(chosen, chosen_extras, known, models, undecided)
+    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in campaign.model.forbid)
+    ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
+    return Choice(campaign, chosen, ordered, known, undecided, free)

@@ -20,7 +20,6 @@ from sprung.identification import (
     ascend_from_contact,
     conclude,
     describe,
-    expected_gain,
     look_around,
     mode_estimates,
     suspects,
@@ -28,20 +27,26 @@ from sprung.identification import (
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.clocks import clock_reports, set_clocks
-from sprung.pipeline.diagnosis import Bench, Hypothesis, Suspicion, diagnose, suspicious, without_looking_at_wheels
+from sprung.pipeline.diagnosis import (
+    Bench,
+    Hypothesis,
+    Suspicion,
+    diagnose,
+    suspicious,
+    walking_slowly,
+    without_looking_at_wheels,
+)
+from sprung.pipeline.extras import Attempt, Way, fit_from
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
 from sprung.prepare import Decay, Prepared, prepare
 from sprung.recording import Campaign
 from sprung.simulation import DEFAULT_HEIGHT
-from sprung.validation import Misfit, judge, judge_residuals
+from sprung.validation import Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
 from sprung.vehicle import Tracks
 
 METHOD = "joint maximum likelihood"
-
-_UNLIKELY = 0.25
-"""Part of the gain that is asked of a larger model below which it is not even fitted."""
 
 _DIAGNOSES = 3
 """How many times what is wrong is looked for, each time in what was put right before."""
@@ -106,8 +111,8 @@ class Fitted(NamedTuple):
     ----------
     campaign
         What was fitted.
-    choice, why
-        With which model, and what decided that.
+    choice, why, path
+        With which model, what decided that, and what was tried.
     prepared
         Its decays, from where they were used.
     summit
@@ -127,6 +132,7 @@ class Fitted(NamedTuple):
     summit: Summit
     fit: Fit
     found: tuple[Decay, ...]
+    path: tuple[Attempt, ...] = ()
     accused: tuple[Fault, ...] = ()
 
 
@@ -157,7 +163,17 @@ def fit_campaign(
         listed = suspects(fitted.summit, fitted.campaign.sensors, loads, campaign.cg_height)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
-    return fitted
+    return _with_drifts(fitted)
+
+
+def _with_drifts(fitted: Fitted) -> Fitted:
+    """Name the channels whose level walks too little to spoil the fit, as far as nobody has."""
+    campaign, decays = fitted.campaign, fitted.prepared.decays
+    faults = [*campaign.faults, *(fault for decay in decays for fault in decay.faults)]
+    said = {fault.where for fault in faults if fault.code == "drift"}
+    named = {one.channel for one in campaign.sensors if any(one.channel in where for where in said)}
+    more = tuple(one for one in walking_slowly(decays, fitted.summit, campaign.sensors) if one.where not in named)
+    return fitted._replace(campaign=replace(campaign, faults=(*campaign.faults, *more)))
 
 
 def _fit(
@@ -173,7 +189,8 @@ def _fit(
         if one.drop is None:
             changed = one.change(campaign)
             campaign = replace(changed, faults=(*changed.faults, one.fault))
-    choice = choose_model(campaign, tracks, None if extras is None else tuple(extras))
+    wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
+    choice = wanted.having(wanted.linear_extras)
     progress("finding the decays")
     prepared = _without(campaign, prepare(campaign), left_out)
     _need_decays(campaign, prepared)
@@ -182,17 +199,26 @@ def _fit(
     )
     start = None if first is None else first.parameters
     first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
-    choice, first, why = _choose_tracks(campaign, choice, prepared.decays, first, progress)
-    decays, summit = ascend_from_contact(
-        prepared.decays,
-        choice.models,
-        first,
-        lambda decays, start: _ascend(campaign, choice, decays, start, CONVERGED, progress),
-    )
-    summit = look_around(summit)
+    way = Way(choice, first, prepared.decays, (), progress).linear()
+    way = _from_contact(way)
+    way = way.with_forces(wanted) if wanted.nonlinear else way.nonlinear(choice)
+    if way.choice.nonlinear:
+        way = _from_contact(way)
     progress("judging the fit")
-    fit = describe(summit, decays)
-    return Fitted(campaign, choice, why, prepared._replace(decays=decays), summit, fit, prepared.decays)
+    summit, decays = look_around(way.summit), tuple(way.decays)
+    fit, found = describe(summit, decays), prepared.decays
+    return Fitted(campaign, way.choice, way.why, prepared._replace(decays=decays), summit, fit, found, way.path)
+
+
+def _from_contact(way: Way) -> Way:
+    """Let the fitted vehicle say where each decay begins, and fit to the end."""
+    decays, summit = ascend_from_contact(
+        way.decays,
+        way.choice.models,
+        way.summit,
+        lambda decays, found, states: fit_from(way.choice, decays, found, CONVERGED, way.progress, states),
+    )
+    return replace(way, decays=decays, summit=summit)
 
 
 def _without(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
@@ -211,7 +237,7 @@ def _diagnosed(fitted: Fitted, suspicion: Suspicion) -> tuple[Hypothesis, ...]:
     tracks: Tracks = "separate" if choice.open else choice.tracks
 
     def bench(decays: Sequence[Decay]) -> Bench:
-        return Bench.of(fitted.campaign, decays, tracks, choice.extras)
+        return Bench.of(fitted.campaign, decays, tracks, choice.linear_extras)
 
     if suspicion == "contradicted":
         return diagnose(bench(fitted.prepared.decays))
@@ -224,10 +250,12 @@ def _diagnosed(fitted: Fitted, suspicion: Suspicion) -> tuple[Hypothesis, ...]:
 
 
 def as_test(fitted: Fitted) -> PlannedTest:
-    """Take what was fitted as a test to which others may be added, of the vehicle that was found."""
-    campaign, choice, decays = fitted.campaign, fitted.choice, fitted.prepared.decays
+    """Take what was fitted as a test to which others may be added, of the vehicle that was found as far as it is linear."""
+    campaign, decays = fitted.campaign, fitted.prepared.decays
+    choice = fitted.choice.having(fitted.choice.linear_extras)
+    fit = fitted.fit.only(choice.names)
     subject = subject_of_fit(
-        fitted.fit,
+        fit,
         choice.tracks,
         choice.extras,
         choice.known,
@@ -243,7 +271,7 @@ def as_test(fitted: Fitted) -> PlannedTest:
         for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
         if recording.name in used
     ]
-    return campaign_of_fit(subject, fitted.fit, dropped)
+    return campaign_of_fit(subject, fit, dropped)
 
 
 def _ascend(
@@ -257,37 +285,6 @@ def _ascend(
 ) -> Summit:
     models, sensors, known = choice.models, campaign.sensors, choice.known
     return ascend(decays, models, sensors, known, start=start, starts=starts, enough=enough, progress=progress)
-
-
-def _choose_tracks(
-    campaign: Campaign, shared: Choice, decays: Sequence[Decay], found: Summit, progress: Callable[[str], None]
-) -> tuple[Choice, Summit, str]:
-    """Let the records say whether springs and dampers share their half-distances, where nobody else does.
-
-    Two more parameters have to gain more than the Bayesian information criterion asks for them (Schwarz, Ann. Stat. 6
-    (1978) 461), the drops' disagreement allowed for.
-    """
-    if not shared.open:
-        return shared, found, f"half-distances {shared.tracks}, as the campaign says or what is known implies"
-    separate = choose_model(campaign, "separate", shared.extras)
-    start = found.parameters
-    start |= {f"t_{axle}{which}": start[f"t_{axle}"] for axle in "fr" for which in "12"}
-    asked = 2 * np.log(sum(decay.usable.sum() * decay.samples for decay in decays))
-    gain = expected_gain(decays, separate.models, campaign.sensors, separate.known, start) / found.disagreement
-    numbers = f"in 2 ln(likelihood) where {asked:.0f} is asked of two more parameters"
-    if gain < _UNLIKELY * asked:
-        return (
-            shared,
-            found,
-            f"springs and dampers share their half-distances: parting them would gain {gain:.0f} {numbers}",
-        )
-    progress("springs and dampers apart")
-    other = _ascend(campaign, separate, decays, start, NEAR, progress).after(found)
-    gain = 2 * (other.loglikelihood - found.loglikelihood) / other.disagreement
-    numbers = f"gains {max(gain, 0.0):.0f} {numbers}"
-    if gain > asked and other.converged:
-        return separate, other, f"half-distances of springs and dampers apart: it {numbers}"
-    return shared, found, f"springs and dampers share their half-distances: parting them {numbers}"
 
 
 def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
@@ -304,14 +301,19 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
 
 def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None) -> Result:
     """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
-    campaign, choice, why, prepared, summit, fit, _, accused = fitted
+    campaign, choice, why, prepared, summit, fit, _, path, accused = fitted
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
     clocks = clock_reports(summit, fit, decays)
     estimates = conclude(fit, choice.known)
     misfit = judge_residuals(fit, decays)
-    verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused])
+    validated = validate_drops(summit, fit, decays, channels, body_motions(fit, decays, campaign.sensors))
+    verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
+    doubt = doubt_of(verdict, fit, misfit)
+    if doubt:
+        fit = fit.widened(doubt)
+        estimates = conclude(fit, choice.known).refused(verdict.reasons[0])
     profiles = profiles_of(profile, summit, fit, choice.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     return Result(
@@ -325,15 +327,22 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
         modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
-        fit=_fit_report(choice, why, fit, decays, channels, misfit),
+        fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
         drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
+        validation=validated,
         series={decay.name: _series(decay, fitted, channels) for decay, fitted in zip(decays, fit.fitted, strict=True)},
     )
 
 
 def _fit_report(
-    choice: Choice, why: str, fit: Fit, decays: Sequence[Decay], channels: Sequence[str], misfit: Misfit
+    choice: Choice,
+    why: str,
+    path: tuple[Attempt, ...],
+    fit: Fit,
+    decays: Sequence[Decay],
+    channels: Sequence[str],
+    misfit: Misfit,
 ) -> FitReport:
     return FitReport(
         samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
@@ -342,6 +351,7 @@ def _fit_report(
         model=choice.extras,
         tracks=choice.tracks,
         why=why,
+        path=path,
         method=METHOD,
         iterations=fit.iterations,
         converged=fit.converged,

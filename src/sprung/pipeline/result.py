@@ -17,8 +17,9 @@ from sprung.errors import Fault, Problem, ResultFileError
 from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.check import DropReport
+from sprung.pipeline.extras import Attempt
 from sprung.recording import write_whole
-from sprung.validation import Verdict
+from sprung.validation import DropValidation, Verdict
 
 SCHEMA: Literal[1] = 1
 """Version of results.json; a change that an old reader would misread raises it."""
@@ -69,6 +70,8 @@ class FitReport(_Frozen):
         Whether springs and dampers of an axle share their half-distance.
     why
         What decided that.
+    path
+        What was tried on the way to the model, and what it gained; empty where an older sprung wrote the result.
     method
         What estimated it.
     iterations, converged, starts, starts_agreeing
@@ -89,6 +92,7 @@ class FitReport(_Frozen):
     model: tuple[str, ...]
     tracks: Literal["shared", "separate"]
     why: str
+    path: tuple[Attempt, ...] = ()
     method: str
     iterations: int
     converged: bool
@@ -125,6 +129,9 @@ class Result(_Frozen):
         By load: the modes of the identified vehicle, lowest first.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
+    validation
+        By drop name: how well the fitted vehicle explains the drop, and how well the other drops predict it; empty where an
+        older sprung wrote the result.
     next_step
         What to measure next, in a sentence; None where the verdict is reject, or an older sprung wrote the result.
     series
@@ -146,6 +153,7 @@ class Result(_Frozen):
     fit: FitReport
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
+    validation: dict[str, DropValidation] = Field(default_factory=dict)
     next_step: str | None = None
     series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
 

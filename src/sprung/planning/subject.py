@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import InputError, Problem
 from sprung.estimate import Known
-from sprung.identification import Coordinates, Knowledge, Likelihood
+from sprung.identification import Coordinates, Knowledge, Likelihood, reference
 from sprung.prepare import Decay, no_rest
 from sprung.vehicle import (
     PARAMETERS,
@@ -114,8 +114,7 @@ class Subject:
     @cached_property
     def knowledge(self) -> Knowledge:
         """What is known beforehand, in the coordinates of the fit: an extra counts in parts of a spring or damper rate."""
-        beside = {"c": self.vehicle.c_sf, "k": self.vehicle.k_sf}
-        references = [1.0 if PARAMETERS[name].positive else beside[name[0]] for name in self.names]
+        references = [reference(name, self.vehicle.parameters) for name in self.names]
         return Knowledge(Coordinates(self.names, np.array(references)), self.known)
 
     @cached_property

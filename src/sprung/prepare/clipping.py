@@ -93,18 +93,30 @@ def clipped_samples(recording: Recording) -> NDArray[np.bool_]:
             found[channel] = np.abs(signal) >= _FULL * full_scale
         else:
             step, usual = float(steps[channel]), float(np.median(np.abs(np.diff(signal))))
-            jump = max(_STEEP * step, _NOISY * usual if step > _COARSE * usual else 0.0)
-            found[channel] = _plateaus(signal, signal.max(), jump) | _plateaus(signal, signal.min(), jump)
+            coarse = step > _COARSE * usual
+            jump = max(_STEEP * step, _NOISY * usual if coarse else 0.0)
+            for way in (1.0, -1.0):
+                found[channel] |= _plateaus(way * signal, jump, coarse)
     return found
 
 
-def _plateaus(signal: Real, extreme: float, jump: float) -> NDArray[np.bool_]:
+def _plateaus(signal: Real, jump: float, coarse: bool) -> NDArray[np.bool_]:
+    """Find plateaus at the top; what is coarse may stay there unclipped, but then it does not come on to go beyond."""
+    extreme = float(signal.max())
     at = np.concatenate([[0], (signal == extreme).astype(int), [0]])
     begins, ends = np.flatnonzero(np.diff(at) == 1), np.flatnonzero(np.diff(at) == -1)
     found = np.zeros(signal.size, dtype=bool)
     for begin, end in zip(begins.tolist(), ends.tolist(), strict=True):
         last = signal.size - 1
         outside = signal[[begin - 1 if begin else 0, end if end < last else last]]
-        if end - begin >= _PLATEAU and np.all(np.abs(outside - extreme) > jump):
-            found[begin:end] = True
+        if end - begin >= _PLATEAU and np.all(extreme - outside > jump):
+            found[begin:end] = not coarse or _beyond(signal, begin, end) > extreme + jump
     return found
+
+
+def _beyond(signal: Real, begin: int, end: int) -> float:
+    """Give where a plateau's middle would be had the signal gone on as it came and as it left (a cubic of Hermite)."""
+    if begin < 2 or end > signal.size - 2:
+        return np.inf
+    came, left = signal[begin - 1] - signal[begin - 2], signal[end] - signal[end + 1]
+    return float((signal[begin - 1] + signal[end]) / 2 + (end - begin + 1) / 8 * (came + left))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Fault
 from sprung.prepare.events import Events
-from sprung.prepare.release import Rest
+from sprung.prepare.release import Rest, resolution
 from sprung.recording import LoggerClock
 
 FITTED = "in the fitted vehicle every tyre is down for good"
@@ -44,6 +45,10 @@ class Decay:
         What is wrong with the drop.
     clocks
         For several loggers how their clocks stand to this one; without any, all channels have one clock.
+    shares
+        Samples that were taken of each channel for each one that is here; empty where it is 1 for all of them.
+    undone
+        Corner of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
     events
         When what happened, and why the decay has its limits.
     """
@@ -58,6 +63,8 @@ class Decay:
     rest: Rest
     faults: tuple[Fault, ...] = ()
     clocks: tuple[LoggerClock, ...] = ()
+    undone: tuple[float, ...] = ()
+    shares: tuple[float, ...] = ()
     events: Events = field(default_factory=Events)
 
     @cached_property
@@ -65,6 +72,12 @@ class Decay:
         """Which channels are not left out; shape (channel,)."""
         usable: NDArray[np.bool_] = np.logical_not(np.isnan(self.values).any(axis=1))
         return usable
+
+    @cached_property
+    def resolution(self) -> NDArray[np.float64]:
+        """Step of each channel as it was recorded, m/s², whatever was undone or taken off since; shape (channel,)."""
+        seen = resolution(np.nan_to_num(self.values))
+        return np.where(np.isnan(self.rest.step), seen, self.rest.step)
 
     @property
     def samples(self) -> int:
@@ -89,3 +102,18 @@ class Decay:
     def end(self) -> float:
         """Time of the last sample on the file's own clock, s."""
         return self.start + (self.samples - 1) / self.rate
+
+
+def rounding(decays: Sequence[Decay]) -> NDArray[np.float64]:
+    """Give the mean square of rounding to each channel's resolution at its worst, (m/s²)², shape (channel,).
+
+    Where a slow signal stays between two steps, the error is not spread evenly over a step but nearer to its ends.
+
+    Parameters
+    ----------
+    decays
+        All decays; those in which a channel is left out say nothing of it.
+    """
+    steps = np.array([np.where(decay.usable, decay.resolution, np.inf) for decay in decays]).min(axis=0)
+    worst: NDArray[np.float64] = np.where(np.isfinite(steps), steps, 0.0) ** 2 / 6
+    return worst

@@ -22,8 +22,11 @@ _END = 1.0
 _SURE = 5.0
 """Standard errors by which the last level has to differ from the first."""
 
-_MATTERS = 2.0
+_MATTERS = 1.0
 """Times the noise below which a drift does not matter."""
+
+_MAY_BE = 3.0
+"""Standard errors by which the colour of a short rest may be another one than it seems."""
 
 _AGREES = 4.0
 """Standard errors within which the slopes at rest have to be that of the straight line between the levels, and not none."""
@@ -83,7 +86,8 @@ def steady(recording: Recording, release: Release | None, sensors: Sequence[Sens
     still = recording.values[:, since:] - slope[:, None] * np.arange(end) / recording.rate
     moves = np.sqrt(np.maximum(still.var(axis=1) - noise**2, 0.0))
     coarse = resolution(recording.values) / np.sqrt(6)
-    error = np.sqrt((before.to_level**2 + after.to_level**2) * noise**2 + moves**2 + coarse**2)
+    colour = _of_means(release.rest.noise)
+    error = np.sqrt(colour * (before.to_level**2 + after.to_level**2) * noise**2 + moves**2 + coarse**2)
     direct = np.array([sensor.high_pass is None for sensor in sensors])
     seen = direct & (np.abs(walked) > np.maximum(_SURE * error, np.maximum(_MATTERS * noise, _LEAST)))
     errors = np.array([before.to_slope * noise, after.to_slope * np.hypot(noise, np.sqrt(end) * moves)])
@@ -107,6 +111,24 @@ def steady(recording: Recording, release: Release | None, sensors: Sequence[Sens
     time = np.arange(recording.values.shape[1]) / recording.rate - before.time
     values = recording.values - np.where(even, slope, 0.0)[:, None] * time
     return replace(recording, values=values, faults=(*recording.faults, *faults))
+
+
+def _of_means(noise: Real) -> Real:
+    """Give by how much the variance of means of noise at rest exceeds that of white noise at most, shape (channel,).
+
+    That is (1 + rho)/(1 - rho) with the correlation rho of neighbours, which a short rest tells badly: its own, or that of
+    all channels together and what that may be beyond.
+    """
+    known = noise[~np.isnan(noise).any(axis=1)]
+    energy, neighbours = np.sum(known**2, axis=1), np.sum(known[:, 1:] * known[:, :-1], axis=1)
+    together = float(neighbours.sum() / max(energy.sum(), np.finfo(float).tiny))
+    together += _MAY_BE * np.sqrt(max(1 - together**2, 0.0) / max(known.size, 1))
+    colours = np.full(len(noise), together)
+    own = neighbours / np.maximum(energy, np.finfo(float).tiny)
+    colours[~np.isnan(noise).any(axis=1)] = np.maximum(own, together)
+    rho = np.clip(colours, 0.0, 1 - 1 / noise.shape[1])
+    of_means: Real = (1 + rho) / (1 - rho)
+    return of_means
 
 
 def _stretch(values: Real, first: int, rate: float) -> _Stretch:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.prepare.release import Release, Rest, no_rest
+from sprung.prepare.release import Rest, no_rest
 from sprung.recording import Recording
-from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Sensor, Wheel
-
-_DROPPED = 0.05
-"""s after the release within which every wheel of the drop has lost its block."""
+from sprung.vehicle import Wheel
 
 
 @dataclass(frozen=True)
@@ -114,36 +110,3 @@ def filled_in(before: Recording, after: Recording) -> NDArray[np.bool_]:
     there = np.isfinite(before.values) & np.isfinite(after.values)
     replaced: NDArray[np.bool_] = there & (before.values != after.values)
     return replaced
-
-
-def seen_in(recording: Recording, release: Release | None, sensors: Sequence[Sensor], marks: tuple[Mark, ...]) -> Seen:
-    """Put together what a recording shows.
-
-    Parameters
-    ----------
-    recording
-        Put right.
-    release
-        Its release.
-    sensors
-        One for each channel.
-    marks
-        Samples with which something is the matter.
-    """
-    if release is None:
-        return Seen(recording, None, no_rest(len(recording.channels)), marks)
-    return Seen(recording, release.sample, release.rest, marks, _fell(recording, release, sensors))
-
-
-def _fell(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> dict[Wheel, bool]:
-    """Say which wheels lost their blocks: gravity and the spring drive such a wheel down with more than 1 g at once.
-
-    A wheel that stands feels no more of it than its spring's slow change; what is between says neither.
-    """
-    window = slice(release.sample, release.sample + max(int(_DROPPED * recording.rate), 2))
-    fell: dict[Wheel, bool] = {}
-    for channel, sensor in enumerate(sensors):
-        down = float(release.rest.level[channel] - recording.values[channel, window].min())
-        if sensor.on != "body" and (down > STANDARD_GRAVITY or down < STANDARD_GRAVITY / 2):
-            fell[sensor.on] = down > STANDARD_GRAVITY
-    return fell

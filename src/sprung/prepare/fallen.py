@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.recording import kind_of
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel
 
@@ -20,18 +21,6 @@ Real = NDArray[np.float64]
 
 Place = Literal["body", "wheel", "fl", "fr", "rl", "rr"]
 """Where a channel's sensor sits: on the body, on some wheel, or on that wheel."""
-
-Kind = Literal["bounce", "front", "rear", "left", "right", "one wheel", "other"]
-"""What a drop is called; front and rear make the vehicle pitch, left and right make it roll."""
-
-KINDS: dict[frozenset[Wheel], Kind] = {
-    frozenset(WHEELS): "bounce",
-    frozenset(("fl", "fr")): "front",
-    frozenset(("rl", "rr")): "rear",
-    frozenset(("fl", "rl")): "left",
-    frozenset(("fr", "rr")): "right",
-}
-"""The usual drops by the wheels that fall."""
 
 SPEED = 0.2
 """m/s downward that a wheel gains at least: blocks of 0.02 m give 0.3."""
@@ -132,9 +121,9 @@ class FoundDrop:
         return self.begin, self.end
 
     @property
-    def kind(self) -> Kind | None:
+    def kind(self) -> str | None:
         """What such a drop is called; None where the wheels are not known."""
-        return kind_of(self.wheels)
+        return kind_of(self.wheels) if self.wheels else None
 
     def on_clock(self, clock: Callable[[float], float]) -> FoundDrop:
         """Give the same with its times on another clock.
@@ -174,19 +163,6 @@ class FoundDrop:
             f"landed at {self.landing:.3f} s with {np.nanmax(seen.peak) / STANDARD_GRAVITY:.1f} g",
             f"usable until {self.end:.2f} s, when {self.ended}",
         )
-
-
-def kind_of(wheels: Sequence[Wheel]) -> Kind | None:
-    """Give what a drop of some wheels is called; None for none.
-
-    Parameters
-    ----------
-    wheels
-        Which fell.
-    """
-    if not wheels:
-        return None
-    return KINDS.get(frozenset(wheels), "one wheel" if len(wheels) == 1 else "other")
 
 
 def wheel_score(drops: Sequence[FoundDrop]) -> Real:
@@ -252,15 +228,27 @@ def tell_wheels(drops: Sequence[FoundDrop], places: Sequence[Place | None] | Non
     return tuple(_told(drop, sit, places or (None,) * sit.size) for drop in drops)
 
 
-def _told(drop: FoundDrop, sit: NDArray[np.bool_], places: Sequence[Place | None]) -> FoundDrop:
-    seen = drop.seen
+def channels_that_fell(seen: Readings, sit: NDArray[np.bool_]) -> tuple[int, ...]:
+    """Say which channels show the fall of a wheel; none where no wheel with a sensor fell.
+
+    Parameters
+    ----------
+    seen
+        What the channels read during the drop.
+    sit
+        Which of them sit on wheels, shape (channel,).
+    """
     depth, speed = (np.where(sit, np.nan_to_num(each), 0.0) for each in (seen.depth, seen.speed))
     over = np.abs(np.nan_to_num(seen.level)) < STANDARD_GRAVITY / 2  # an AC-coupled sensor may point down
     over &= np.nan_to_num(seen.onset) > 0
     at_once = depth * np.maximum(np.nan_to_num(np.where(over, seen.onset, -seen.onset)), 0.0)
     falls = (depth > _DEEP * depth.max()) | (at_once > _AT_ONCE * at_once.max())
     any_fell = bool(((depth > STANDARD_GRAVITY) & (speed > SPEED)).any())
-    fell = tuple(np.flatnonzero(falls & sit).tolist()) if any_fell else ()
+    return tuple(np.flatnonzero(falls & sit).tolist()) if any_fell else ()
+
+
+def _told(drop: FoundDrop, sit: NDArray[np.bool_], places: Sequence[Place | None]) -> FoundDrop:
+    fell = channels_that_fell(drop.seen, sit)
     stations = {places[i] for i in fell}
     wheels = tuple(wheel for wheel in WHEELS if wheel in stations) if stations <= set(WHEELS) else ()
     if not wheels and len(fell) == sit.sum() == len(WHEELS):

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.prepare.fallen import FoundDrop, Place, on_wheels, tell_wheels
-from sprung.prepare.judging import AFTER, BEFORE, BLOW, Fall, judge
+from sprung.prepare.falls import BLOW
+from sprung.prepare.judging import AFTER, BEFORE, Fall, judge
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Sensor
 

@@ -243,4 +243,7 @@ def _times(recording: Recording, factors: Real) -> Recording:
 
 
 def _changed(release: Release, factors: Real) -> Release:
-    return Release(release.sample, Rest(release.rest.level * factors, release.rest.noise * factors[:, None]))
+    rest = release.rest
+    return Release(
+        release.sample, Rest(rest.level * factors, rest.noise * factors[:, None], rest.step * np.abs(factors))
+    )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from sprung.prepare.fallen import SPEED, Readings
-from sprung.prepare.landing import steepest_rise
+from sprung.prepare.falls import IMPACT, RING, RING_TO, look_at
 from sprung.prepare.release import Release, find_release
 from sprung.units import STANDARD_GRAVITY
 
@@ -30,18 +30,6 @@ AHEAD = 0.35
 AFTER = 12.0
 """s after the release beyond which no vehicle vibrates."""
 
-BLOW = 0.01
-"""s over which readings are averaged, so that a blow, which is shorter, does not pass for a fall."""
-
-_FALL = 0.08
-"""s after the first wheel has begun to fall within which every wheel that falls does; later one that stands may jump."""
-
-_LATER = 0.15
-"""s more in which the body, slower than wheels, gains its speed."""
-
-_IMPACT = 0.5
-"""s after the release within which every wheel has met the ground."""
-
 _BODY_SPEED = 0.15
 """m/s downward that the body gains at least, where no sensor is on a wheel."""
 
@@ -53,12 +41,6 @@ _BODY_LASTS = 0.02
 
 _RESTLESS = 0.15
 """Part of the depth of a fall that may be movement at rest, root-mean-square: an engine may idle, nobody may rock the body."""
-
-_RING, _RING_FROM, _RING_TO = 0.2, 0.1, 0.8
-"""m/s² that the slow swinging of a dropped vehicle exceeds, in at least two channels, and s after the landing."""
-
-_SLOW = 0.1
-"""s over which readings are averaged to see the swinging of the body and nothing faster."""
 
 _BIN = 0.005
 """s: step of the envelopes in which disturbances are looked for."""
@@ -135,41 +117,23 @@ def judge(values: Real, rate: float, event: int, wheels: NDArray[np.bool_] | Non
         If it is none, the reason in words.
     """
     begin = max(0, event - int(AHEAD * rate))
-    end = min(values.shape[1], event + int((_IMPACT + _RING_TO + 0.1) * rate))
+    end = min(values.shape[1], event + int((IMPACT + RING_TO + 0.1) * rate))
     missing = np.isnan(values[:, begin:end]).mean(axis=1)
     whole = missing <= _MISSING
     if not whole.any():
         return "every channel has gaps here"
     values = _bridged(values, whole & (missing > 0))
     found = find_release(values[whole, begin:end], rate)
-    if found is None or begin + found.sample > event + int(_IMPACT * rate):
+    if found is None or begin + found.sample > event + int(IMPACT * rate):
         return "nothing rests before it, so it is no release"
     release = begin + found.sample
     level, noise = _of_all(found, whole)
-    moved = values - level[:, None]
-    fall = moved[:, release : min(end, release + int(_IMPACT * rate))]
-    # What an AC-coupled sensor calls up is not known: a wheel's first large reading after the release is downward.
-    onset = fall[:, : max(int(2 * BLOW * rate), 1)].mean(axis=1)
-    over = (np.abs(level) < STANDARD_GRAVITY / 2) & (onset > STANDARD_GRAVITY)
-    fall = np.where(over[:, None], -fall, fall)
-    smooth = np.nan_to_num(uniform_filter1d(fall, max(round(BLOW * rate), 1), axis=1, mode="nearest"))
-    early = _falls(smooth, rate)
-    depth = np.maximum(-smooth[:, :early].min(axis=1), 0.0)
-    gained = np.maximum.accumulate(-np.cumsum(fall[:, : early + int(_LATER * rate)], axis=1) / rate, axis=1)
-    speed = np.maximum(gained[:, early - 1], 0.0)
-    peak = np.abs(fall).max(axis=1)
-    falling = _falling(depth, wheels)
-    landing = release + max((steepest_rise(fall[i], 0) for i in np.flatnonzero(falling)), default=0)
-    width = max(round(_SLOW * rate), 1)
-    slow = uniform_filter1d(moved, width, axis=1, mode="nearest")
-    ringing = slow[:, landing + int(_RING_FROM * rate) : landing + int(_RING_TO * rate)]
-    swing = np.maximum(np.abs(ringing).max(axis=1, initial=0.0) - 4 * noise / np.sqrt(width), 0.0)
-    refused = _refused(noise, depth, speed, gained[:, -1], swing, wheels)
+    seen, landing, moved, slow, gained = look_at(values, rate, release, level, noise, wheels)
+    refused = _refused(seen, gained, wheels)
     if refused is not None:
         return refused
-    first = _rest_begins(moved, noise, release, peak, rate)
+    first = _rest_begins(moved, noise, release, seen.peak, rate)
     faded, last, ended = _until(moved, slow, noise, release, landing, rate)
-    seen = Readings(level, noise, onset, depth, speed, peak, swing)
     return Fall(first, release, landing, faded, last, seen, ended)
 
 
@@ -190,25 +154,9 @@ def _of_all(found: Release, whole: NDArray[np.bool_]) -> tuple[Real, Real]:
     return level, noise
 
 
-def _falls(smooth: Real, rate: float) -> int:
-    """Give how many samples after the release belong to the fall: what moves at first may be a hand at the blocks."""
-    deepest = int(np.argmin(smooth.min(axis=1)))
-    begun = int(np.argmax(smooth[deepest] <= 0.25 * smooth[deepest].min()))
-    return int(min(begun + max(int(_FALL * rate), 1), smooth.shape[1]))
-
-
-def _falling(depth: Real, wheels: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
-    """Say which channels show a wheel that falls, or where none does the body."""
-    among = np.nan_to_num(depth if wheels is None else np.where(wheels, depth, 0.0))
-    if among.max(initial=0.0) < STANDARD_GRAVITY:
-        among = np.nan_to_num(depth)
-    return np.asarray(among >= 0.5 * max(float(among.max(initial=0.0)), 1e-12))
-
-
-def _refused(
-    noise: Real, depth: Real, speed: Real, gained: Real, swing: Real, wheels: NDArray[np.bool_] | None
-) -> str | None:
+def _refused(seen: Readings, gained: Real, wheels: NDArray[np.bool_] | None) -> str | None:
     """Give the reason why this is no drop; None where it is one."""
+    noise, depth, speed, swing = seen.noise, seen.depth, seen.speed, seen.swing
     candidates = np.ones(depth.size, dtype=bool) if wheels is None else wheels
     wheel = candidates & (depth > STANDARD_GRAVITY) & (speed > SPEED)
     body = (depth > _BODY_DEPTH) & (gained > _BODY_SPEED) & (gained > _BODY_LASTS * depth)
@@ -225,10 +173,10 @@ def _refused(
     if (np.nan_to_num(rest[falls]) > _RESTLESS).all():
         return f"nothing rests before it: what falls moves by {rest[falls].min():.0%} of the fall already"
     second = float(np.sort(np.nan_to_num(swing))[-2:].min(initial=np.inf))
-    if second < _RING:
+    if second < RING:
         return (
             f"no body swings after it: {second:.2g} m/s² in the second-largest channel, where a dropped vehicle exceeds "
-            f"{_RING:g} m/s²"
+            f"{RING:g} m/s²"
         )
     return None
 

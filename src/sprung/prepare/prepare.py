@@ -16,12 +16,13 @@ from sprung.prepare.clipping import clipped_samples, with_full_scale
 from sprung.prepare.coupling import direct_coupled
 from sprung.prepare.decay import Decay
 from sprung.prepare.drift import steady
-from sprung.prepare.events import Events, Seen, filled_in, marked, seen_in
+from sprung.prepare.events import Events, Seen, filled_in, marked
 from sprung.prepare.gravity import put_right
 from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
 from sprung.prepare.spikes import without_spikes
-from sprung.recording import Campaign, Drop, Recording
+from sprung.prepare.stated import as_seen, contradicted, other_wheels, wheels_that_fell
+from sprung.recording import Campaign, Drop, Recording, drop_names
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Wheel
 
@@ -77,7 +78,7 @@ def prepare(campaign: Campaign) -> Prepared:
     """
     smooth = [without_spikes(recording) for recording in campaign.recordings]
     spiked = [filled_in(*pair) for pair in zip(campaign.recordings, smooth, strict=True)]
-    whole = _alive([align(recording) for recording in smooth])
+    whole = _alive([align(recording) for recording in smooth], campaign.drops)
     scaled = [with_full_scale(recording, campaign.sensors) for recording in whole]
     righted = put_right(scaled, [_release(recording) for recording in scaled], campaign.sensors)
     releases, sensors = righted.releases, righted.sensors
@@ -88,29 +89,45 @@ def prepare(campaign: Campaign) -> Prepared:
         recording if release is None else direct_coupled(steady(recording, release, sensors), release, sensors)
         for recording, release in zip(righted.recordings, releases, strict=True)
     ]
-    campaign = replace(campaign, recordings=tuple(recordings))
+    fell = [wheels_that_fell(one, release, sensors) for one, release in zip(recordings, releases, strict=True)]
+    drops = list(campaign.drops)
+    for i in contradicted(campaign.drops, fell):
+        fault = other_wheels(campaign.drops[i], fell[i], recordings[i].name)
+        recordings[i] = replace(recordings[i], faults=(*recordings[i].faults, fault))
+        drops[i] = campaign.drops[i].model_copy(update={"wheels": as_seen(campaign.drops[i], fell[i])})
+    campaign = replace(campaign, recordings=tuple(recordings), drops=tuple(drops))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
-    for drop, recording, release, over in zip(campaign.drops, campaign.recordings, releases, clipped, strict=True):
-        decay = _decay(campaign, drop, recording, release, suspension, over)
+    names = drop_names(campaign.drops)
+    of_drops = zip(campaign.drops, names, campaign.recordings, releases, clipped, strict=True)
+    for drop, name, recording, release, over in of_drops:
+        decay = _decay(campaign, drop, name, recording, release, suspension, over)
         if isinstance(decay, Decay):
             decays.append(decay)
         else:
             left_out.append((drop, recording, (*recording.faults, decay)))
     seen = [
-        seen_in(recording, release, campaign.sensors, (*marked("clipped", over), *marked("spike", off)))
-        for recording, release, over, off in zip(campaign.recordings, releases, clipped, spiked, strict=True)
+        Seen(
+            recording=recording,
+            release=None if release is None else release.sample,
+            rest=no_rest(len(recording.channels)) if release is None else release.rest,
+            marks=(*marked("clipped", over), *marked("spike", off)),
+            fell=told,
+        )
+        for recording, release, over, off, told in zip(
+            campaign.recordings, releases, clipped, spiked, fell, strict=True
+        )
     ]
     return Prepared(tuple(decays), tuple(left_out), tuple(seen))
 
 
-def _alive(recordings: Sequence[Recording]) -> tuple[Recording, ...]:
+def _alive(recordings: Sequence[Recording], drops: Sequence[Drop]) -> tuple[Recording, ...]:
     """Leave out channels that never move, and recordings that are copies of an earlier one."""
-    seen: dict[bytes, str] = {}
+    seen: dict[tuple[bytes, float | None, float | None], str] = {}
     alive = []
-    for recording in recordings:
+    for recording, drop in zip(recordings, drops, strict=True):
         flat = recording.usable & (np.ptp(recording.values, axis=1) == 0)
-        original = seen.setdefault(recording.values.tobytes(), recording.name)
+        original = seen.setdefault((recording.values.tobytes(), drop.start, drop.end), recording.name)
         faults = [
             Fault(
                 "flat",
@@ -144,8 +161,9 @@ def _release(recording: Recording) -> Release | None:
         return None
     level = np.full(len(recording.channels), np.nan)
     noise = np.full((len(recording.channels), found.rest.noise.shape[1]), np.nan)
-    level[recording.usable], noise[recording.usable] = found.rest
-    return Release(found.sample, Rest(level, noise))
+    step = np.full(len(recording.channels), np.nan)
+    level[recording.usable], noise[recording.usable], step[recording.usable] = found.rest
+    return Release(found.sample, Rest(level, noise, step))
 
 
 def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[Wheel, float]:
@@ -165,6 +183,7 @@ def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[W
 def _decay(
     campaign: Campaign,
     drop: Drop,
+    name: str,
     recording: Recording,
     release: Release | None,
     suspension: dict[Wheel, float],
@@ -189,7 +208,7 @@ def _decay(
             "Record for at least three seconds after the release.",
         )
     return Decay(
-        name=drop.name,
+        name=name,
         file=recording.name,
         load=drop.load,
         values=recording.values[:, first : last + 1],
@@ -199,6 +218,8 @@ def _decay(
         rest=no_rest(len(recording.channels)) if release is None else release.rest,
         faults=tuple(faults),
         clocks=recording.clocks,
+        shares=recording.shares,
+        undone=tuple((release and sensor.high_pass) or 0.0 for sensor in campaign.sensors),
         events=_events(recording, release, landing, why_end),
     )
 

@@ -21,6 +21,9 @@ STANDS_OUT = 30.0
 _FEW = 20
 """Samples that a first look at the noise needs at least."""
 
+_FILLED_IN = 0.01
+"""Part of the steps of a channel that may be smaller than its resolution."""
+
 _REST = 0.3
 """s before the release from which rest level and noise are taken."""
 
@@ -34,10 +37,13 @@ class Rest(NamedTuple):
         Mean reading of each channel, m/s², shape (channel,); NaN where the recording shows no rest.
     noise
         Readings less level and creep, m/s², shape (channel, time); no samples where the recording shows no rest.
+    step
+        The smallest step each channel ever takes as recorded, m/s², shape (channel,); NaN where the recording shows no rest.
     """
 
     level: Real
     noise: Real
+    step: Real
 
 
 class Release(NamedTuple):
@@ -57,7 +63,7 @@ class Release(NamedTuple):
 
 def no_rest(channels: int) -> Rest:
     """Give the rest of a recording that shows none."""
-    return Rest(np.full(channels, np.nan), np.empty((channels, 0)))
+    return Rest(np.full(channels, np.nan), np.empty((channels, 0)), np.full(channels, np.nan))
 
 
 def find_release(
@@ -92,8 +98,9 @@ def find_release(
     first = values[:, : max(width, _FEW)]
     level = np.median(first, axis=1, keepdims=True)
     # A coarse sensor at rest may show one step, or none at all: its noise is then no less than its resolution's.
+    step = resolution(values)
     spread = np.max(
-        [1.4826 * np.median(np.abs(first - level), axis=1), 0.6 * first.std(axis=1), resolution(values) / np.sqrt(12)],
+        [1.4826 * np.median(np.abs(first - level), axis=1), 0.6 * first.std(axis=1), step / np.sqrt(12)],
         axis=0,
     )[:, None]
     deviation = np.abs(values - level)
@@ -119,11 +126,18 @@ def find_release(
     centred = np.arange(rest.shape[1]) - (rest.shape[1] - 1) / 2
     slope = rest @ centred / (centred @ centred)
     mean = rest.mean(axis=1)
-    return Release(sample, Rest(mean, rest - mean[:, None] - slope[:, None] * centred))
+    return Release(sample, Rest(mean, rest - mean[:, None] - slope[:, None] * centred, step))
 
 
 def resolution(values: Real) -> Real:
-    """Give the smallest step that each channel ever takes, m/s²: its resolution, if that is coarse; shape (channel,)."""
-    steps = np.abs(np.diff(values, axis=1))
-    smallest = np.where(steps > 0, steps, np.inf).min(axis=1, initial=np.inf)
-    return np.where(np.isfinite(smallest), smallest, 0.0)
+    """Give the smallest step that each channel usually takes, m/s²: its resolution, if that is coarse; shape (channel,).
+
+    Steps below it are those of a few samples that were filled in.
+    """
+    smallest = np.zeros(len(values))
+    for channel, steps in enumerate(np.abs(np.diff(values, axis=1))):
+        taken = steps[steps > 0]
+        if taken.size:
+            few = int(_FILLED_IN * taken.size)
+            smallest[channel] = np.partition(taken, few)[few]
+    return smallest

@@ -1,19 +1,21 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
-from sprung.recording.campaign import Campaign, Drop, ModelChoice
+from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, drop_names, kind_of
 from sprung.recording.formats import Table, read_table, to_sep005
+from sprung.recording.formats.resampled import SLOWEST
 from sprung.recording.gaps import gap, gaps_in
+from sprung.recording.loggers import files_named_after
 from sprung.recording.mending import MOST_MISSING, filled
 from sprung.recording.merging import merged
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
 from sprung.recording.recording import LoggerClock, Recording
-from sprung.recording.signals import SLOWEST
 from sprung.recording.whole import write_whole
 from sprung.recording.writing import write
 
 __all__ = [
     "FILE",
+    "KINDS",
     "MOST_MISSING",
     "SCHEMA_FILE",
     "SCHEMA_LINE",
@@ -25,9 +27,12 @@ __all__ = [
     "Recording",
     "Table",
     "VehicleFile",
+    "drop_names",
+    "files_named_after",
     "filled",
     "gap",
     "gaps_in",
+    "kind_of",
     "merged",
     "read",
     "read_table",

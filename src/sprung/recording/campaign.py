@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
@@ -12,7 +14,27 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from sprung.errors import Fault
 from sprung.estimate import Known
 from sprung.recording.recording import Recording
-from sprung.vehicle import EMPTY, Finite, Load, Positive, Sensor, Wheel
+from sprung.vehicle import EMPTY, WHEELS, Finite, Load, Positive, Sensor, Wheel
+
+KINDS: Mapping[frozenset[Wheel], str] = {
+    frozenset(WHEELS): "bounce",
+    frozenset(("fl", "fr")): "pitch front",
+    frozenset(("rl", "rr")): "pitch rear",
+    frozenset(("fl", "rl")): "roll left",
+    frozenset(("fr", "rr")): "roll right",
+}
+"""The usual drops by the wheels that fall."""
+
+
+def kind_of(wheels: Sequence[Wheel]) -> str:
+    """Give what a drop of some wheels is called: ``pitch front``; or just the wheels.
+
+    Parameters
+    ----------
+    wheels
+        Those that fall.
+    """
+    return KINDS.get(frozenset(wheels), " ".join(wheels))
 
 
 class Drop(BaseModel):
@@ -50,7 +72,9 @@ class Drop(BaseModel):
         if self.window is not None and self.window[1] <= self.window[0]:
             raise ValueError(f"the window must end after {self.window[0]:g} s, where it begins")
         if self.window is not None and self.files:
-            raise ValueError("the clocks of several files have no window in common: cut the files")
+            raise ValueError(
+                "the clocks of several files have no window in common: cut each file to the one drop, and leave the window out"
+            )
         return self
 
     @property
@@ -65,29 +89,72 @@ class Drop(BaseModel):
             return f"{self.file} from {self.window[0]:g} s"
         if len(self.files) < 2:
             return self.file or next(iter(self.files), None)
-        start, end = _shared_beginning(self.files), _shared_beginning([file[::-1] for file in self.files])[::-1]
-        shared = f"{start}*{end}"
-        own = len(start) + len(end) - len(PurePath(self.files[0]).suffix)
+        shared = self._shared
+        own = len(shared) - 1 - len(PurePath(self.files[0]).suffix)
         return shared if own > 0 else f"{self.files[0]} and {len(self.files) - 1} more"
 
     @property
     def name(self) -> str:
-        """Short name: the recording's file name without its ending, or made from the load and the wheels."""
+        """Short name: the recording's without its folder and ending, or made from the load and the wheels."""
         if self.file is not None:
-            return PurePath(self.file).stem + ("" if self.window is None else f"_{self.window[0]:g}s")
-        return f"{self.load}_{self.kind.replace(' ', '_')}"
+            return PurePath(self.file).stem + self._from
+        shared = PurePath(self._shared).stem.replace("*", "").strip("_-. ") if self.files else ""
+        return shared or f"{self.load}_{self.kind.replace(' ', '_')}"
+
+    @property
+    def _shared(self) -> str:
+        """What the names of its files have in common, a star for the rest."""
+        start, end = _shared_beginning(self.files), _shared_beginning([file[::-1] for file in self.files])[::-1]
+        return self.files[0] if len(self.files) < 2 else f"{start}*{end}"
+
+    @property
+    def _from(self) -> str:
+        return "" if self.window is None else f"_{self.window[0]:g}s"
+
+    @property
+    def _long_name(self) -> str:
+        """Name that says which folder the first of its files is in."""
+        path = PurePath(next(iter(self.recordings), self.name))
+        return "_".join([*path.parts[:-1], path.stem]) + self._from
 
     @property
     def kind(self) -> str:
         """What kind of drop it is, by the wheels that were dropped: ``pitch front``; or just the wheels."""
-        kinds = {
-            frozenset(("fl", "fr", "rl", "rr")): "bounce",
-            frozenset(("fl", "fr")): "pitch front",
-            frozenset(("rl", "rr")): "pitch rear",
-            frozenset(("fl", "rl")): "roll left",
-            frozenset(("fr", "rr")): "roll right",
-        }
-        return kinds.get(frozenset(self.wheels), " ".join(self.wheels))
+        return kind_of(self.wheels)
+
+
+def drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
+    """Give every drop of a campaign a name of its own, as short as that allows.
+
+    Parameters
+    ----------
+    drops
+        All of them.
+    """
+    return _told_apart([(drop.name, drop._long_name) for drop in drops])
+
+
+def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
+    """Say what to call every drop's recording, no two alike: what its files have in common, or the first of them.
+
+    Parameters
+    ----------
+    drops
+        All of a campaign.
+    """
+    firsts = [(f"{drop.files[0]} and {len(drop.files) - 1} more",) if drop.files[1:] else () for drop in drops]
+    return _told_apart([(drop.recording or drop.name, *first) for drop, first in zip(drops, firsts, strict=True)])
+
+
+def _told_apart(names: Sequence[Sequence[str]]) -> tuple[str, ...]:
+    """Give each of several things the first of its names that no other has, or else its last one, numbered."""
+    often = Counter(name for own in names for name in set(own))
+    taken: dict[str, None] = {}
+    for own in names:
+        name = next((name for name in own if often[name] == 1), own[-1])
+        numbered = itertools.chain([name], (f"{name} ({count})" for count in itertools.count(2)))
+        taken[next(one for one in numbered if one not in taken)] = None
+    return tuple(taken)
 
 
 def _shared_beginning(texts: Sequence[str]) -> str:

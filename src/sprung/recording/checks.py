@@ -10,10 +10,10 @@ import numpy as np
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
-from sprung.recording.schema import EXTRAS, KNOWABLE, CampaignFile, VehicleFileSchema
+from sprung.recording.schema import KNOWABLE, CampaignFile, VehicleFileSchema
 from sprung.recording.sizes import SMALLEST, check_sizes, too_large
 from sprung.units import acceleration_factor
-from sprung.vehicle import LINEAR_EXTRAS, PARAMETERS, Sensor
+from sprung.vehicle import EXTRAS, PARAMETERS, Sensor
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -136,14 +136,11 @@ def _check_loads(draft: Draft[CampaignFile], problems: Problems) -> None:
 
 def _check_model(draft: Draft[CampaignFile], problems: Problems) -> None:
     model = draft.file.model
-    for key, names, allowed in (("extras", model.extras or (), LINEAR_EXTRAS), ("forbid", model.forbid, EXTRAS)):
+    for key, names in (("extras", model.extras or ()), ("forbid", model.forbid)):
         for name in names:
-            where, expected = draft.where("model", key), f"any of {', '.join(allowed)}"
             if name not in EXTRAS:
-                problems.add(where, f"'{name}'", expected, did_you_mean(name, allowed))
-            elif name not in allowed:
-                do = f"This version of sprung cannot fit {name} yet: leave it out, or wait for a later version."
-                problems.add(where, f"'{name}'", expected, do)
+                where, expected = draft.where("model", key), f"any of {', '.join(EXTRAS)}"
+                problems.add(where, f"'{name}'", expected, did_you_mean(name, EXTRAS))
     for name in sorted(set(model.extras or ()) & set(model.forbid)):
         do = "Take it out of one of the two."
         problems.add(draft.where("model", "forbid"), f"'{name}', which extras asks for", "an extra not in extras", do)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import PurePath
 from typing import NamedTuple
@@ -43,7 +44,7 @@ def named_apart(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
     )
 
 
-def recording_of_drop(tables: Mapping[str, Table], sensors: Sequence[Wanted], drop: Drop) -> Recording:
+def recording_of_drop(tables: Mapping[str, Table], sensors: Sequence[Wanted], drop: Drop, name: str) -> Recording:
     """Make the recording of one drop.
 
     Parameters
@@ -54,6 +55,8 @@ def recording_of_drop(tables: Mapping[str, Table], sensors: Sequence[Wanted], dr
         The campaign's.
     drop
         The drop.
+    name
+        What to call it.
 
     Returns
     -------
@@ -65,7 +68,6 @@ def recording_of_drop(tables: Mapping[str, Table], sensors: Sequence[Wanted], dr
     InputError
         If a channel's logger cannot be told, or one of the files cannot be used; all problems at once.
     """
-    name = drop.recording or ", ".join(tables)
     if len(tables) == 1:
         ((only, table),) = tables.items()
         recording = recording_of(_within(table, drop.window), [sensor.written for sensor in sensors], only)
@@ -108,8 +110,9 @@ def _file_of(sensor: Sensor, tables: Mapping[str, Table], loggers: Collection[st
 
     Where no file has its name, one named after another logger is not its own.
     """
-    own = [file for file in tables if sensor.logger and _named_after(file, sensor.logger)]
-    free = [file for file in tables if not sensor.logger or not any(_named_after(file, other) for other in loggers)]
+    own = files_named_after(tables, sensor.logger) if sensor.logger else []
+    taken = {file for other in loggers for file in files_named_after(tables, other)} if sensor.logger else set()
+    free = [file for file in tables if file not in taken]
     files = [file for file in own or free if column_of(tables[file], sensor.channel)]
     if len(files) > 1:
         found = f"'{sensor.channel}' in {', '.join(files)}"
@@ -118,8 +121,22 @@ def _file_of(sensor: Sensor, tables: Mapping[str, Table], loggers: Collection[st
     return next(iter(files), None)
 
 
-def _named_after(file: str, logger: str) -> bool:
-    return logger.casefold() in PurePath(file).stem.casefold()
+def files_named_after(files: Iterable[str], logger: str) -> list[str]:
+    """Give the files with a logger's name in theirs: as words of their own, or else as any part.
+
+    Parameters
+    ----------
+    files
+        The recordings.
+    logger
+        Its name.
+    """
+    stems = {file: PurePath(file).stem.casefold() for file in files}
+    name = logger.casefold()
+    word = re.compile(rf"(?<![^\W_]){re.escape(name)}(?![^\W_])")
+    return [file for file, stem in stems.items() if word.search(stem)] or [
+        f for f, stem in stems.items() if name in stem
+    ]
 
 
 def _nowhere(sensor: Sensor, name: str) -> Fault:

@@ -68,7 +68,16 @@ def merged(whole: Recording, moments: Sequence[float | None]) -> Recording:
         parts=whole.parts,
         clocks=tuple(clocks),
         full_scale=_full_scales(whole),
+        shares=_shares(whole),
     )
+
+
+def _shares(whole: Recording) -> tuple[float, ...]:
+    """Give the samples of its own logger's that were taken of each channel for each one; nothing where it is 1 for all."""
+    of_channels = {
+        channel: share for part in whole.parts for channel, share in zip(part.channels, part.shares, strict=False)
+    }
+    return tuple(of_channels.get(channel, 1.0) for channel in whole.channels) if of_channels else ()
 
 
 def _full_scales(whole: Recording) -> tuple[float | None, ...]:

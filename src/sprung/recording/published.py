@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
-from sprung.recording.schema import EXTRAS, KNOWABLE, SCHEMA, CampaignFile
-from sprung.vehicle import LINEAR_EXTRAS, PARAMETERS
+from sprung.recording.schema import KNOWABLE, SCHEMA, CampaignFile
+from sprung.vehicle import EXTRAS, PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -53,7 +53,7 @@ def campaign_schema() -> str:
         "additionalProperties": False,
     }
     model, sensor, load, item, drop = (entries[name] for name in ("ModelChoice", "Sensor", "Load", "Item", "Drop"))
-    model["properties"]["extras"]["items"]["enum"] = list(LINEAR_EXTRAS)
+    model["properties"]["extras"]["items"]["enum"] = list(EXTRAS)
     model["properties"]["forbid"]["items"]["enum"] = list(EXTRAS)
     # Many spellings are understood, so the usual ones are offered and none is refused.
     sensor["properties"]["unit"]["anyOf"] = [{"enum": _UNITS}, {"type": sensor["properties"]["unit"].pop("type")}]

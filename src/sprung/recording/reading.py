@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem, Problems, did_you_mean
-from sprung.recording.campaign import Campaign, Drop, ModelChoice
+from sprung.recording.campaign import Campaign, Drop, ModelChoice, recording_names
 from sprung.recording.checks import check, refused_unit
 from sprung.recording.formats import Signals, Table, from_sep005, read_table, split_unit
 from sprung.recording.loggers import Wanted, named_apart, recording_of_drop
@@ -257,11 +257,12 @@ def _recordings(
         for written, named in zip(draft.file.sensor, sensors, strict=True)
         if refused_unit(written) is None
     ]
-    drops = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
+    understood = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
+    drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
     recordings: list[Recording] = []
-    for index, of_drop in tables.items():
+    for of_drop, drop, name in zip(tables.values(), drops, recording_names(drops), strict=True):
         with problems.collecting():
-            recordings.append(recording_of_drop(of_drop, pairs, drops.get(index) or Drop(file=next(iter(of_drop)))))
+            recordings.append(recording_of_drop(of_drop, pairs, drop, name))
     return tuple(recordings)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.vehicle import separated
 
 ROUGHLY = 0.05
 """s: how far two clocks may stand apart where only the first motion that a logger shows has tied them."""
@@ -44,9 +45,8 @@ class LoggerClock:
 
     def expected(self, parameters: Mapping[str, float]) -> float:
         """Give how late it is as far as is known, s, for a vehicle of these parameters, SI."""
-        shared = {f"{name}{which}": parameters[name] for name in ("t_f", "t_r") if name in parameters for which in "12"}
-        everything = {**parameters, **shared}
-        return self.late + sum(slope * everything[name] for name, slope in self.follows.items())
+        apart = separated(parameters)
+        return self.late + sum(slope * apart[name] for name, slope in self.follows.items())
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +77,9 @@ class Recording:
     full_scale
         The largest reading of each channel's sensor, m/s², by the unit of the file if nothing else names one; None where
         nobody says it. Empty where no file was read: the sensors' own units hold then.
+    shares
+        Samples that were taken of each channel for each one that is here, below 1 where a slower clock kept it than the
+        file's others. Empty where it is 1 for all of them.
     """
 
     name: str
@@ -89,6 +92,7 @@ class Recording:
     parts: tuple[Recording, ...] = ()
     clocks: tuple[LoggerClock, ...] = ()
     full_scale: tuple[float | None, ...] = ()
+    shares: tuple[float, ...] = ()
 
     @property
     def time(self) -> NDArray[np.float64]:

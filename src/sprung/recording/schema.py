@@ -8,16 +8,13 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from sprung.estimate import Known
 from sprung.recording.campaign import Drop, ModelChoice
-from sprung.vehicle import DERIVED, LINEAR_EXTRAS, PARAMETERS, Finite, Load, NotNegative, Positive, Sensor
+from sprung.vehicle import DERIVED, PARAMETERS, Finite, Load, NotNegative, Positive, Sensor
 
 SCHEMA = 1
 """The schema that this version reads and writes."""
 
 KNOWABLE = (*PARAMETERS, *(name for name in DERIVED if name != "wheelbase"))
 """What ``[known]`` may hold; the wheelbase has its place in ``[vehicle]``."""
-
-EXTRAS = (*LINEAR_EXTRAS, *(name for name in ("friction", "rebound") if name not in LINEAR_EXTRAS))
-"""Every extra of the model by name, those of a later version among them."""
 
 
 class Measured(BaseModel):

@@ -8,7 +8,8 @@ import numpy as np
 
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
 from sprung.recording.formats import Table, split_unit
-from sprung.recording.mending import mend
+from sprung.recording.formats.resampled import SLOWEST
+from sprung.recording.mending import MOST_MISSING, mend
 from sprung.recording.recording import Recording
 from sprung.recording.stamps import Evened, evened
 from sprung.units import acceleration_factor
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sprung.vehicle import Sensor
-
-SLOWEST = 64.0
-"""Samples per second below which wheel hop, up to some 20 Hz, is lost."""
 
 LARGEST = 1e6
 """m/s²: no accelerometer reads more; loggers write such numbers where they have none."""
@@ -94,8 +92,9 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     with problems.collecting():
         _refuse_backward(table, name)
     raw: dict[int, NDArray[np.float64]] = {}
+    needed = [column[0] for sensor in sensors if len(column := column_of(table, sensor.channel)) == 1]
+    table = _where_all_reach(table, needed)
     with problems.collecting():
-        needed = [column[0] for sensor in sensors if len(column := column_of(table, sensor.channel)) == 1]
         raw = dict(zip(needed, table.take(needed), strict=True))
     problems.raise_if_any()
     values = np.full((len(sensors), table.samples), np.nan)
@@ -146,7 +145,25 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
         history=history,
         faults=tuple(faults),
         full_scale=tuple(full_scale),
+        shares=_shares(table, sensors),
     )
+
+
+def _shares(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
+    """Give the samples that were taken for each one that is there, of each channel; nothing where all have one clock."""
+    columns = [column_of(table, sensor.channel)[:1] for sensor in sensors]
+    slower = [
+        table.resampled[column[0]].share if column and column[0] in table.resampled else 1.0 for column in columns
+    ]
+    return tuple(slower) if min(slower, default=1.0) < 1 else ()
+
+
+def _where_all_reach(table: Table, needed: Sequence[int]) -> Table:
+    """Leave out the few samples at the ends that columns of another clock do not reach."""
+    reach = [table.resampled[column] for column in needed if column in table.resampled]
+    reach = [one for one in reach if one.last - one.first >= (1 - MOST_MISSING) * table.samples]
+    first, last = max((one.first for one in reach), default=0), min((one.last for one in reach), default=table.samples)
+    return table.part(first, last) if last - first < table.samples else table
 
 
 def _channel(

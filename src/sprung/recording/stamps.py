@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
+from scipy.optimize import minimize_scalar
 from scipy.signal import savgol_filter
 
 from sprung.errors import Fault
@@ -27,6 +28,9 @@ _FEW = 0.05
 
 _PACKETS = 3
 """Pauses from which it is asked whether they are any."""
+
+_EXACT = 1e-2
+"""Part of the last digit of a stamp that two of them differ by if they are the same."""
 
 _SLIGHT = 0.02
 """Part of a step by which stamps may be off before it is asked what that means."""
@@ -100,10 +104,10 @@ def evened(time: Real, values: Real, place: Place, file: str) -> Evened:
     """
     steps = np.diff(time)
     usual = float(np.median(steps))
-    if _is_even(time):
-        return _as_they_are(time, values)
     jumps = steps > _JUMP * usual
     jumps &= bool(jumps.mean() <= _FEW)
+    if _is_even(time, jumps):
+        return _as_they_are(time, values)
     without = _line(time, np.zeros_like(jumps))
     pauses = np.flatnonzero(jumps & (steps > LONGEST_GAP * (1 + 1e-6)))
     # Samples stamped packet by packet show many pauses, and none in the long run.
@@ -155,10 +159,21 @@ def _line(time: Real, jumps: Flags) -> _Line:
     return _Line(index, step, start + float(time[0]), float(np.abs(time - time[0] - start - step * index).max()))
 
 
-def _is_even(time: Real) -> bool:
-    """Say whether a clock is even, or written with too few digits to look even."""
+def _is_even(time: Real, jumps: Flags) -> bool:
+    """Say whether a clock is even, or written with too few digits to look even.
+
+    Where a step is one digit, a lost line looks like a step rounded up. But rounding, and nothing else, keeps all stamps
+    within one digit of each other about a straight line: steps are rounded up at even distances.
+    """
     digits = next((digits for digits in range(10) if np.allclose(time, time.round(digits), rtol=0, atol=1e-12)), 10)
-    return bool(np.abs(time - np.linspace(time[0], time[-1], len(time))).max() <= 10.0**-digits)
+    digit, off = 10.0**-digits, time - np.linspace(time[0], time[-1], len(time))
+    if np.abs(off).max() > digit:
+        return False
+    if not jumps.any() or _line(time, jumps).off > _EXACT * digit:
+        return True
+    index = np.linspace(0.0, 1.0, len(time))
+    best = minimize_scalar(lambda tilt: np.ptp(off - tilt * index), bounds=(-2 * digit, 2 * digit), method="bounded")
+    return bool(best.fun <= (1 + _EXACT) * digit)
 
 
 def _as_they_are(time: Real, values: Real) -> Evened:

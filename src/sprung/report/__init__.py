@@ -7,15 +7,19 @@ from sprung.report.layout import text_of
 from sprung.report.paper import paper_view
 from sprung.report.plan import plan_view
 from sprung.report.terminal import modes_view, result_view
+from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [
     "check_view",
     "draft_view",
     "draw_check",
+    "draw_validation",
     "modes_view",
     "paper_view",
     "plan_view",
     "result_view",
     "text_of",
+    "validation_view",
     "write_check",
+    "write_validation",
 ]

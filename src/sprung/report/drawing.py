@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from sprung.errors import InputError, Problem
 from sprung.recording import write_whole
@@ -33,17 +33,33 @@ def draw_check(check: Check) -> dict[str, str]:
     InputError
         If matplotlib, which draws, is not installed.
     """
+    figure = drawer("figure")
+    drawn = zip(_names(check), check.drops, check.seen, check.recordings, strict=True)
+    return {name: figure.svg_of(drop, seen, recording) for name, drop, seen, recording in drawn}
+
+
+def drawer(module: str) -> Any:
+    """Load a module of this room that draws.
+
+    Parameters
+    ----------
+    module
+        Its name.
+
+    Raises
+    ------
+    InputError
+        If matplotlib, which draws, is not installed.
+    """
     try:
         # The only library of this room that not everybody has.
-        figure = import_module("sprung.report.figure")
+        return import_module(f"sprung.report.{module}")
     except ImportError as error:
         if (error.name or "").partition(".")[0] != "matplotlib":
             raise
         found = f"no library matplotlib, which draws them ({error})"
         do = 'Install it with: pip install "sprung[plot]"'
         raise InputError([Problem("drawings", found, "an installation that can draw", do)]) from error
-    drawn = zip(_names(check), check.drops, check.seen, check.recordings, strict=True)
-    return {name: figure.svg_of(drop, seen, recording) for name, drop, seen, recording in drawn}
 
 
 def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
@@ -73,9 +89,14 @@ def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
 
 def _names(check: Check) -> Iterator[str]:
     """Name each drop's drawing after its recording, no two alike."""
+    return file_names([str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
+
+
+def file_names(drops: Iterable[str]) -> Iterator[str]:
+    """Name a drawing after each drop, no two alike."""
     taken: set[str] = set()
-    for drop in check.drops:
-        plain = re.sub(r'[\\/:*?"<>|\s]+', "_", str(PurePath(drop.file).with_suffix(""))).lstrip("._")
+    for drop in drops:
+        plain = re.sub(r'[\\/:*?"<>|\s]+', "_", drop).lstrip("._")
         name, count = f"{plain}.svg", 1
         while name.lower() in taken:  # some file systems take A.svg for a.svg
             count += 1

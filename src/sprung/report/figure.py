@@ -1,17 +1,14 @@
 """One drop drawn: its channels in lanes one above the other, the whole recording beside its release and landing.
 
-Only this file draws with matplotlib, which `sprung.report.draw_check` loads when somebody wants a drawing.
+It draws with matplotlib, so `sprung.report.draw_check` loads it only when somebody wants a drawing.
 """
 
 from __future__ import annotations
 
-import io
-import warnings
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib import style
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -19,22 +16,13 @@ from numpy.typing import NDArray
 from sprung.pipeline import DropReport
 from sprung.prepare import Seen
 from sprung.recording import Recording
+from sprung.report.ink import AMBER, BLUE, FAINT, ORANGE, QUIET, SIGNAL, TEXT, svg_text
 from sprung.report.lanes import Lane, lanes_of, plain, thinned
 
 Real = NDArray[np.float64]
 
-# Told apart without colour vision too, and by their labels.
-_SIGNAL, _FAINT, _TEXT, _QUIET = "#33424d", "#b3bcc2", "#1f2a31", "#6b7880"
-_DECAY, _RELEASE, _LANDING, _FAULT = "#e3eef6", "#9a6a00", "#0072b2", "#c8501e"
+_DECAY, _RELEASE, _LANDING, _FAULT = "#e3eef6", AMBER, BLUE, ORANGE
 
-_STYLE: dict[Any, Any] = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
-    "font.size": 8.0,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "sprung",
-    "axes.unicode_minus": True,
-}
 _WIDTH, _LANE, _ABOVE, _BELOW = 10.5, 0.62, 1.35, 0.5
 """inches: of the drawing, of each lane, of what stands above and below the lanes."""
 
@@ -65,15 +53,7 @@ def svg_of(drop: DropReport, seen: Seen, as_read: Recording) -> str:
     str
         The same for the same input.
     """
-    out = io.StringIO()
-    # The same whatever anybody has set up for drawings of their own.
-    with style.context(["default", _STYLE]), warnings.catch_warnings():
-        # The font that measures text need not have every glyph that a viewer has.
-        warnings.filterwarnings("ignore", message=r"Glyph .* missing")
-        figure = figure_of(drop, seen, as_read)
-        about = {"Date": None, "Creator": None, "Title": plain(f"{drop.file}: {drop.kind}, {drop.load}")}
-        figure.savefig(out, format="svg", metadata=about)
-    return out.getvalue()
+    return svg_text(lambda: figure_of(drop, seen, as_read), f"{drop.file}: {drop.kind}, {drop.load}")
 
 
 def figure_of(drop: DropReport, seen: Seen, as_read: Recording) -> Figure:
@@ -90,18 +70,18 @@ def figure_of(drop: DropReport, seen: Seen, as_read: Recording) -> Figure:
     _panel(whole, lanes, time, (float(time[0]), float(time[-1])))
     _shade(whole, drop)
     _names(whole, lanes)
-    whole.annotate("m/s²", (0, 1), (-3, 3), "axes fraction", "offset points", ha="right", fontsize=6.5, color=_QUIET)
-    whole.set_xlabel("time on the recording's clock, s", color=_QUIET)
+    whole.annotate("m/s²", (0, 1), (-3, 3), "axes fraction", "offset points", ha="right", fontsize=6.5, color=QUIET)
+    whole.set_xlabel("time on the recording's clock, s", color=QUIET)
     if near is not None:
         close = figure.add_axes((0.525, inside[0], 0.375, inside[1]))
         _panel(close, lanes, time, near)
         _shade(close, drop)
         _events(close, drop)
         close.tick_params(left=False, labelleft=False)
-        close.set_xlabel("release and landing, s", color=_QUIET)
+        close.set_xlabel("release and landing, s", color=QUIET)
         # A bar on the upper edge shows which part is enlarged.
-        whole.plot(near, (0.5, 0.5), color=_QUIET, lw=2.5, solid_capstyle="butt", clip_on=False)
-        close.plot(near, (0.5, 0.5), color=_QUIET, lw=2.5, solid_capstyle="butt", clip_on=False)
+        whole.plot(near, (0.5, 0.5), color=QUIET, lw=2.5, solid_capstyle="butt", clip_on=False)
+        close.plot(near, (0.5, 0.5), color=QUIET, lw=2.5, solid_capstyle="butt", clip_on=False)
     _notes(whole if near is None else close, lanes)
     return figure
 
@@ -116,7 +96,7 @@ def _panel(axes: Axes, lanes: Sequence[Lane], time: Real, limits: tuple[float, f
         axes.plot(
             time[part][shown],
             lane.height(lane.values[part][shown]) - number,
-            color=_SIGNAL if lane.used else _FAINT,
+            color=SIGNAL if lane.used else FAINT,
             lw=0.8,
             solid_joinstyle="round",
         )
@@ -129,12 +109,12 @@ def _panel(axes: Axes, lanes: Sequence[Lane], time: Real, limits: tuple[float, f
             axes.axhline(0.5 - number, color="#e6e9eb", lw=0.6)
     axes.set(xlim=limits, ylim=(0.5 - len(lanes), 0.5))
     axes.set_yticks([place for place, _ in ticks], [label for _, label in ticks])
-    axes.tick_params(length=2, color=_FAINT, labelsize=6.5, labelcolor=_QUIET, pad=2)
+    axes.tick_params(length=2, color=FAINT, labelsize=6.5, labelcolor=QUIET, pad=2)
     axes.xaxis.set_tick_params(labelsize=7.5)
     for side in ("left", "right"):
         axes.spines[side].set_visible(False)
     for side in ("top", "bottom"):
-        axes.spines[side].set(color=_FAINT, linewidth=0.8)
+        axes.spines[side].set(color=FAINT, linewidth=0.8)
 
 
 def _near(drop: DropReport, time: Real) -> tuple[float, float] | None:
@@ -161,13 +141,13 @@ def _names(axes: Axes, lanes: Sequence[Lane]) -> None:
             textcoords="offset points",
             ha="right",
             va="center",
-            color=_TEXT if lane.used else _QUIET,
+            color=TEXT if lane.used else QUIET,
         ).set_parse_math(False)
 
 
 def _notes(axes: Axes, lanes: Sequence[Lane]) -> None:
     for number, lane in enumerate(lanes):
-        lines = [*((text, _QUIET) for text in lane.notes), *((text, _FAULT) for text in lane.wrong)]
+        lines = [*((text, QUIET) for text in lane.notes), *((text, _FAULT) for text in lane.wrong)]
         for row, (text, colour) in enumerate(lines):
             axes.annotate(
                 text,
@@ -215,14 +195,14 @@ def _head(figure: Figure, drop: DropReport, height: float) -> None:
     def line(row: float, text: str, **look: Any) -> None:
         figure.text(0.012, 1 - (0.12 + row * 0.2) / height, plain(text), va="top", parse_math=False, **look)
 
-    line(0, drop.file, fontsize=11, fontweight="bold", color=_TEXT)
+    line(0, drop.file, fontsize=11, fontweight="bold", color=TEXT)
     wheels = "" if drop.kind == " ".join(drop.wheels) else f" ({', '.join(drop.wheels)})"
     rate = "" if drop.rate is None else f", {drop.rate:.6g} samples per second"
-    line(1.25, f"{drop.kind}{wheels}, load {drop.load}{rate}", color=_TEXT)
+    line(1.25, f"{drop.kind}{wheels}, load {drop.load}{rate}", color=TEXT)
     if drop.start is None or drop.end is None:
         line(2.25, f"left out: {', '.join(drop.faults)}", color=_FAULT)
     else:
-        line(2.25, f"decay from {drop.start:.3f} s: {drop.why_start}", color=_QUIET)
-        line(3.15, f"to {drop.end:.3f} s: {drop.why_end}", color=_QUIET)
+        line(2.25, f"decay from {drop.start:.3f} s: {drop.why_start}", color=QUIET)
+        line(3.15, f"to {drop.end:.3f} s: {drop.why_end}", color=QUIET)
     if drop.contradicted:
         line(4.05, f"the release shows {', '.join(drop.wheels_seen or ()) or 'no wheel'} to have fallen", color=_FAULT)

@@ -14,7 +14,7 @@ from sprung.simulation.beforehand import Given
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, free_decay
+from sprung.vehicle import Load, Sensor, Vehicle, decays_with_forces, forces_beside, free_decay
 
 
 def free_decays(
@@ -80,10 +80,13 @@ def free_decays(
             problems.add("simulate: states", found, "shape (drop, 14)", "Give displacements, then velocities.")
     problems.raise_if_any()
 
-    drops, accelerations = [], []
-    for load in setup.loads:
-        matrices = vehicle.matrices(load)
-        for state in starts[load.name]:
-            drops.append(Drop(load=load.name, start=0.0))
-            accelerations.append(free_decay(matrices, state, 1 / rate, round(duration * rate)).acceleration)
+    samples = round(duration * rate)
+    begun = [(load, state) for load in setup.loads for state in starts[load.name]]
+    drops = [Drop(load=load.name, start=0.0) for load, _ in begun]
+    if forces_beside(vehicle.tracks, vehicle.extras):
+        loads_of, states_of = [load for load, _ in begun], np.array([state for _, state in begun])
+        motions = decays_with_forces(vehicle, loads_of, states_of, 1 / rate, samples)
+    else:
+        motions = [free_decay(vehicle.matrices(load), state, 1 / rate, samples) for load, state in begun]
+    accelerations = [motion.acceleration for motion in motions]
     return setup.campaign(name_files(drops, "decay"), accelerations, "free decay", random)

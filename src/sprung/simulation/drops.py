@@ -13,7 +13,7 @@ from sprung.recording import Campaign, Drop, ModelChoice
 from sprung.simulation.beforehand import Given
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, drop_from_blocks
+from sprung.vehicle import Block, Load, Sensor, Vehicle, drop_from_blocks, drops_with_forces, forces_beside
 
 DEFAULT_HEIGHT = 0.05
 """Height of the blocks where a drop does not say, m."""
@@ -111,7 +111,11 @@ def simulate(
             fall = drop_from_blocks(
                 vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity
             )
-            motion = fall.motion(1 / rate, after, first)
-            accelerations.append(np.hstack([np.zeros((7, before)), motion.acceleration]))
+            accelerations.append(fall.motion(1 / rate, after, first).acceleration)
     problems.raise_if_any()
+    if forces_beside(vehicle.tracks, vehicle.extras):
+        blocks = [Block(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
+        motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
+        accelerations = [motion.acceleration for motion in motions]
+    accelerations = [np.hstack([np.zeros((7, before)), one]) for one in accelerations]
     return setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from statistics import median
+from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from sprung.estimate import Estimate
 from sprung.identification import Fit
+from sprung.validation.drops import DropValidation
 from sprung.validation.residuals import Misfit
 
 State = Literal["accept", "doubtful", "reject"]
@@ -20,11 +23,24 @@ EXPLAINED = 0.01
 UNUSABLE = 0.04
 """Model error above which the numbers must not be used: parameters then err by ten times as much and more."""
 
+ERRS_BY = 10.0
+"""How many times the model error parameters may err by where it is above `UNUSABLE`."""
+
 COARSE = 0.25
 """Relative standard uncertainty above which a parameter is hardly determined."""
 
 CONTRADICTION = 4.0
 """Standard uncertainties by which a known quantity may miss what the recordings say."""
+
+
+SLIGHTEST = 0.0005
+"""Error of a prediction, as a part of a drop's signal, that nobody has to know of."""
+
+ALONE, _FAR, _FEW = 10.0, 25.0, 3
+"""How many times further from the others than these are a drop must be to stand alone, how far at least (five standard errors
+in every direction), and among how many others that shows."""
+
+_NO_DROPS: Mapping[str, DropValidation] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +66,7 @@ def judge(
     parameters: Mapping[str, Estimate],
     channels: Sequence[str],
     accused: Sequence[str] = (),
+    drops: Mapping[str, DropValidation] = _NO_DROPS,
 ) -> Verdict:
     """Come to a verdict.
 
@@ -65,6 +82,8 @@ def judge(
         Channel names.
     accused
         What is probably wrong with the campaign file or an instrument.
+    drops
+        How well each drop is explained, and predicted by the others, by its name.
     """
     worst = int(np.argmax(misfit.relative))
     size = float(misfit.relative[worst])
@@ -74,6 +93,7 @@ def judge(
         *accused,
         *(unexplained if size <= UNUSABLE else ()),
         *_contradictions(fit),
+        *_unpredicted(drops),
         *_undetermined(parameters),
     ]
     if reject:
@@ -81,7 +101,25 @@ def judge(
     if doubt:
         return Verdict("doubtful", tuple(doubt))
     explained = f"the model explains the records: its error is {_below(size)} of the signal in every channel"
-    return Verdict("accept", (explained, "every parameter is determined"))
+    return Verdict("accept", (explained, *_predicted(drops), "every parameter is determined"))
+
+
+def doubt_of(verdict: Verdict, fit: Fit, misfit: Misfit) -> float:
+    """Give the uncertainty, as a part, that numbers have beyond what the records' noise leaves them.
+
+    Parameters
+    ----------
+    verdict, fit, misfit
+        What was judged.
+
+    Returns
+    -------
+    float
+        0 unless they are rejected: of those nothing is known to better than the model error allows, which is hardly anything.
+    """
+    if verdict.state != "reject":
+        return 0.0
+    return ERRS_BY * (float(misfit.relative.max()) if fit.converged else 1.0)
 
 
 def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
@@ -112,6 +150,40 @@ def _contradictions(fit: Fit) -> Iterator[str]:
                 f"the recordings contradict the known {name} by {abs(size):.1f} standard uncertainties: check it, its "
                 "unit and uncertainty, and the loads"
             )
+
+
+def _unpredicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
+    apart = {name: drop.apart for name, drop in drops.items() if drop.apart is not None}
+    usual = {name: median(far for other, far in apart.items() if other != name) for name in apart if len(apart) > _FEW}
+    alone = {name for name in usual if apart[name] > max(ALONE * usual[name], _FAR)}
+    missed = {
+        name: drop.unexpected
+        for name, drop in drops.items()
+        if drop.unexpected > (SLIGHTEST if name in alone else EXPLAINED)
+    }
+    if not missed:
+        return
+    worst = max(missed, key=missed.__getitem__)
+    error, residual = drops[worst].predicted or 0.0, drops[worst].predicted_residual or 0.0
+    size = f"{100 * error:.1f} % of its signal, {residual:.1f} times the noise"
+    if 2 * len(missed) > len(drops):
+        yield f"the drops do not predict each other: the vehicle that the others show misses {worst} by {size}"
+        return
+    rest = sorted(missed.keys() - {worst})
+    also = f", nor do they predict {', '.join(rest)}" if rest else ""
+    yield (
+        f"the other drops do not predict {worst}: the vehicle that they show misses it by {size}{also}; something was "
+        "different in it (load, tyre pressure, brake), or the vehicle does something that the model lacks"
+    )
+
+
+def _predicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
+    found = [(drop.predicted, drop.predicted_residual) for drop in drops.values()]
+    errors = [(error, residual) for error, residual in found if error is not None and residual is not None]
+    if errors:
+        error, residual = (max(each) for each in zip(*errors, strict=True))
+        at_worst = f"to {100 * error:.1f} % of its signal, {residual:.2f} times the noise, at worst"
+        yield f"each drop is predicted by the others, {at_worst}"
 
 
 def _undetermined(parameters: Mapping[str, Estimate]) -> Iterator[str]:

@@ -2,54 +2,90 @@
 
 from sprung.vehicle.derived import DERIVED, quantity
 from sprung.vehicle.drop import Event, Fall, Piece, drop_from_blocks
-from sprung.vehicle.elements import LINEAR_EXTRAS, Element, Tracks, half_distances, seven_degrees_of_freedom
+from sprung.vehicle.elements import (
+    EXTRAS,
+    LINEAR_EXTRAS,
+    Element,
+    Force,
+    Tracks,
+    forces_beside,
+    half_distances,
+    seven_degrees_of_freedom,
+)
 from sprung.vehicle.examples import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.ground import static_wheel_loads, tyre_rates
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
-from sprung.vehicle.parameters import EXTRA_PARAMETERS, PARAMETERS, Parameter, Vehicle, parameter_names
+from sprung.vehicle.nonlinear import Forces, NonlinearModel
+from sprung.vehicle.parameters import (
+    EXTRA_PARAMETERS,
+    NEUTRAL,
+    PARAMETERS,
+    Parameter,
+    Vehicle,
+    parameter_names,
+    separate_names,
+    separated,
+)
 from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
-from sprung.vehicle.rows import COORDINATES, WHEELS, Row, Wheel
+from sprung.vehicle.rough import Block, decays_with_forces, drops_with_forces
+from sprung.vehicle.rows import COORDINATES, HEAVE, WHEELS, Row, Wheel
 from sprung.vehicle.sensor import Sensor
+from sprung.vehicle.stepping import Changes, Path, Stepper
 
 __all__ = [
     "COORDINATES",
     "DERIVED",
     "EMPTY",
+    "EXTRAS",
     "EXTRA_PARAMETERS",
+    "HEAVE",
     "LAWS",
     "LINEAR_EXTRAS",
+    "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
     "TABLE_1_CAR",
     "WHEELS",
     "Added",
+    "Block",
+    "Changes",
     "Element",
     "Event",
     "Fall",
     "Finite",
+    "Force",
+    "Forces",
     "Item",
     "LinearModel",
     "Load",
     "Matrices",
     "Motion",
+    "NonlinearModel",
     "NotNegative",
     "Parameter",
+    "Path",
     "Piece",
     "Positive",
     "Row",
     "Rows",
     "Sensor",
+    "Stepper",
     "Tracks",
     "Vehicle",
     "Wheel",
     "affine_response",
+    "decays_with_forces",
     "drop_from_blocks",
+    "drops_with_forces",
+    "forces_beside",
     "free_decay",
     "half_distances",
     "half_sine_bump",
     "parameter_names",
     "quantity",
+    "separate_names",
+    "separated",
     "seven_degrees_of_freedom",
     "static_wheel_loads",
     "tyre_rates",

@@ -12,13 +12,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sprung.vehicle import rows
+from sprung.vehicle.laws import FRICTION, PROGRESSIVE, REBOUND, ForceLaw
 from sprung.vehicle.rows import Row, Wheel
 
 Law = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 
-LINEAR_EXTRAS = ("anti-roll", "tyre-damping")
+LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity")
 """Extras, by the name used in a campaign's ``[model]``, which the linear model can carry."""
+
+EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive")
+"""All extras; those beyond the linear ones are forces with laws of their own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +41,26 @@ class Element:
 
     law: Law
     coefficient: str | float
+    row: Row
+    factor: float = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Force:
+    """An element with a law of its own.
+
+    Attributes
+    ----------
+    law
+        What force it makes.
+    parameters
+        Names of the law's parameters, in its order.
+    row
+        The travel it feels, and on which it acts.
+    """
+
+    law: ForceLaw
+    parameters: tuple[str, ...]
     row: Row
 
 
@@ -66,13 +90,42 @@ def seven_degrees_of_freedom(tracks: Tracks = "shared", extras: Collection[str] 
     tracks
         Whether springs and dampers of an axle share their half-distance.
     extras
-        Any of `LINEAR_EXTRAS`.
+        Any of `EXTRAS`; only those of `LINEAR_EXTRAS` add elements.
 
     Returns
     -------
     tuple of Element
     """
     return tuple(_elements(half_distances(tracks), extras))
+
+
+def forces_beside(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[Force, ...]:
+    """List the forces that no matrix carries.
+
+    Parameters
+    ----------
+    tracks
+        Whether springs and dampers of an axle share their half-distance; friction sits at the springs.
+    extras
+        Any of `EXTRAS`; those of `LINEAR_EXTRAS` add none.
+
+    Returns
+    -------
+    tuple of Force
+    """
+    return tuple(_forces(half_distances(tracks), extras))
+
+
+def _forces(half_distance: dict[tuple[str, Law], str], extras: Collection[str]) -> Iterator[Force]:
+    for station in rows.WHEELS:
+        axle = station[0]
+        at_spring = rows.travel(station, half_distance[axle, "spring"])
+        if "friction" in extras:
+            yield Force(FRICTION, (f"F_{axle}", f"s_{axle}"), at_spring)
+        if "rebound" in extras:
+            yield Force(REBOUND, (f"r_{axle}", f"c_s{axle}"), rows.travel(station, half_distance[axle, "damper"]))
+        if "progressive" in extras:
+            yield Force(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), at_spring)
 
 
 def _elements(half_distance: dict[tuple[str, Law], str], extras: Collection[str]) -> Iterator[Element]:
@@ -88,6 +141,9 @@ def _elements(half_distance: dict[tuple[str, Law], str], extras: Collection[str]
         yield Element("spring", f"k_t{axle}", rows.wheel(station))
         if "tyre-damping" in extras:
             yield Element("damper", f"c_t{axle}", rows.wheel(station))
+    if "gravity" in extras:
+        yield Element("spring", "w_h", rows.roll(), -1.0)
+        yield Element("spring", "w_h", rows.pitch(), -1.0)
     if "anti-roll" in extras:
         for axle in "fr":
             left: Wheel = "fl" if axle == "f" else "rl"

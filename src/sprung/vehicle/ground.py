@@ -12,12 +12,9 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import Matrices
 from sprung.vehicle.parameters import Vehicle
-from sprung.vehicle.rows import WHEELS, Wheel
+from sprung.vehicle.rows import HEAVE, WHEELS, Wheel
 
 Array = NDArray[np.float64]
-
-HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
-"""Everything moving up by one unit, in the coordinates: gravity is the generalised force -M g HEAVE."""
 
 
 def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:

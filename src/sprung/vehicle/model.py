@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -125,6 +126,7 @@ class LinearModel:
         for element, row in zip(elements, rows, strict=True):
             named = isinstance(element.coefficient, str)
             kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
+            size *= element.factor
             factors = np.flatnonzero(row.any(axis=0))
             parts = size * row.T[factors]
             squares = parts[:, None, :, None] * row.T[factors][None, :, None, :]
@@ -137,7 +139,10 @@ class LinearModel:
                     terms[key][law] += square
         kept = {key: term for key, term in terms.items() if term.any()}
         shape = (len(kept), len(LAWS), 7, 7)
-        products, constants = np.array(list(kept)).reshape(-1, 3), np.array(list(kept.values())).reshape(shape)
+        products, constants = (
+            np.array(list(kept), dtype=np.int64).reshape(-1, 3),
+            np.array(list(kept.values())).reshape(shape),
+        )
         return cls(tuple(names), products, constants, tuple(elements))
 
     @classmethod
@@ -157,7 +162,7 @@ class LinearModel:
     def matrices(self, values: ArrayLike) -> Matrices:
         """Give M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
         factors = _with_one(values)[..., self.products]
-        flat = factors.prod(axis=-1) @ self.terms.reshape(len(self.terms), -1)
+        flat = factors.prod(axis=-1) @ self._flat
         each = np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
         return Matrices(*each)
 
@@ -166,7 +171,7 @@ class LinearModel:
         first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
         others = np.array([second * third, first * third, first * second])
         changes = np.einsum("ik,ikp->pk", others, self._factors)
-        flat = changes @ self.terms.reshape(len(self.terms), -1)
+        flat = changes @ self._flat
         each = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
         return Matrices(*each)
 
@@ -185,6 +190,11 @@ class LinearModel:
         lower: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C])), dtype=float)
         slopes: Array = -np.asarray(np.linalg.solve(M, dM @ lower + np.concatenate([dK, dC], axis=2)), dtype=float)
         return lower, slopes
+
+    @cached_property
+    def _flat(self) -> Array:
+        """Give the terms with a row for each product."""
+        return self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
 
     @cached_property
     def _factors(self) -> Array:

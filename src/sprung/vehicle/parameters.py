@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from sprung.errors import Problems, did_you_mean
-from sprung.vehicle.elements import LINEAR_EXTRAS, Tracks, half_distances, seven_degrees_of_freedom
+from sprung.vehicle.elements import Tracks, half_distances, seven_degrees_of_freedom
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices
 
@@ -48,11 +48,37 @@ PARAMETERS: Mapping[str, Parameter] = {
     "c_tr": Parameter("N s/m", "tyre damping, each rear wheel", True, False),
     "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
     "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
+    "w_h": Parameter(
+        "N m", "weight of the body times the height by which it stands above what carries it", True, False
+    ),
+    "F_f": Parameter("N", "dry friction, each front wheel", True, False),
+    "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
+    "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
+    "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
+    "r_f": Parameter("1", "rebound damping over compression damping, front", False),
+    "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
+    "p_f": Parameter(
+        "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False
+    ),
+    "p_r": Parameter("1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False),
 }
-"""Every parameter that the linear model knows, in the order in which tables show them."""
+"""Every parameter that the models know, in the order in which tables show them."""
 
-EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {"anti-roll": ("k_af", "k_ar"), "tyre-damping": ("c_tf", "c_tr")}
+EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
+    "anti-roll": ("k_af", "k_ar"),
+    "tyre-damping": ("c_tf", "c_tr"),
+    "gravity": ("w_h",),
+    "friction": ("F_f", "F_r", "s_f", "s_r"),
+    "rebound": ("r_f", "r_r"),
+    "progressive": ("p_f", "p_r"),
+}
 """The parameters that each extra brings."""
+
+NEUTRAL: Mapping[str, float] = {
+    **dict.fromkeys(("w_h", "k_af", "k_ar", "c_tf", "c_tr", "F_f", "F_r", "p_f", "p_r"), 0.0),
+    **dict.fromkeys(("r_f", "r_r"), 1.0),
+}
+"""Values with which an extra does nothing; the others of its parameters then do not matter."""
 
 
 def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -63,13 +89,46 @@ def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> 
     tracks
         Whether springs and dampers of an axle share their half-distance.
     extras
-        Any of `sprung.vehicle.LINEAR_EXTRAS`.
+        Any of `EXTRA_PARAMETERS`.
     """
     absent = {"t_f", "t_r", "t_f1", "t_r1", "t_f2", "t_r2"} - set(half_distances(tracks).values())
-    for extra in LINEAR_EXTRAS:
+    for extra, brought in EXTRA_PARAMETERS.items():
         if extra not in extras:
-            absent.update(EXTRA_PARAMETERS[extra])
+            absent.update(brought)
     return tuple(name for name in PARAMETERS if name not in absent)
+
+
+def separate_names(name: str) -> tuple[str, ...]:
+    """Give what a parameter is called where springs and dampers of an axle have half-distances of their own.
+
+    Parameters
+    ----------
+    name
+        Any parameter's.
+
+    Returns
+    -------
+    tuple of str
+        Two names for a half-distance that springs and dampers share; for any other parameter its own.
+
+    Examples
+    --------
+    >>> separate_names("t_f"), separate_names("k_sf")
+    (('t_f1', 't_f2'), ('k_sf',))
+    """
+    separate = half_distances("separate")
+    return tuple(sorted(separate[of] for of, shared in half_distances("shared").items() if shared == name)) or (name,)
+
+
+def separated(parameters: Mapping[str, float]) -> dict[str, float]:
+    """Give the same vehicle with half-distances of springs and dampers each by their own names.
+
+    Parameters
+    ----------
+    parameters
+        Values by name, SI.
+    """
+    return {own: value for name, value in parameters.items() for own in separate_names(name)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,6 +156,12 @@ class Vehicle:
         Tyre damping, N s/m.
     k_af, k_ar
         Anti-roll bars, N per metre of left-right difference in suspension travel.
+    F_f, F_r, s_f, s_r
+        Dry friction of each suspension, N, and its stiffness before it slides, N/m.
+    r_f, r_r
+        Rebound damping over compression damping; c_s is then that of compression.
+    p_f, p_r
+        Growth of the spring rates with compression, as a part of them per metre.
     cg_height
         Height of the sprung mass's centre of gravity, m; None places every load level with it.
     name
@@ -139,6 +204,15 @@ class Vehicle:
     c_tr: float = 0.0
     k_af: float = 0.0
     k_ar: float = 0.0
+    w_h: float = 0.0
+    F_f: float = 0.0
+    F_r: float = 0.0
+    s_f: float = 1e6
+    s_r: float = 1e6
+    r_f: float = 1.0
+    r_r: float = 1.0
+    p_f: float = 0.0
+    p_r: float = 0.0
     cg_height: float | None = None
     name: str = "vehicle"
 
@@ -146,7 +220,7 @@ class Vehicle:
         problems = Problems()
         for axle in "fr":
             self._resolve_half_distances(axle, problems)
-        for name in parameter_names("separate", LINEAR_EXTRAS):
+        for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
             value = getattr(self, name)
             positive = PARAMETERS[name].positive and name not in ("c_sf", "c_sr")
             if value is not None and not (math.isfinite(value) and (value > 0 or (value == 0 and not positive))):
@@ -190,8 +264,9 @@ class Vehicle:
         where = f"vehicle {name}"
         for unknown in parameters.keys() - PARAMETERS.keys():
             problems.add(where, f"'{unknown}'", "the name of a parameter", did_you_mean(unknown, PARAMETERS))
-        for missing in [f.name for f in fields(cls) if f.name in PARAMETERS and f.name not in parameters]:
-            if not missing.startswith("t_") and PARAMETERS[missing].positive:
+        needed = set(parameter_names()) - {"t_f", "t_r"}
+        for missing in [f.name for f in fields(cls) if f.name in needed and f.name not in parameters]:
+            if PARAMETERS[missing].positive:
                 unit, meaning, *_ = PARAMETERS[missing]
                 problems.add(where, f"no '{missing}'", f"the {meaning} in {unit}", f"Add {missing} = ... to it.")
         problems.raise_if_any()
@@ -215,8 +290,16 @@ class Vehicle:
     @property
     def parameters(self) -> dict[str, float]:
         """Values of the parameters by name: shared half-distances where they are shared, extras where not zero."""
-        extras = tuple(extra for extra in LINEAR_EXTRAS if any(getattr(self, name) for name in EXTRA_PARAMETERS[extra]))
-        return {name: getattr(self, name) for name in parameter_names(self.tracks, extras)}
+        return {name: getattr(self, name) for name in parameter_names(self.tracks, self.extras)}
+
+    @property
+    def extras(self) -> tuple[str, ...]:
+        """What it has beyond the paper's vehicle."""
+        return tuple(
+            extra
+            for extra, names in EXTRA_PARAMETERS.items()
+            if any(getattr(self, name) != NEUTRAL[name] for name in names if name in NEUTRAL)
+        )
 
     def model(self, load: Load = EMPTY) -> LinearModel:
         """Give the equations of motion of this vehicle with a load, as functions of its parameters.
@@ -226,8 +309,7 @@ class Vehicle:
         load
             What is on it.
         """
-        extras = tuple(extra for extra, names in EXTRA_PARAMETERS.items() if names[0] in self.parameters)
-        elements = seven_degrees_of_freedom(self.tracks, extras) + load.elements(self.cg_height)
+        elements = seven_degrees_of_freedom(self.tracks, self.extras) + load.elements(self.cg_height)
         return LinearModel.of(elements, tuple(self.parameters))
 
     def matrices(self, load: Load = EMPTY) -> Matrices:

@@ -23,6 +23,9 @@ WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
 
 COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD")
 
+HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
+"""Everything moving up by one unit, in the coordinates: gravity is the generalised force -M g HEAVE."""
+
 _Z, _THETA, _PHI = np.eye(7)[:3]
 
 

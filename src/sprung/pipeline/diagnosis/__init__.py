@@ -9,6 +9,7 @@ chance, and no other one may do so about as well.
 from sprung.pipeline.diagnosis.bench import Bench, without_looking_at_wheels
 from sprung.pipeline.diagnosis.competition import diagnose
 from sprung.pipeline.diagnosis.hypotheses import Hypothesis
+from sprung.pipeline.diagnosis.slowly import walking_slowly
 from sprung.pipeline.diagnosis.suspicion import Suspicion, suspicious
 
-__all__ = ["Bench", "Hypothesis", "Suspicion", "diagnose", "suspicious", "without_looking_at_wheels"]
+__all__ = ["Bench", "Hypothesis", "Suspicion", "diagnose", "suspicious", "walking_slowly", "without_looking_at_wheels"]

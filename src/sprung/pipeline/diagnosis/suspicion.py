@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from sprung.identification import Summit, suspects
+from sprung.identification import Summit, corrections, suspects
 from sprung.pipeline.diagnosis.bench import colour_left
 from sprung.pipeline.diagnosis.tally import noise_of, tally_of
 from sprung.prepare import Decay
@@ -28,11 +28,11 @@ MATTERS = {"gain": 0.003, "late": 0.0003, "position": 0.01, "load-position": 0.0
 _DISAGREEMENT = 1.3
 """Birge's ratio, squared, from which drops contradict each other."""
 
+_CHANCE = 4.0
+"""Standard errors by which a drop may contradict the others by chance."""
+
 _FAR = 4.0
 """Times the others' contradiction from which one drop stands out."""
-
-_SEEN = 1e-9
-"""Information, as a part of the largest, below which one drop says nothing about a direction."""
 
 
 def suspicious(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> Suspicion:
@@ -54,18 +54,16 @@ def suspicious(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> S
     listed = suspects(summit, campaign.sensors, loads, campaign.cg_height)
     gain = max((one.gain for one in listed if abs(one.value) > MATTERS[one.kind]), default=0.0)
     serious = gain > max(SURE, MOST_OF_IT * tally.unexplained(noise))
-    if serious and gain > SURE * max(colour_left(decays, summit), 1.0):
+    colour = max(colour_left(decays, summit), 1.0)
+    if serious and gain > SURE * colour:
         return "contradicted"
-    return "contradicted" if summit.disagreement > _DISAGREEMENT and _stands_out(summit) else "none"
+    stands_out = summit.disagreement > _DISAGREEMENT and _stands_out(summit, colour)
+    return "contradicted" if stands_out else "none"
 
 
-def _stands_out(summit: Summit) -> bool:
-    """Say whether one drop contradicts the others by far more than these each other."""
-    scores, informations = summit.climb.by_drop(summit.point)
-    away = []
-    for score, information in zip(scores, informations, strict=True):
-        eigenvalues, vectors = np.linalg.eigh(information)
-        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
-        away.append(float(np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen])))
-    *others, most = sorted(away)
-    return bool(others) and most > _FAR * max(float(np.mean(others)), 1.0)
+def _stands_out(summit: Summit, colour: float) -> bool:
+    """Say whether one drop contradicts the others by far more than these each other, and than coloured noise does."""
+    squares, directions = corrections(*summit.climb.by_drop(summit.point))
+    *others, most = np.sort(squares).tolist()
+    chance = colour * float(np.max(directions + _CHANCE * np.sqrt(2 * directions)))
+    return most > chance and bool(others) and most > _FAR * max(float(np.mean(others)), 1.0)

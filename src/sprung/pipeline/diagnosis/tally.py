@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Summit, of_colour, residual_records
-from sprung.prepare import Decay, resolution
+from sprung.identification import Summit, residual_records
+from sprung.prepare import Decay
+from sprung.validation import moments, sensor_noise
 
 Real = NDArray[np.float64]
 
@@ -27,9 +28,6 @@ _LEAST_NOISE = 1e-3
 _FEW = 50
 """Samples at rest below which they say nothing about the noise."""
 
-_REST_SPAN = 0.1
-"""s over which the sensors' own colour is sought: a rest holds a few of them at least."""
-
 
 class Noise(NamedTuple):
     """What the sensors do at rest.
@@ -39,7 +37,7 @@ class Noise(NamedTuple):
     level
         m/s², root-mean-square, shape (channel,).
     colour
-        Samples of it that are worth one independent one, shape (channel,).
+        Samples of it that tell a variance as well as one independent one, shape (channel,).
     samples
         From how many that is known, shape (channel,).
     """
@@ -121,25 +119,14 @@ def noise_of(decays: Sequence[Decay], summit: Summit) -> Noise:
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
-    steps = np.min(
-        [np.where(decay.usable, resolution(np.nan_to_num(decay.values)), np.inf) for decay in decays], axis=0
-    )
-    steps = np.where(np.isfinite(steps), steps, 0.0)
-    rests = [decay for decay in decays if decay.rest.noise.shape[1]]
-    seen, level, colour = np.zeros(len(signal)), np.zeros(len(signal)), np.ones(len(signal))
-    if rests:
-        noise = [decay.rest.noise for decay in rests]
-        seen = np.sum([np.sum(~np.isnan(one), axis=1) for one in noise], axis=0)
-        level = np.sqrt(np.sum([np.nansum(one**2, axis=1) for one in noise], axis=0) / np.maximum(seen, 1))
-        colour = of_colour(noise, [decay.rate for decay in rests], _REST_SPAN)
-    if np.any(seen < _FEW):
-        point = summit.point
-        left = residual_records(point.place.fitted(point.weights), decays)
-        rough = np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0)
-        level = np.where(seen < _FEW, np.sqrt(rough / 6 / samples), level)
-    # Rounding adds up to a sixth of a step squared.
-    level = np.maximum(np.sqrt(level**2 + steps**2 / 6), _LEAST_NOISE * signal)
-    return Noise(np.maximum(level, np.finfo(float).tiny), colour, np.maximum(seen, _FEW).astype(np.float64))
+    point = summit.point
+    left = residual_records(point.place.fitted(point.weights), decays)
+    noise = sensor_noise(decays, moments(left))
+    few = noise.samples < _FEW
+    rough = np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
+    level = np.sqrt(np.where(few, rough, noise.variance) + noise.added)
+    level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)
+    return Noise(level, np.where(few, 1.0, noise.per_independent), np.maximum(noise.samples, _FEW))
 
 
 def _energy(decay: Decay) -> Real:

@@ -12,6 +12,7 @@ from sprung.errors import InputError, Problem
 from sprung.pipeline.drafting.gather import gather
 from sprung.pipeline.drafting.look import Look, look
 from sprung.pipeline.drafting.records import Draft
+from sprung.pipeline.drafting.single import put_together
 from sprung.pipeline.drafting.text import campaign_text, missing_in
 from sprung.recording import FILE
 
@@ -64,6 +65,7 @@ def draft(folder: str | os.PathLike[str], progress: Callable[[float], None] | No
         except InputError as error:
             unreadable[name] = error.problems
         tell(1.0)
+    looks = list(put_together(looks, folder))
     if not any(one.drops for one in looks):
         raise InputError([*_no_drops(looks), *(problem for problems in unreadable.values() for problem in problems)])
     sensors, drops, still = gather(looks)

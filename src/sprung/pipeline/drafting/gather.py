@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.pipeline.drafting.loggers import together
+from sprung.pipeline.drafting.loggers import called, together
 from sprung.pipeline.drafting.look import Look
 from sprung.pipeline.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.pipeline.drafting.records import DraftDrop, DraftSensor
@@ -58,7 +58,7 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
     moving = tuple(name for name in names if name not in still)
     drops, names = [_of(drop, names, moving) for drop in drops], moving
 
-    hints = [wheels_named(files[0]) for files, _, _ in recorded]
+    hints = [wheels_named(called(files)) for files, _, _ in recorded]
     score = wheel_score(drops)
     parts = [_part(name, float(score[i]), drops, i) for i, name in enumerate(names)]
     places, by_files = _places(
@@ -197,6 +197,7 @@ def _sensor(
         coupling=channel.coupling,
         full_scale=scales.get(channel.name),
         notes=(*own, *notes),
+        logger=channel.logger,
     )
 
 
@@ -243,7 +244,7 @@ def _drop(
             notes.append(f"though {len(drop.fell)} channels show the fall of a wheel")
     alone = several == 1 and one.file.end - one.file.start <= _SHORT
     window = None if alone or len(files) > 1 else drop.window
-    load = next((load for load in map(load_named, files) if load is not None), None)
+    load = load_named(called(files)) or next((load for load in map(load_named, files) if load is not None), None)
     if load is None and several == 1:
         load = "empty"
         notes.append("the name of the file tells no load: taken to be empty")

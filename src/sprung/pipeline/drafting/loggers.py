@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -35,6 +36,9 @@ def together(looks: Sequence[Look]) -> Iterator[Recorded]:
         name = one.file.name
         if name in done or not one.drops:
             continue
+        if one.files:
+            yield one.files, one.drops[0], tuple(channel.name for channel in one.channels)
+            continue
         group = [other for other in looks if belonging.get(other.file.name) == belonging.get(name, name)] or [one]
         if len(group) > 1:
             done.update(each.file.name for each in group)
@@ -45,11 +49,32 @@ def together(looks: Sequence[Look]) -> Iterator[Recorded]:
             yield (name,), drop, held
 
 
+def called(files: Sequence[str]) -> str:
+    """Give what the names of the files of one drop have in common, words of its loggers left out.
+
+    Parameters
+    ----------
+    files
+        Its recordings.
+    """
+    if len(files) == 1:
+        return files[0]
+    words = [re.split(r"[_\-. ]+", PurePath(file).stem) for file in files]
+    first = _alike(words)
+    last = min(_alike([own[::-1] for own in words]), min(map(len, words)) - first)
+    shared = [*words[0][:first], *words[0][len(words[0]) - last :]]
+    return str(PurePath(files[0]).with_name("_".join(shared) or "drop"))
+
+
+def _alike(words: Sequence[Sequence[str]]) -> int:
+    """Give how many words all begin with."""
+    return (*(len(set(each)) == 1 for each in zip(*words, strict=False)), False).index(False)
+
+
 def _belonging(looks: Sequence[Look]) -> dict[str, str]:
     """Give, by file, what the names of the files of one drop have in common; for the files of several loggers only."""
-    words = {
-        one.file.name: tokens(str(PurePath(one.file.name).with_suffix(""))) for one in looks if len(one.drops) <= 1
-    }
+    alone = [one for one in looks if len(one.drops) <= 1 and not one.files]
+    words = {one.file.name: tokens(str(PurePath(one.file.name).with_suffix(""))) for one in alone}
     held = {one.file.name: frozenset(channel.name for channel in one.channels) for one in looks}
     longest = max(map(len, words.values()), default=0)
     for place in range(-1, -longest - 1, -1):

@@ -36,12 +36,15 @@ class Look:
         Its drops, on the file's clock; their readings by channel, in the same order.
     full_scale
         By channel a reading at which it stays for some samples of a drop.
+    files
+        Names of the recordings, where several loggers' were looked at together.
     """
 
     file: DraftFile
     channels: tuple[Channel, ...]
     drops: tuple[FoundDrop, ...]
     full_scale: Mapping[str, float]
+    files: tuple[str, ...] = ()
 
 
 def look(folder: Path, name: str, progress: Callable[[float], None]) -> Look:

@@ -10,8 +10,8 @@ from typing import Any, Literal
 import numpy as np
 
 from sprung.errors import Problem
-from sprung.prepare import FoundDrop, Kind, Place, Refusal, kind_of
-from sprung.recording import FILE, SCHEMA_FILE, schema_text, write_whole
+from sprung.prepare import FoundDrop, Place, Refusal
+from sprung.recording import FILE, SCHEMA_FILE, kind_of, schema_text, write_whole
 from sprung.vehicle import Wheel
 
 
@@ -39,6 +39,9 @@ class DraftSensor:
         A reading at which it stays for some samples, in its unit.
     notes
         What was found and what was concluded from it, in words.
+    logger
+        The part of its recordings' names that tells its logger, where several loggers' channels have one name; the channel
+        then begins with it.
     """
 
     channel: str
@@ -50,6 +53,7 @@ class DraftSensor:
     coupling: Literal["DC", "AC"]
     full_scale: float | None
     notes: tuple[str, ...]
+    logger: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +84,9 @@ class DraftDrop:
     notes: tuple[str, ...]
 
     @property
-    def kind(self) -> Kind | None:
+    def kind(self) -> str | None:
         """What such a drop is called."""
-        return kind_of(self.wheels)
+        return kind_of(self.wheels) if self.wheels else None
 
 
 @dataclass(frozen=True, eq=False)

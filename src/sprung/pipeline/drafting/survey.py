@@ -78,6 +78,8 @@ class Channel:
     notes: tuple[str, ...]
     assumed: str = "m/s^2"
     """In which its drops are looked for where nothing tells its unit."""
+    logger: str | None = None
+    """Whose it is, where several loggers' channels have one name; its own name then begins with it."""
 
     @property
     def factor(self) -> float:

@@ -96,7 +96,10 @@ total_mass = {_quoted(_MASS)}
 
 
 def _sensor(sensor: DraftSensor) -> str:
-    lines = ["[[sensor]]", *map(_comment, sensor.notes), _key("channel", sensor.channel)]
+    channel = sensor.channel.removeprefix(f"{sensor.logger} ") if sensor.logger else sensor.channel
+    lines = ["[[sensor]]", *map(_comment, sensor.notes), _key("channel", channel)]
+    if sensor.logger:
+        lines.append(_key("logger", sensor.logger))
     if sensor.on == "body":
         lines.append(_key("on", "body"))
         lines.append(_key("position", _POSITION))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problem
 from sprung.recording.formats.refusals import refuse, refuse_too_large
+from sprung.recording.formats.resampled import SLOWEST, Resampled, resampled
 from sprung.recording.formats.store import Samples, joined, nothing
 from sprung.recording.formats.table import Table
 
@@ -45,7 +46,7 @@ class Clock:
         """The clock of a table: the rate where it is even and starts at 0, otherwise the times, s."""
         if self.rate is not None and self.start == 0:
             return self.rate
-        return self._all_times()
+        return self.all_times()
 
     def agrees(self, other: Clock) -> bool:
         """Say whether both are one clock, but for rounding."""
@@ -56,9 +57,10 @@ class Clock:
             return False
         if self.rate is not None and other.rate is not None:
             return True
-        return bool(np.abs(self._all_times() - other._all_times()).max() <= slack)
+        return bool(np.abs(self.all_times() - other.all_times()).max() <= slack)
 
-    def _all_times(self) -> NDArray[np.float64]:
+    def all_times(self) -> NDArray[np.float64]:
+        """Give the time of every sample, s; shape (time,)."""
         if self.times is not None:
             return self.times
         assert self.rate is not None  # noqa: S101 (a clock has a rate or times; for the type checker)
@@ -154,7 +156,8 @@ def one_table(columns: Sequence[Column], file: str, largest: float, notes: Seque
     """Put the channels that share one clock into a table.
 
     Of several clocks the one with the most numbers on it is taken, channels times samples. The channels on other clocks
-    are spoilt: a problem only where somebody needs them.
+    are read at its times. Those that are too slow to see wheels hop, or on a clock of another time, are spoilt: a problem
+    only where somebody needs them.
 
     Parameters
     ----------
@@ -186,13 +189,22 @@ def one_table(columns: Sequence[Column], file: str, largest: float, notes: Seque
     if not rows:
         raise refuse(file, "no channel whose samples are numbers", expected, "Export the recording again.")
     within = set(chosen)
-    elsewhere = [column for column in columns if column.clock.count and column not in within]
-    for column in elsewhere:
+    others: dict[Column, Resampled] = {}
+    elsewhere: list[Column] = []
+    for column in columns:
+        if column in within or not column.clock.count:
+            continue
+        read = _at_times_of(clock, column)
+        if read is not None:
+            rows[column], others[column] = read
+            continue
+        elsewhere.append(column)
         problem = _other_clock(column, clock, f"{file}: channel '{names[column]}'")
         rows[column] = nothing(clock.count, problem)
     left_out = {
         "renamed, as several channels have one name or none": [n for c, n in names.items() if n != c.name],
         "left out, as their samples are no numbers": [names[column] for column in chosen if column not in rows],
+        "on another clock, and read at the times of the others": [names[column] for column in others],
         "left out, as they are on another clock": [names[column] for column in elsewhere],
     }
     return Table(
@@ -200,8 +212,18 @@ def one_table(columns: Sequence[Column], file: str, largest: float, notes: Seque
         units=tuple(column.unit for column in rows),
         store=joined(tuple(rows.values())),
         clock=clock.of_table,
+        resampled={number: others[column] for number, column in enumerate(rows) if column in others},
         notes=(*notes, *(f"{why}: {', '.join(which)}" for why, which in left_out.items() if which)),
     )
+
+
+def _at_times_of(clock: Clock, column: Column) -> tuple[Samples, Resampled] | None:
+    """Read a column at the times of another clock; None where that is no acceleration of the same drop any more."""
+    own = column.clock
+    if column.samples is None or own.count < 2 or (own.count - 1) < SLOWEST * (own.end - own.start):
+        return None
+    every = clock.all_times()
+    return resampled(column.samples, own.all_times(), clock.count, lambda first, last: every[first:last])
 
 
 def _sets(columns: Sequence[Column]) -> list[list[Column]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +12,12 @@ from sprung.recording.formats.store import BUDGET, Store
 from sprung.units import acceleration_factor
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from sprung.errors import Problem
+    from sprung.recording.formats.resampled import Resampled
 
 _BRACKETS = re.compile(r"^(?P<name>.*\S)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
 
@@ -83,6 +84,8 @@ class Table:
         Says where in the file a sample stands: ``line 57``.
     notes
         What the format had to do to read the file, in words.
+    resampled
+        Columns that another clock kept, by their positions; they were read at the times of this one.
 
     Examples
     --------
@@ -100,6 +103,7 @@ class Table:
     clock: NDArray[np.float64] | float
     place: Callable[[int], str] = sample_number
     notes: tuple[str, ...] = ()
+    resampled: Mapping[int, Resampled] = field(default_factory=dict)
 
     @property
     def samples(self) -> int:
@@ -187,6 +191,7 @@ class Table:
             store=Store(self.store.width, last - first, read, spoilt),
             clock=self._times(first, last),
             place=lambda sample: self.place(first + sample),
+            resampled={column: one.within(first, last) for column, one in self.resampled.items()},
         )
 
     def spoilt(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:

@@ -6,13 +6,16 @@ from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from sprung.errors import InputError, Problem
 from sprung.recording.formats.belonging import Belonging, items
 from sprung.recording.formats.clock import TIME_UNITS
 from sprung.recording.formats.nested import Numbers, content_of
+from sprung.recording.formats.resampled import SLOWEST, Resampled, resampled
 from sprung.recording.formats.store import joined
 from sprung.recording.formats.table import Table, split_unit
-from sprung.recording.formats.timebase import Vector, clock_of, named_time
+from sprung.recording.formats.timebase import Clock, Vector, clock_of, named_time
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,19 +64,56 @@ def table_of(node: Node, file: File, do: str) -> Table:
     if not channels:
         found = f"only the time, {clock.taken[0].name}"
         raise InputError([Problem(file.name, found, "at least one channel of the same length", "Export it again.")])
-    store = joined([vector.samples for vector in channels])
-    strays = [f"{vector.name} ({len(vector)} samples)" for vector in every if len(vector) != store.length]
-    left_out = [*strays, *content.foreign]
+    strays = [vector for vector in every if len(vector) != len(channels[0])]
+    others = _on_other_clocks(strays, clock, len(channels[0]), content, belonging, file.name)
+    if others:
+        read_too = ", ".join(vector.name for vector in others)
+        notes.append(f"on another clock, and read at the times of the others: {read_too}")
+    timed = {len(vector) for vector in others}
+    left_out = [
+        *(
+            f"{vector.name} ({len(vector)} samples)"
+            for vector in strays
+            if vector.path not in {other.path for other in others} and not (len(vector) in timed and vector.is_time())
+        ),
+        *content.foreign,
+    ]
     if left_out:
         more = f" and {len(left_out) - 8} more" if len(left_out) > 8 else ""
         notes.append(f"left out: {', '.join(left_out[:8])}{more}")
     return Table(
-        channels=_shortest([vector.called for vector in channels]),
-        units=tuple(vector.unit for vector in channels),
-        store=store,
+        channels=_shortest([vector.called for vector in (*channels, *others)]),
+        units=tuple(vector.unit for vector in (*channels, *others)),
+        store=joined([*(vector.samples for vector in channels), *(samples for samples, _ in others.values())]),
         clock=clock.time,
         notes=(*clock.notes, *notes),
+        resampled={number: how for number, (_, how) in enumerate(others.values(), len(channels))},
     )
+
+
+def _on_other_clocks(
+    strays: Sequence[Vector], clock: Clock, length: int, content: Content, belonging: Belonging, file: str
+) -> dict[Vector, tuple[Samples, Resampled]]:
+    """Read vectors of other lengths at the times of the recording, where they have a time of their own over the same span."""
+    found: dict[Vector, tuple[Samples, Resampled]] = {}
+    times = clock.time if isinstance(clock.time, np.ndarray) else np.arange(length) / clock.time
+    for other in sorted({len(vector) for vector in strays}):
+        vectors = [vector for vector in strays if len(vector) == other]
+        if not any(vector.is_time() for vector in vectors):
+            continue
+        vectors = _with_units(vectors, belonging, [])
+        try:
+            own = clock_of(vectors, content, belonging, file)
+        except InputError:  # whoever needs these will miss them
+            continue
+        if not isinstance(own.time, np.ndarray) or other - 1 < SLOWEST * (own.time[-1] - own.time[0]):
+            continue
+        for vector in vectors:
+            if vector not in own.taken and (
+                read := resampled(vector.samples, own.time, length, lambda a, b: times[a:b])
+            ):
+                found[vector] = read
+    return found
 
 
 def _vectors(content: Content, belonging: Belonging, notes: list[str]) -> list[Vector]:

@@ -1,0 +1,128 @@
+"""Measured against simulated in the coordinates of the body: its vertical, pitch and roll acceleration, figures 7 to 9."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification import Fit
+from sprung.prepare import Decay
+from sprung.validation.whiteness import noise_of_sensors
+from sprung.vehicle import Rows, Sensor
+
+Real = NDArray[np.float64]
+
+MOTIONS = ("vertical", "pitch", "roll")
+"""Of the body: figures 7, 8 and 9 of the paper."""
+
+_SEEN = 1e-6
+"""Part of a motion that may go unseen by the sensors that tell it."""
+
+_MOVING = 3.0
+"""How many times its noise a motion must be for a comparison to mean anything."""
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMotion:
+    """What the body did in one drop, and what the fitted vehicle does.
+
+    Attributes
+    ----------
+    name
+        The drop's.
+    time
+        s on the recording's clock, shape (time,).
+    measured, simulated
+        Vertical acceleration of the centre of gravity, m/s², pitch and roll acceleration, rad/s², each with its mean taken
+        off; shape (3, time). NaN for what the sensors in use do not tell.
+    noise
+        What the sensors' noise makes of each at rest, root-mean-square, shape (3,).
+    """
+
+    name: str
+    time: Real
+    measured: Real
+    simulated: Real
+    noise: Real
+
+    @cached_property
+    def errors(self) -> Real:
+        """Normalised errors: rms of the difference over rms of the measured, shape (3,).
+
+        NaN for what the sensors do not tell, and where the body did not move beyond their noise.
+        """
+        size = _rms(self.measured)
+        there = size > _MOVING * self.noise
+        return np.where(there, _rms(self.measured - self.simulated) / np.where(there, size, 1.0), np.nan)
+
+
+def body_motions(fit: Fit, decays: Sequence[Decay], sensors: Sequence[Sensor]) -> tuple[BodyMotion, ...]:
+    """Turn what the body's sensors measured, and what the fitted vehicle makes of it, into motions of the body.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    decays
+        What was fitted.
+    sensors
+        The sensors, in the order of the decays' channels.
+
+    Returns
+    -------
+    tuple of BodyMotion
+        One for each drop.
+    """
+    rows, noise = body_rows(fit, sensors), noise_of_sensors(fit, decays)
+    found = []
+    for decay, fitted in zip(decays, fit.fitted, strict=True):
+        inverse = of_channels(rows, np.where(decay.usable, noise, np.inf))
+        values = np.nan_to_num(decay.values)
+        centred = values - values.mean(axis=1, keepdims=True)
+        told = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
+        found.append(
+            BodyMotion(
+                name=decay.name,
+                time=decay.start + np.arange(decay.samples) / decay.rate,
+                measured=np.where(told[:, None], inverse @ centred, np.nan),
+                simulated=np.where(told[:, None], inverse @ np.nan_to_num(fitted), np.nan),
+                noise=np.sqrt(inverse**2 @ noise**2),
+            )
+        )
+    return tuple(found)
+
+
+def body_rows(fit: Fit, sensors: Sequence[Sensor]) -> Real:
+    """Give what each sensor reads of the body's vertical, pitch and roll acceleration; zero on wheels, shape (channel, 3)."""
+    rows = Rows.of([sensor.row for sensor in sensors], fit.names).at(fit.values)[:, :3]
+    on_body = np.array([sensor.on == "body" for sensor in sensors])
+    return np.where(on_body[:, None], rows, 0.0)
+
+
+def of_channels(rows: Real, noise: Real) -> Real:
+    """Give what turns channels into motions by weighted least squares.
+
+    Parameters
+    ----------
+    rows
+        What each channel reads of each motion, shape (channel, motion).
+    noise
+        Of each channel, infinite for one that is left out; shape (channel,).
+
+    Returns
+    -------
+    ndarray
+        Shape (motion, channel).
+    """
+    weights = 1 / noise
+    inverse: Real = np.linalg.pinv(rows * weights[:, None]) * weights
+    return inverse
+
+
+def _rms(values: Real) -> Real:
+    size: Real = np.sqrt(np.mean(values**2, axis=-1))
+    return size

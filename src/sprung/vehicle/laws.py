@@ -1,0 +1,198 @@
+"""Laws of force that no matrix carries: dry friction, damping that depends on the direction, springs that stiffen, stops.
+
+A law says what force an element makes of the travel and its rate, and of a memory where what went before matters. It gives
+its derivatives along with its values, so that whatever steps it can also differentiate what comes out. Every argument may
+have leading axes; the last one is that of the elements.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_SHORTEST = 1e-7
+"""m over which a friction of no force is taken to build up: any length does, and none may be zero."""
+
+
+class Felt(NamedTuple):
+    """What elements feel over a step of time; all of one shape.
+
+    Attributes
+    ----------
+    travel, rate
+        At its end, m and m/s.
+    way
+        Travel since its beginning, m.
+    memory
+        What was remembered at its beginning.
+    """
+
+    travel: Array
+    rate: Array
+    way: Array
+    memory: Array
+
+
+class Answer(NamedTuple):
+    """What a law makes of a travel; each of the travel's shape.
+
+    Attributes
+    ----------
+    force
+        N, in the direction of the travel that it resists.
+    memory
+        What is remembered of the way here.
+    by_travel, by_rate, by_memory
+        Derivatives of the force, the memory held: N/m, N s/m and N.
+    memory_by_travel, memory_by_memory
+        Derivatives of the memory by the travel, 1/m, and by what was remembered before. By the travel before it has the
+        opposite of the first: memories follow the way, not the place.
+    """
+
+    force: Array
+    memory: Array
+    by_travel: Array
+    by_rate: Array
+    by_memory: Array
+    memory_by_travel: Array
+    memory_by_memory: Array
+
+
+class Sensitivity(NamedTuple):
+    """Derivatives by the law's own parameters, each of shape (parameter, ..., element)."""
+
+    force: Array
+    memory: Array
+
+
+@dataclass(frozen=True, slots=True)
+class ForceLaw:
+    """A law of force.
+
+    Attributes
+    ----------
+    name
+        Of the law.
+    remembers
+        Whether it has a memory; in one without, zero goes in and comes out.
+    answer
+        From the law's parameters, shape (parameter, element), and what is felt.
+    sensitivity
+        From the same.
+    """
+
+    name: str
+    remembers: bool
+    answer: Callable[[Array, Felt], Answer]
+    sensitivity: Callable[[Array, Felt], Sensitivity]
+
+
+def _reach(parameters: Array) -> tuple[Array, Array]:
+    """Give the way over which friction builds up, m, and where it is as it should be and not held."""
+    force, stiffness = parameters
+    reach = np.abs(force) / stiffness
+    return np.maximum(reach, _SHORTEST), reach > _SHORTEST
+
+
+def _friction(parameters: Array, felt: Felt) -> Answer:
+    # Along a way in one direction the memory m of Dahl's law, dm/dx = (1 - m sign(x'))/reach, goes to that sign exponentially.
+    force, (reach, _) = parameters[0], _reach(parameters)
+    sign = np.sign(felt.way)
+    kept = np.exp(-np.abs(felt.way) / reach)
+    new = sign + (felt.memory - sign) * kept
+    slope = (1.0 - felt.memory * sign) * kept / reach
+    nothing = np.zeros_like(felt.travel)
+    return Answer(force * new, new, nothing, nothing, force + nothing, slope, kept)
+
+
+def _friction_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+    (force, stiffness), (reach, free) = parameters, _reach(parameters)
+    sign = np.sign(felt.way)
+    far = np.abs(felt.way) / reach
+    kept = np.exp(-far)
+    by_reach = np.where(free, (felt.memory - sign) * kept * far / reach, 0.0)
+    by_force = np.stack([sign + (felt.memory - sign) * kept, np.zeros_like(felt.travel)])
+    return Sensitivity(by_force, np.stack([by_reach * np.sign(force) / stiffness, -by_reach * reach / stiffness]))
+
+
+def _rebound(parameters: Array, felt: Felt) -> Answer:
+    ratio, damping = parameters
+    nothing = np.zeros_like(felt.travel)
+    up = np.maximum(felt.rate, 0.0)
+    more = (ratio - 1.0) * damping
+    return Answer(more * up, felt.memory, nothing, more * (felt.rate > 0), nothing, nothing, nothing)
+
+
+def _rebound_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+    ratio, damping = parameters
+    up = np.maximum(felt.rate, 0.0)
+    force = np.stack([damping * up, (ratio - 1.0) * up])
+    return Sensitivity(force, np.zeros_like(force))
+
+
+def _progressive(parameters: Array, felt: Felt) -> Answer:
+    per_metre, spring = parameters
+    nothing = np.zeros_like(felt.travel)
+    rise = per_metre * spring
+    return Answer(-0.5 * rise * felt.travel**2, felt.memory, -rise * felt.travel, nothing, nothing, nothing, nothing)
+
+
+def _progressive_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+    per_metre, spring = parameters
+    square = -0.5 * felt.travel**2
+    force = np.stack([spring * square, per_metre * square])
+    return Sensitivity(force, np.zeros_like(force))
+
+
+def _stop(parameters: Array, felt: Felt) -> Answer:
+    stiffness, gap = parameters
+    nothing = np.zeros_like(felt.travel)
+    into = np.maximum(-felt.travel - gap, 0.0)
+    return Answer(-stiffness * into, felt.memory, stiffness * (into > 0), nothing, nothing, nothing, nothing)
+
+
+def _stop_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+    stiffness, gap = parameters
+    into = np.maximum(-felt.travel - gap, 0.0)
+    force = np.stack([-into, stiffness * (into > 0)])
+    return Sensitivity(force, np.zeros_like(force))
+
+
+def _lifted(parameters: Array, felt: Felt) -> Answer:
+    weight, stiffness, damping = parameters
+    nothing = np.zeros_like(felt.travel)
+    push = weight - stiffness * felt.travel - damping * felt.rate
+    off = push < 0
+    force = np.where(off, push, 0.0)
+    return Answer(force, felt.memory, -stiffness * off, -damping * off, nothing, nothing, nothing)
+
+
+def _lifted_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+    weight, stiffness, damping = parameters
+    off = (weight - stiffness * felt.travel - damping * felt.rate < 0).astype(np.float64)
+    force = np.stack([off, -felt.travel * off, -felt.rate * off])
+    return Sensitivity(force, np.zeros_like(force))
+
+
+FRICTION = ForceLaw("friction", True, _friction, _friction_sensitivity)
+"""Dry friction that gives way before it slides: force F, N, and stiffness s at rest, N/m, after Dahl (Aerospace Corporation
+TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
+
+REBOUND = ForceLaw("rebound", False, _rebound, _rebound_sensitivity)
+"""What a damper resists more in rebound than in compression: ratio r of the two and damping c in compression, N s/m."""
+
+PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_sensitivity)
+"""What a spring is stiffer in compression: growth p of its rate with compression, as a part per metre, and rate k, N/m."""
+
+BUMP_STOP = ForceLaw("bump-stop", False, _stop, _stop_sensitivity)
+"""A stop: stiffness, N/m, and the compression at which the suspension meets it, m, from the empty vehicle at rest."""
+
+GROUND = ForceLaw("ground", False, _lifted, _lifted_sensitivity)
+"""The ground, which pushes and never pulls: what a linear tyre would pull with is taken off. Static wheel load, N, tyre rate,
+N/m, and tyre damping, N s/m; the travel is the wheel's height above where it stands at rest."""

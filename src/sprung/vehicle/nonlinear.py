@@ -1,0 +1,207 @@
+"""The vehicle with forces that no matrix carries, and what one step of time makes of it.
+
+The linear vehicle is stepped exactly; the few forces beside it enter as feedback that runs straight from one step to the
+next (first-order hold). Displacements are from the empty vehicle at rest, so that a load pushes with its weight: where a
+spring stiffens with travel, a loaded vehicle has another rate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle.elements import Element, Force
+from sprung.vehicle.laws import Answer, Felt, ForceLaw, Sensitivity
+from sprung.vehicle.load import EMPTY, Load
+from sprung.vehicle.model import LinearModel, Rows
+from sprung.vehicle.rows import HEAVE
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+class Forces(NamedTuple):
+    """Forces over one list of parameters, those of one law beside each other.
+
+    Attributes
+    ----------
+    rows
+        The travels they feel, one for each force.
+    laws
+        Each law, which of the forces have it, and where its parameters are in the list, shape (parameter, force).
+    remembering
+        Which forces have a memory, in the order of the memories.
+    """
+
+    rows: Rows
+    laws: tuple[tuple[ForceLaw, slice, Index], ...]
+    remembering: Index
+
+    @classmethod
+    def of(cls, forces: Sequence[Force], names: Sequence[str]) -> Forces:
+        """Compile forces over a list of parameter names."""
+        kinds = list({force.law.name: force.law for force in forces}.values())
+        ordered = [force for law in kinds for force in forces if force.law.name == law.name]
+        laws = []
+        for law in kinds:
+            own = [i for i, force in enumerate(ordered) if force.law.name == law.name]
+            positions = np.array([[names.index(name) for name in ordered[i].parameters] for i in own]).T
+            laws.append((law, slice(own[0], own[-1] + 1), positions))
+        remembering = np.array([i for i, force in enumerate(ordered) if force.law.remembers], dtype=np.int64)
+        return cls(Rows.of([force.row for force in ordered], names), tuple(laws), remembering)
+
+    @property
+    def number(self) -> int:
+        """How many forces."""
+        return len(self.rows.affine)
+
+    def answer(self, values: Array, felt: Felt) -> Answer:
+        """Give all forces; the last axis of what is felt is that of the forces."""
+        parts = [law.answer(values[at], _of(felt, own)) for law, own, at in self.laws]
+        if len(parts) == 1:
+            return parts[0]
+        return Answer(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
+
+    def sensitivity(self, values: Array, felt: Felt) -> Sensitivity:
+        """Give the derivatives of forces and memories by the list of parameters, shape (..., force, parameter)."""
+        force = np.zeros((*felt.travel.shape, len(values)))
+        remembered = np.zeros_like(force)
+        for law, own, at in self.laws:
+            parts = law.sensitivity(values[at], _of(felt, own))
+            for which, row in enumerate(at):
+                for column, position in enumerate(row.tolist()):
+                    force[..., own.start + column, position] += parts.force[which][..., column]
+                    remembered[..., own.start + column, position] += parts.memory[which][..., column]
+        return Sensitivity(force, remembered)
+
+
+def _of(felt: Felt, own: slice) -> Felt:
+    return Felt(*(each[..., own] for each in felt))
+
+
+class Step(NamedTuple):
+    """What one step of time makes of the state {X, Ẋ}: Φ x + before u + after u' + constant, u' at its end.
+
+    Attributes
+    ----------
+    transition, before, after, constant
+        Shapes (14, 14), (14, force), (14, force) and (14,).
+    """
+
+    transition: Array
+    before: Array
+    after: Array
+    constant: Array
+
+
+@dataclass(frozen=True, eq=False)
+class NonlinearModel:
+    """Equations of motion with forces beside them, of one load.
+
+    Attributes
+    ----------
+    linear
+        The loaded vehicle without them.
+    load
+        What the load adds to the masses, over the same parameters.
+    forces
+        The forces.
+    gravity
+        m/s².
+    """
+
+    linear: LinearModel
+    load: LinearModel
+    forces: Forces
+    gravity: float = STANDARD_GRAVITY
+
+    @classmethod
+    def of(
+        cls,
+        elements: Sequence[Element],
+        forces: Sequence[Force],
+        names: Sequence[str],
+        load: Load = EMPTY,
+        cg_height: float | None = None,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> NonlinearModel:
+        """Compile the elements of a vehicle, forces beside them, and a load on it, over a list of parameter names."""
+        added = load.elements(cg_height)
+        linear = LinearModel.of([*elements, *added], names)
+        return cls(linear, LinearModel.of(added, names), Forces.of(forces, names), gravity)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return self.linear.names
+
+    def sag(self, values: Array) -> Array:
+        """Give where the load's weight brings the vehicle to rest without the forces, from the empty one; X, shape (7,)."""
+        weight = self.load.matrices(values).M @ HEAVE * self.gravity
+        return -np.asarray(np.linalg.solve(self.linear.matrices(values).K, weight), dtype=np.float64)
+
+    def accelerations(self, values: Array) -> tuple[Array, Array]:
+        """Give accelerations from {X, Ẋ, u, 1} and their derivatives.
+
+        Returns
+        -------
+        rows
+            Shape (7, 15 + force).
+        slopes
+            By each parameter, shape (parameter, 7, 15 + force).
+        """
+        M, C, K = self.linear.matrices(values)
+        dM, dC, dK = self.linear.slopes(values)
+        pull = self.load.matrices(values).M @ HEAVE * self.gravity
+        by_pull = self.load.slopes(values).M @ HEAVE * self.gravity
+        G = self.forces.rows.at(values)
+        by_row = np.moveaxis(self.forces.rows.slopes, 1, 0)
+        driving = np.hstack([K, C, G.T, pull[:, None]])
+        rows: Array = -np.asarray(np.linalg.solve(M, driving), dtype=float)
+        by = np.concatenate([dK, dC, np.swapaxes(by_row, 1, 2), by_pull[:, :, None]], axis=2)
+        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ rows + by), dtype=float)
+        return rows, slopes
+
+    def step(self, values: Array, time: float) -> tuple[Step, Step]:
+        """Give what a step makes of the state, and its derivatives by each parameter.
+
+        Parameters
+        ----------
+        values
+            Parameters, SI, shape (parameter,).
+        time
+            Length of the step, s.
+
+        Returns
+        -------
+        step, slopes
+            The second with a leading axis of the parameters.
+        """
+        rows, slopes = self.accelerations(values)
+        inputs = rows.shape[1] - 14
+        size = 14 + 2 * inputs
+        # The inputs run straight over the step: their rises over it are states of their own.
+        generator = np.zeros((size, size))
+        generator[:7, 7:14] = time * np.eye(7)
+        generator[7:14, : 14 + inputs] = time * rows
+        generator[14 : 14 + inputs, 14 + inputs :] = np.eye(inputs)
+        moved = np.zeros((len(slopes), size, size))
+        moved[:, 7:14, : 14 + inputs] = time * slopes
+        # The exponential of [[Z, dZ], [0, Z]] has that of Z, and its derivative beside it.
+        both = np.zeros((len(slopes), 2 * size, 2 * size))
+        both[:, :size, :size] = both[:, size:, size:] = generator
+        both[:, :size, size:] = moved
+        found = np.asarray(expm(both))
+        return _taken_apart(found[0, :14, :size], inputs), _taken_apart(found[:, :14, size:], inputs)
+
+
+def _taken_apart(rows: Array, inputs: int) -> Step:
+    held, rising = rows[..., 14 : 14 + inputs], rows[..., 14 + inputs :]
+    before, after = held - rising, rising
+    return Step(rows[..., :14], before[..., :-1], after[..., :-1], held[..., -1])

@@ -1,0 +1,93 @@
+"""The stepped likelihood against the linear one, and the scores and tests that rest on it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import sprung
+from sprung.identification import Summit, ascend, ascend_stepped, expected_gain, lost_without, prospects
+from sprung.pipeline.choice import Choice, choose_model
+from sprung.prepare import Decay, prepare
+from sprung.recording import Campaign
+from sprung.vehicle import TABLE_1_CAR, Vehicle
+
+LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
+
+
+@pytest.fixture(scope="module")
+def campaign() -> Campaign:
+    drops: list[dict[str, object]] = [{"wheels": wheels} for wheels in (("fl", "fr"), ("fl", "rl"))]
+    drops += [drop | {"load": "ballast"} for drop in drops]
+    barred = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"k_af": 60.0, "k_ar": 60.0})
+    return sprung.simulate(barred, loads=[LOAD], drops=drops, rate=500, noise=0.02, seed=4)
+
+
+@pytest.fixture(scope="module")
+def decays(campaign: Campaign) -> tuple[Decay, ...]:
+    return prepare(campaign).decays
+
+
+@pytest.fixture(scope="module")
+def plain(campaign: Campaign) -> Choice:
+    return choose_model(campaign, "shared", ())
+
+
+@pytest.fixture(scope="module")
+def summit(campaign: Campaign, decays: tuple[Decay, ...], plain: Choice) -> Summit:
+    return ascend(decays, plain.models, campaign.sensors, plain.known)
+
+
+def test_with_nothing_to_step_it_is_the_linear_likelihood(
+    campaign: Campaign, decays: tuple[Decay, ...], plain: Choice, summit: Summit
+) -> None:
+    """The summit, its noise and its information are those of the linear fit; friction of no force changes none of them."""
+    larger = plain.having(("friction",))
+    start = summit.parameters | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5}
+    known = dict(plain.known) | {
+        name: sprung.estimate.Known(value) for name, value in start.items() if name[:2] in ("F_", "s_")
+    }
+    found = ascend_stepped(
+        decays, larger.stepped, campaign.sensors, known, start=start, states=summit.states, near=True
+    )
+    for name, value in summit.parameters.items():
+        assert found.parameters[name] == pytest.approx(value, rel=2e-5)
+    np.testing.assert_allclose(found.noise, summit.noise, rtol=1e-4)
+    count = len(summit.names)
+    own, other = (one.point.evaluation.information for one in (summit, found))
+    scale = np.sqrt(np.outer(np.diag(own), np.diag(own)))
+    np.testing.assert_allclose(other[:count, :count] / scale, own / scale, atol=2e-3)
+
+
+def test_scores_are_those_of_the_linear_fit(
+    campaign: Campaign, decays: tuple[Decay, ...], plain: Choice, summit: Summit
+) -> None:
+    """What an anti-roll bar would gain is told by modes as by steps."""
+    larger = plain.having(("anti-roll",))
+    start = summit.parameters | {"k_af": 0.0, "k_ar": 0.0}
+    by_modes = expected_gain(decays, larger.models, campaign.sensors, larger.known, start)
+    all_in = plain.having(("anti-roll", "friction"))
+    by_steps = prospects(
+        decays,
+        all_in.stepped,
+        campaign.sensors,
+        all_in.known,
+        values=start | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5},
+        states=summit.states,
+        together=[(name,) for name in summit.names],
+        candidates={"anti-roll": [("k_af",), ("k_ar",)]},
+    )["anti-roll"].gain
+    assert by_modes > 10
+    # The weights of the channels are not quite the same: those of the modes are taken before initial states are known.
+    assert by_steps == pytest.approx(by_modes, rel=0.15)
+
+
+def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(
+    campaign: Campaign, decays: tuple[Decay, ...], plain: Choice, summit: Summit
+) -> None:
+    """Wald's test is exact to second order: half a percent off, a mass costs what its information says."""
+    value = summit.parameters["m_uf"] * 1.002
+    expected = lost_without(summit, [("m_uf", value)])
+    known = dict(plain.known) | {"m_uf": sprung.estimate.Known(value)}
+    held = ascend(decays, plain.models, campaign.sensors, known, start=summit.parameters | {"m_uf": value})
+    assert 2 * (summit.loglikelihood - held.loglikelihood) == pytest.approx(expected, rel=0.05)

@@ -1,0 +1,58 @@
+"""A drop that the others do not predict is named, and nothing is said where they do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import sprung
+from sprung.identification import ascend, conclude, describe
+from sprung.pipeline.choice import choose_model
+from sprung.prepare import prepare
+from sprung.recording import Campaign
+from sprung.validation import Verdict, body_motions, judge, judge_residuals, validate_drops
+from sprung.vehicle import TABLE_1_CAR
+
+LOAD = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
+
+
+def campaign(seed: int, **changed: float) -> Campaign:
+    vehicle = sprung.Vehicle.from_parameters({**TABLE_1_CAR.parameters, **changed})
+    return sprung.simulate(vehicle, loads=[LOAD], noise=0.02, seed=seed, known={"total_mass": TABLE_1_CAR.total_mass})
+
+
+def judged(made: Campaign) -> Verdict:
+    """Fit and judge without looking for what may be wrong, which would leave the drop out."""
+    choice, decays = choose_model(made), prepare(made).decays
+    summit = ascend(decays, choice.models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
+    fit, channels = describe(summit, decays), [sensor.channel for sensor in made.sensors]
+    drops = validate_drops(summit, fit, decays, channels, body_motions(fit, decays, made.sensors))
+    return judge(fit, judge_residuals(fit, decays), conclude(fit, choice.known).parameters, channels, (), drops)
+
+
+@pytest.mark.parametrize("changed", [{"c_sf": 1650.0}, {"k_tf": 230_000.0}, {"k_sf": 17_700.0}])
+def test_another_vehicle_in_one_drop_is_named(changed: dict[str, float]) -> None:
+    made, other = campaign(1), campaign(2, **changed)
+    spoilt = tuple(
+        two if i == 3 else one for i, (one, two) in enumerate(zip(made.recordings, other.recordings, strict=True))
+    )
+    verdict = judged(replace(made, recordings=spoilt))
+    assert verdict.state != "accept"
+    said = [reason for reason in verdict.reasons if "do not predict" in reason]
+    assert len(said) == 1
+    assert said[0].startswith(f"the other drops do not predict {prepare(made).decays[3].name}:")
+
+
+def test_drops_of_one_vehicle_are_predicted() -> None:
+    for seed in range(6):
+        verdict = judged(campaign(seed))
+        assert verdict.state == "accept"
+        assert verdict.reasons[1].startswith("each drop is predicted by the others")
+
+
+def test_one_drop_alone_has_no_others() -> None:
+    made = sprung.simulate(TABLE_1_CAR, drops=[{"wheels": ["fl", "rl"], "load": "empty"}], noise=0.02, seed=1)
+    (drop,) = sprung.identify(made, tracks="shared", extras=()).validation.values()
+    assert (drop.predicted, drop.predicted_residual, drop.unexpected) == (None, None, 0.0)
+    assert drop.apart is None

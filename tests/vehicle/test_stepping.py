@@ -1,0 +1,186 @@
+"""Steps of the vehicle with nonlinear forces: against exact responses, an independent solver and finite differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from sprung.vehicle import (
+    EMPTY,
+    EXTRAS,
+    TABLE_1_CAR,
+    Load,
+    NonlinearModel,
+    Stepper,
+    Vehicle,
+    forces_beside,
+    free_decay,
+    parameter_names,
+    seven_degrees_of_freedom,
+)
+from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, Felt, ForceLaw
+
+Array = NDArray[np.float64]
+
+CAR = Vehicle.from_parameters(
+    TABLE_1_CAR.parameters
+    | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
+)
+BALLAST = Load.model_validate({"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
+
+
+def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
+    names = parameter_names("separate", extras)
+    return names, np.array([getattr(CAR, name) for name in names])
+
+
+def model_of(extras: tuple[str, ...], load: Load = EMPTY) -> NonlinearModel:
+    names, _ = values_of(extras)
+    return NonlinearModel.of(
+        seven_degrees_of_freedom("separate", extras), forces_beside("separate", extras), names, load
+    )
+
+
+def some_states(drops: int, seed: int = 0) -> Array:
+    sizes = np.r_[0.03, 0.02, 0.02, np.full(4, 0.01), 0.3, 0.2, 0.2, np.full(4, 0.3)]
+    states: Array = np.random.default_rng(seed).standard_normal((drops, 14)) * sizes
+    return states
+
+
+def stepper(extras: tuple[str, ...], step: float, values: Array | None = None) -> Stepper:
+    models = [model_of(extras), model_of(extras, BALLAST)]
+    return Stepper.of(models, [step, step], np.array([0, 1]), values_of(extras)[1] if values is None else values)
+
+
+def test_without_any_force_the_steps_are_exact() -> None:
+    """A spring that is not progressive, p = 0: the response is that of the linear vehicle, at any step."""
+    names, values = values_of(("progressive",))
+    values = np.where([name.startswith("p_") for name in names], 0.0, values)
+    states = some_states(2)
+    path = stepper(("progressive",), 0.01, values).follow(states, np.zeros((2, 0)), 100)
+    exact = free_decay(CAR.matrices(), states[0], 0.01, 101)
+    np.testing.assert_allclose(path.states[:, 0, :7].T, exact.displacement, atol=1e-12)
+    np.testing.assert_allclose(path.states[:, 0, 7:].T, exact.velocity, atol=1e-11)
+
+
+def test_a_load_pushes_with_its_weight() -> None:
+    """From rest without the load, the loaded vehicle comes to rest where K X = -ΔM g (1, 0, 0, 1, 1, 1, 1)."""
+    names, values = values_of(("progressive",))
+    values = np.where([name.startswith("p_") for name in names], 0.0, values)
+    path = stepper(("progressive",), 0.05, values).follow(np.zeros((2, 14)), np.zeros((2, 0)), 400)
+    heave = np.array([1.0, 0, 0, 1, 1, 1, 1])
+    added = CAR.matrices(BALLAST).M - CAR.matrices().M
+    rest = np.linalg.solve(CAR.matrices().K, -9.80665 * added @ heave)
+    np.testing.assert_allclose(path.states[-1, 1, :7], rest, atol=1e-6)
+    np.testing.assert_allclose(path.states[-1, 0], 0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("extras", [("friction",), ("rebound",), ("friction", "rebound", "progressive")])
+def test_against_another_solver(extras: tuple[str, ...]) -> None:
+    """The same equations, written out and left to an implicit solver with a tight tolerance."""
+    matrices, rows, state = CAR.matrices(), model_of(extras).forces.rows, some_states(1, 3)[0]
+    values = values_of(extras)[1]
+    G = rows.at(values)
+    kinds = [force.law.name for force in forces_beside("separate", extras)]
+    axles = [force.parameters[0][-1] for force in forces_beside("separate", extras)]
+    order = [i for law in dict.fromkeys(kinds) for i, kind in enumerate(kinds) if kind == law]
+    kinds, axles = [kinds[i] for i in order], [axles[i] for i in order]
+
+    def slope(_: float, y: Array) -> Array:
+        X, V, memory = y[:7], y[7:14], y[14:]
+        travel, rate = G @ X, G @ V
+        force, grown, kept = np.zeros(len(G)), [], iter(memory)
+        for i, (kind, axle) in enumerate(zip(kinds, axles, strict=True)):
+            if kind == "friction":
+                friction, stiffness, m = getattr(CAR, f"F_{axle}"), getattr(CAR, f"s_{axle}"), next(kept)
+                force[i] = friction * m
+                grown.append((stiffness * rate[i] - stiffness * abs(rate[i]) * m) / friction)
+            elif kind == "rebound":
+                force[i] = (getattr(CAR, f"r_{axle}") - 1) * getattr(CAR, f"c_s{axle}") * max(rate[i], 0.0)
+            else:
+                force[i] = -0.5 * getattr(CAR, f"p_{axle}") * getattr(CAR, f"k_s{axle}") * travel[i] ** 2
+        A = np.linalg.solve(matrices.M, -matrices.K @ X - matrices.C @ V - G.T @ force)
+        return np.concatenate([V, A, grown])
+
+    memories = 4 if "friction" in extras else 0
+    step, steps = 0.0005, 1000
+    path = stepper(extras, step).follow(np.array([state, state]), np.zeros((2, memories)), steps)
+    there = solve_ivp(
+        slope, (0, step * steps), np.concatenate([state, np.zeros(memories)]), "Radau", rtol=1e-9, atol=1e-10,
+        t_eval=step * np.arange(0, steps + 1, 50), max_step=0.001,
+    )  # fmt: skip
+    scale = np.abs(path.states[:, 0]).max(axis=0)
+    assert np.all(np.abs(path.states[::50, 0] - there.y[:14].T) < 3e-4 * scale)
+
+
+def test_derivatives_are_those_of_the_steps_themselves() -> None:
+    extras = tuple(extra for extra in EXTRAS if extra in ("friction", "rebound", "progressive"))
+    names, values = values_of(extras)
+    states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 200
+    before = stepper(extras, step)
+    path = before.follow(states, memories, steps)
+    chunks = list(before.changes(path))
+    found = np.concatenate([np.concatenate([one.states, one.forces], axis=2) for one in chunks])
+    assert [one.first for one in chunks] == [0, 128]
+
+    def moved(unknown: int, by: float) -> Array:
+        p, x, m = values.copy(), states.copy(), memories.copy()
+        if unknown < len(names):
+            p[unknown] += by
+        elif unknown < len(names) + 14:
+            x[:, unknown - len(names)] += by
+        else:
+            m[:, unknown - len(names) - 14] += by
+        there = stepper(extras, step, p).follow(x, m, steps)
+        return np.concatenate([there.states, there.forces], axis=2)
+
+    for unknown in range(len(names) + 18):
+        size = 1e-6 * (abs(values[unknown]) if unknown < len(names) else 1.0)
+        slope = (moved(unknown, size) - moved(unknown, -size)) / (2 * size)
+        scale = np.abs(slope).max(axis=(0, 1)) + 1e-9 * np.abs(slope).max()
+        assert np.all(np.abs(found[..., unknown] - slope) < 2e-3 * scale)
+
+
+@pytest.mark.parametrize(
+    ("law", "parameters"),
+    [
+        (FRICTION, (100.0, 2e5)), (FRICTION, (0.0, 2e5)), (REBOUND, (1.7, 1500.0)), (PROGRESSIVE, (3.0, 2e4)),
+        (BUMP_STOP, (1e5, 0.004)), (GROUND, (90.0, 2e4, 30.0)),
+    ],
+)  # fmt: skip
+def test_laws_tell_their_own_derivatives(law: ForceLaw, parameters: tuple[float, ...]) -> None:
+    random = np.random.default_rng(2)
+    travel, rate, way = 0.01 * random.standard_normal((3, 3, 50))
+    felt = Felt(travel, rate, way, law.remembers * random.uniform(-0.9, 0.9, (3, 50)))
+    p = np.array(parameters)[:, None] * np.ones(50)
+    answer = law.answer(p, felt)
+    e = 1e-9
+    for field, total in (
+        ("travel", answer.by_travel), ("rate", answer.by_rate),
+        ("way", answer.by_memory * answer.memory_by_travel), ("memory", answer.by_memory * answer.memory_by_memory),
+    ):  # fmt: skip
+        if field in ("way", "memory") and not law.remembers:
+            continue
+        up, down = (law.answer(p, felt._replace(**{field: getattr(felt, field) + side})).force for side in (e, -e))
+        np.testing.assert_allclose(total, (up - down) / (2 * e), atol=1e-4 * np.abs(total).max() + 1e-6)
+    sensitivity = law.sensitivity(p, felt)
+    for which in range(len(parameters)):
+        if law is FRICTION and parameters[0] == 0:
+            continue  # a corner: what F does to the way over which it builds up has no slope there
+        step = np.zeros_like(p)
+        step[which] = 1e-6 * max(parameters[which], 1e-3)
+        more, less = (law.answer(p + side * step, felt).force for side in (1, -1))
+        width = 2 * step[which]
+        total = sensitivity.force[which] + answer.by_memory * sensitivity.memory[which]
+        np.testing.assert_allclose(total, (more - less) / width, atol=1e-4 * np.abs(total).max() + 1e-9, rtol=1e-5)
+
+
+def test_friction_slides_at_its_force_and_holds_at_its_stiffness() -> None:
+    """Dahl: far along one way the force is F; over ways much shorter than F/s it is a spring of s."""
+    p = np.array([[100.0], [2e5]])
+    far = Felt(*(np.array([value]) for value in (0.1, 0.0, 0.1, -1.0)))
+    assert FRICTION.answer(p, far).force[0] == pytest.approx(100.0)
+    near = Felt(*(np.array([value]) for value in (1e-7, 0.0, 1e-7, 0.0)))
+    assert FRICTION.answer(p, near).force[0] == pytest.approx(2e5 * 1e-7, rel=1e-3)
