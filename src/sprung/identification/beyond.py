@@ -38,6 +38,7 @@ def ascend_stepped(
     states: Real,
     enough: float = CONVERGED,
     near: bool = False,
+    begun: bool = False,
     tilting: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Summit:
@@ -62,6 +63,8 @@ def ascend_stepped(
         Expected gain in log-likelihood at which to stop.
     near
         Whether the start is near the summit.
+    begun
+        Whether the beginnings of the decays will do.
     tilting
         Whether the sensors turn with the body, and feel the less of gravity.
     progress
@@ -74,10 +77,10 @@ def ascend_stepped(
     progress("stepping all drops with " + ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws))
     steps, values = 0, dict(start)
     near_it = max(enough, NEAR)
-    stages = [(list(decays), near_it, _COARSE)]
-    if not near:
-        stages.insert(0, ([_begun(decay) for decay in decays], near_it, _COARSE))
-    if enough < near_it:
+    stages = [([_begun(decay) for decay in decays], near_it, _COARSE)] if begun or not near else []
+    if not begun:
+        stages.append((list(decays), near_it, _COARSE))
+    if not begun and enough < near_it:
         stages.append((list(decays), enough, _FINE))
     for part, gain, longest in stages:
         climb = _climb(part, models, sensors, known, values, states, tilting, longest)

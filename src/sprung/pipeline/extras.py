@@ -57,6 +57,9 @@ _MATTERS = 0.03
 _STROKE = 0.05
 """m of travel over which a progressive spring is judged."""
 
+_STILL = 0.3
+"""Part of what a linear vehicle leaves unexplained that may be left by one with forces beside it."""
+
 _MORE = 2
 """How many times further extras are looked for where the first ones have been found."""
 
@@ -254,6 +257,14 @@ class Way:
         refused = ", ".join(one.text for one in last.values() if one.extra not in _decided(choice))
         return f"the records ask for {taken or 'nothing more'}" + (f"; not for {refused}" if refused else "")
 
+    def _explains_little(self, begun: Summit) -> bool:
+        """Say whether much of what the linear vehicle leaves is left still: then something else is the matter."""
+        rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
+        rest = np.mean([np.nan_to_num(noise.var(axis=1)) for noise in rests], axis=0) if rests else 0.0
+        before, after = (np.maximum(one.noise**2 - rest, 0.0) for one in (self.summit, begun))
+        much = before > rest
+        return bool(much.any()) and float(np.mean(after[much] / before[much])) > _STILL
+
     def _feigned(self, extra: str, inflation: float) -> bool:
         """Say whether an extra may be a model error in disguise: where there is one, what is small counts for nothing."""
         return inflation > _ERRS and _size(extra, self.summit.parameters) < _MATTERS
@@ -261,7 +272,11 @@ class Way:
     def _together(self, hopeful: Sequence[str]) -> Way:
         """Fit extras together, and leave out again what is not missed, the least missed first."""
         larger = self._with(hopeful)
-        summit = fit_from(larger, self.decays, self.summit, NEAR, self.progress)
+        begun = fit_from(larger, self.decays, self.summit, NEAR, self.progress, begun=True)
+        if self._explains_little(begun):
+            notes = [Attempt(extra, 0.0, self._asked(extra), True, False) for extra in hopeful]
+            return replace(self, path=(*self.path, *notes))
+        summit = fit_from(larger, self.decays, begun, NEAR, self.progress)
         inflation = inflation_of(summit, self.decays)
         gain = 2 * (summit.loglikelihood - self.summit.loglikelihood) / inflation
         if not summit.converged or gain < sum(map(self._asked, hopeful)):
@@ -308,6 +323,7 @@ def fit_from(
     enough: float,
     progress: Callable[[str], None],
     states: Real | None = None,
+    begun: bool = False,
 ) -> Summit:
     """Fit a model from where another one's fit ended.
 
@@ -325,6 +341,8 @@ def fit_from(
         Told in words what is being done.
     states
         {X, Ẋ} of each drop at its first sample, (drop, 14), where these decays begin elsewhere than those.
+    begun
+        Whether their beginnings will do.
     """
     states = before.states if states is None else states
     sensors, known = choice.campaign.sensors, choice.known
@@ -341,6 +359,7 @@ def fit_from(
             states=states,
             enough=enough,
             near=states.shape[1] > 14,
+            begun=begun,
             tilting=choice.tilting,
             progress=progress,
         )
