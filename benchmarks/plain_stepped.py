@@ -68,7 +68,9 @@ class PlainSteppedFit:
         s = np.array([given["s_f"], given["s_f"], given["s_r"], given["s_r"]])
 
         def accelerations(y: Real) -> Real:
-            force = matrices.K @ y[:7] + matrices.C @ y[7:14] + G.T @ (F[:, None] * y[14:] if y.ndim > 1 else F * y[14:])
+            force = (
+                matrices.K @ y[:7] + matrices.C @ y[7:14] + G.T @ (F[:, None] * y[14:] if y.ndim > 1 else F * y[14:])
+            )
             return np.asarray(-inverse @ force)
 
         def slope(_: float, y: Real) -> Real:

@@ -6,11 +6,19 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.identification import Summit, ascend, ascend_stepped, expected_gain, lost_without, prospects
+from sprung.identification import (
+    Summit,
+    ascend,
+    ascend_stepped,
+    expected_gain,
+    force_scores,
+    lost_without,
+    prospects,
+)
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.prepare import Decay, prepare
 from sprung.recording import Campaign
-from sprung.vehicle import TABLE_1_CAR, Vehicle
+from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Vehicle
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
@@ -80,6 +88,35 @@ def test_scores_are_those_of_the_linear_fit(
     assert by_modes > 10
     # The weights of the channels are not quite the same: those of the modes are taken before initial states are known.
     assert by_steps == pytest.approx(by_modes, rel=0.15)
+
+
+def test_scores_of_forces_need_no_steps(campaign: Campaign, plain: Choice, summit: Summit) -> None:
+    """By modes and filters they are what the steps say: of forces that are there, and of others."""
+    friction = {"F_f": 2.0, "F_r": 1.0, "s_f": 2e5, "s_r": 2e5}
+    rubbing = Vehicle.from_parameters(TABLE_1_CAR.parameters | friction | {"r_f": 1.01})
+    drops = [drop.model_copy(update={"file": None}) for drop in campaign.drops]
+    other = sprung.simulate(rubbing, loads=[LOAD], drops=drops, rate=500, noise=0.02, seed=4)
+    theirs = prepare(other).decays
+    found = ascend(theirs, plain.models, other.sensors, plain.known, start=summit.parameters)
+    extras = ("friction", "rebound", "progressive")
+    larger = plain.having(extras)
+    neutral = {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5, "r_f": 1.0, "r_r": 1.0, "p_f": 0.0, "p_r": 0.0}
+    values = found.parameters | neutral
+    brought = {extra: EXTRA_PARAMETERS[extra] for extra in extras}
+    by_modes = force_scores(found, theirs, larger.stepped, values, brought)
+    by_steps = prospects(
+        theirs,
+        larger.stepped,
+        other.sensors,
+        larger.known,
+        values=values,
+        states=found.states,
+        together=[(name,) for name in found.names],
+        candidates={extra: [(name,) for name in names] for extra, names in brought.items()},
+    )
+    assert min(by_modes["friction"], by_modes["rebound"]) > 50
+    for extra in extras:
+        assert by_modes[extra] == pytest.approx(by_steps[extra].gain, rel=0.15, abs=3)
 
 
 def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(

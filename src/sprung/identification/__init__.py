@@ -13,6 +13,7 @@ from sprung.identification.modes import ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.prediction import Prediction, predictions
 from sprung.identification.profile import profiled
+from sprung.identification.scores import force_scores
 from sprung.identification.structured import StructuredFit, structured_least_squares
 from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around, reference
 from sprung.identification.suspects import Suspect, suspects
@@ -50,6 +51,7 @@ __all__ = [
     "estimate_of",
     "expected_gain",
     "fit_jointly",
+    "force_scores",
     "inflation_of",
     "look_around",
     "lost_without",

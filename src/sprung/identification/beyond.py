@@ -18,8 +18,8 @@ from sprung.vehicle import NonlinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
 
-_COARSE, _FINE = 0.0025, 0.00125
-"""s of a step at most: on the way, and at the end, where what it errs by has to be less than noise."""
+_COARSE, _FINE = 0.0025, 0.00101
+"""s of a step at most: on the way, and where what it errs by must not be taken for anything else."""
 
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
@@ -79,8 +79,6 @@ def ascend_stepped(
     near_it = max(enough, NEAR)
     stages = [([_begun(decay) for decay in decays], near_it, _COARSE)] if begun or not near else []
     if not begun:
-        stages.append((list(decays), near_it, _COARSE))
-    if not begun and enough < near_it:
         stages.append((list(decays), enough, _FINE))
     for part, gain, longest in stages:
         climb = _climb(part, models, sensors, known, values, states, tilting, longest)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from sprung.identification.amplitudes import Amplitudes, Sums
 from sprung.identification.longhand import Longhand, evaluate_drop
-from sprung.identification.records import Records
+from sprung.identification.records import Records, Run
 from sprung.identification.solution import ModalSlopes, ModalSolution, differentiate_modes, solve_modes
 from sprung.prepare import Decay
 from sprung.vehicle import LinearModel, Rows
@@ -304,8 +304,7 @@ class Place:
 
     def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
         """Follow one drop from some samples before its first one to some after it: {X, Ẋ}, SI, shape (14, time)."""
-        run = next(run for run in self.likelihood.records.runs if position in run.order)
-        group = run.group[np.flatnonzero(run.order == position)[0]]
+        run, group = self.run_of(position)
         model = self.likelihood.models[run.load[group]]
         poles, shapes = np.linalg.eig(model.matrices(self.values).state)
         exponent = poles[:, None] * np.arange(-before, after) * run.step[group]
@@ -313,6 +312,17 @@ class Place:
         amplitudes = np.linalg.solve(shapes, self.states(weights)[position].astype(np.complex128))
         motion: Real = ((shapes * amplitudes) @ powers).real
         return motion
+
+    def run_of(self, position: int) -> tuple[Run, int]:
+        """Give the run of one drop, by its position in the fit's list, and its group in that."""
+        run = next(run for run in self.likelihood.records.runs if position in run.order)
+        return run, int(run.group[np.flatnonzero(run.order == position)[0]])
+
+    def slopes_of(self, position: int) -> Complex:
+        """Give σ and τ of one drop beside each other, τ per sample; shape (channel, parameter, 28)."""
+        run, group = self.run_of(position)
+        slopes: Complex = self._slopes[[one is run for one in self.likelihood.records.runs].index(True)][group]
+        return slopes
 
     def _solve(self, weights: Real) -> list[Amplitudes]:
         return [sums.solve(weights) for sums in self._sums]

@@ -20,6 +20,7 @@ from sprung.identification import (
     ascend,
     ascend_stepped,
     expected_gain,
+    force_scores,
     inflation_of,
     lost_without,
     prospects,
@@ -68,15 +69,6 @@ _ENOUGH = 250.0
 
 _LONG_ENOUGH = 3.0
 """s of each decay that tell it."""
-
-_FEW, _SHORT = 4, 1.5
-"""Drops, and s of them, that tell it roughly."""
-
-_STEP, _ROUGH_STEP = 0.0025, 0.0041
-"""s of a step at most, for that."""
-
-_WORTH_A_LOOK = 0.6
-"""Part of the gain that is asked from which a rough score is worth a better one."""
 
 
 @dataclass(frozen=True)
@@ -206,18 +198,20 @@ class Way:
             way = replace(way, choice=plain, summit=fit_from(plain, self.decays, self.summit, NEAR, self.progress))
         tried = way._open(nonlinear)
         self.progress("scoring " + ", ".join(tried))
-        promised = way._prospects(tried, roughly=True)
-        if any(promised[extra] > _WORTH_A_LOOK * self._asked(extra) for extra in tried):
-            promised = way._prospects(tried)
+        promised = way._scores(tried)
         hopeful = [extra for extra in tried if promised[extra] > self._asked(extra)]
         scored = [Attempt(one, promised[one], self._asked(one), False, False) for one in tried if one not in hopeful]
         if not hopeful:
             return replace(self, path=(*self.path, *scored))
-        found = replace(way, path=(*self.path, *scored))._together(hopeful)
+        start = replace(way, path=(*self.path, *scored))
+        # Nearly every suspension rubs, and what rubs looks like everything else: friction is fitted first, and alone.
+        found = start._together([extra for extra in hopeful if extra == "friction"] or hopeful)
+        if not found.choice.nonlinear and hopeful != ["friction"]:
+            found = start._together(hopeful)
         for _ in range(_MORE):
             if not found.choice.nonlinear:
                 break
-            refused = {one.extra for one in found.path[len(self.path) :] if one.fitted and not one.taken}
+            refused = {one.extra for one in found.path[len(start.path) :] if one.fitted and not one.taken}
             tried = [extra for extra in found._open([SEPARATE, *EXTRAS]) if extra not in refused]
             promised = found._prospects(tried) if tried else {}
             inflation = inflation_of(found.summit, self.decays)
@@ -295,23 +289,28 @@ class Way:
         taken = [Attempt(extra, lost[extra], self._asked(extra), True, True) for extra in _decided(way.choice)]
         return replace(way, path=(*way.path, *taken))
 
-    def _prospects(self, extras: Sequence[str], roughly: bool = False) -> dict[str, float]:
-        """Score extras from where the fit is; roughly, from a part of the records, at a fifth of the cost."""
+    def _scores(self, extras: Sequence[str]) -> dict[str, float]:
+        """Score extras with laws of their own from where a linear fit is."""
+        larger = self._with(extras)
+        start = _neutral_start(larger.names, self.summit.parameters)
+        return force_scores(self.summit, self.decays, larger.stepped, start, {one: _brought(one) for one in extras})
+
+    def _prospects(self, extras: Sequence[str]) -> dict[str, float]:
+        """Score any extras from where a fit with forces is."""
         largest = self._with(extras)
         names, own = largest.names, self.summit.parameters
         parted = largest.tracks != self.choice.tracks
-        chosen, decays, share = _thinned(self.decays, roughly)
+        decays, share = _thinned(self.decays)
         found = prospects(
             decays,
             largest.stepped,
             self.choice.campaign.sensors,
             largest.known,
             values=_neutral_start(names, own),
-            states=self.summit.states[chosen],
+            states=self.summit.states,
             together=[separate_names(name) if parted else (name,) for name in own],
             candidates={extra: [(name,) for name in _brought(extra)] for extra in extras},
             tilting=self.choice.tilting,
-            longest=_ROUGH_STEP if roughly else _STEP,
         )
         return {extra: one.gain / share for extra, one in found.items()}
 
@@ -424,15 +423,11 @@ def _start(names: Sequence[str], own: Mapping[str, float]) -> dict[str, float]:
     return {name: slid.get(name, value) for name, value in start.items()}
 
 
-def _thinned(decays: Sequence[Decay], roughly: bool) -> tuple[list[int], list[Decay], float]:
-    """Take as many drops and samples as tell what an extra promises, and give the part of all that they are."""
-    chosen = list(range(len(decays)))
-    if roughly and len(decays) > _FEW:
-        chosen = sorted({round(place) for place in np.linspace(0, len(decays) - 1, _FEW)})
-    longest = _SHORT if roughly else _LONG_ENOUGH
+def _thinned(decays: Sequence[Decay]) -> tuple[list[Decay], float]:
+    """Take as many samples as tell what an extra promises, and give the part of all that they are."""
     thin = []
-    for decay in (decays[i] for i in chosen):
+    for decay in decays:
         every = max(int(decay.rate / _ENOUGH), 1)
-        values = decay.values[:, : int(longest * decay.rate) : every]
+        values = decay.values[:, : int(_LONG_ENOUGH * decay.rate) : every]
         thin.append(replace(decay, values=values, rate=decay.rate / every))
-    return chosen, thin, sum(decay.samples for decay in thin) / sum(decay.samples for decay in decays)
+    return thin, sum(decay.samples for decay in thin) / sum(decay.samples for decay in decays)

@@ -14,6 +14,7 @@ from sprung.vehicle.elements import (
 )
 from sprung.vehicle.examples import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.ground import static_wheel_loads, tyre_rates
+from sprung.vehicle.laws import Felt
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
 from sprung.vehicle.nonlinear import Forces, NonlinearModel
@@ -53,6 +54,7 @@ __all__ = [
     "Element",
     "Event",
     "Fall",
+    "Felt",
     "Finite",
     "Force",
     "Forces",

@@ -1,0 +1,144 @@
+"""Scores: what forces beside the linear vehicle would gain, told where the linear vehicle was fitted, without any step of time.
+
+A small force changes a linear motion by what it would do alone. So its response is one filter for each mode, the derivatives
+of everything that was fitted are sums of exponentials, and what is left of the one beside the other is the score (Rao, Proc.
+Camb. Phil. Soc. 44 (1948) 50). Every campaign is asked this, so it has to be quick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from sprung.identification.climb import told_directions
+from sprung.identification.joint import residual_records
+from sprung.identification.likelihood import Place
+from sprung.identification.longhand import REACH
+from sprung.identification.summit import Summit
+from sprung.prepare import Decay
+from sprung.vehicle import Felt, NonlinearModel
+
+Real = NDArray[np.float64]
+
+_ENOUGH = 250.0
+"""Samples per second, at least, that tell it: only every so many are looked at."""
+
+
+def force_scores(
+    summit: Summit,
+    decays: Sequence[Decay],
+    models: Mapping[str, NonlinearModel],
+    values: Mapping[str, float],
+    candidates: Mapping[str, Sequence[str]],
+) -> dict[str, float]:
+    """Score forces beside a linear vehicle that is fitted already.
+
+    Parameters
+    ----------
+    summit
+        Where the linear fit ended.
+    decays
+        What was fitted.
+    models
+        Equations of motion by load name with all the forces.
+    values
+        Their parameters where the forces are none, SI, by name.
+    candidates
+        By name the parameters that one of them brings; those that do not matter where there is no force may be among them.
+
+    Returns
+    -------
+    dict
+        What each would gain in twice the log-likelihood, to second order; 0 where modal coordinates do not exist.
+    """
+    place, knowledge = summit.point.place, summit.climb.knowledge
+    if not isinstance(place, Place):
+        raise TypeError("scores start from a linear fit")
+    brought = list(dict.fromkeys(name for names in candidates.values() for name in names))
+    residuals = residual_records(place.fitted(summit.point.weights), decays)
+    sums = [
+        _of_drop(summit, place, residual, decay, i, models[decay.load], values, brought)
+        for i, (residual, decay) in enumerate(zip(residuals, decays, strict=True))
+    ]
+    information, gradient = (np.sum(each, axis=0) for each in zip(*sums, strict=True))
+    own = len(summit.names)
+    u = summit.point.u
+    slopes, prior, free = knowledge.coordinates.slopes(u), knowledge.prior(u), knowledge.free(u)
+    basis = slopes[:, None] * free
+    within = basis.T @ information[:own, :own] @ basis + free.T @ prior.slopes.T @ prior.slopes @ free
+    told = told_directions(within)
+    across = (basis @ told).T @ information[:own, own:]
+    carried = np.linalg.solve(told.T @ within @ told, across)
+    left = information[own:, own:] - across.T @ carried
+    score = gradient[own:] - carried.T @ (
+        (basis @ told).T @ gradient[:own] + told.T @ free.T @ prior.slopes.T @ prior.residual
+    )
+    found = {}
+    for name, names in candidates.items():
+        those = [brought.index(one) for one in names if left[brought.index(one), brought.index(one)] > 0]
+        system = left[np.ix_(those, those)]
+        found[name] = float(score[those] @ np.linalg.pinv(system, hermitian=True) @ score[those])
+    return found
+
+
+def _of_drop(
+    summit: Summit,
+    place: Place,
+    residual: Real,
+    decay: Decay,
+    position: int,
+    model: NonlinearModel,
+    values: Mapping[str, float],
+    brought: Sequence[str],
+) -> tuple[Real, Real]:
+    """Give information and gradient of the fitted parameters and of those that are brought, of one drop."""
+    weights = summit.point.weights
+    run, group = place.run_of(position)
+    load, step, samples = int(run.load[group]), float(run.step[group]), decay.samples
+    poles, right, shapes = place.modes.poles[load], place.modes.right[load], place.modes.shapes[load]
+    state = summit.states[position]
+    motion = place.motion(weights, position, 0, samples)
+
+    # What the forces are per unit of each parameter, and how every mode answers them.
+    here = np.array([values[name] for name in model.names])
+    G = model.forces.rows.at(here)
+    travel, rate = G @ (motion[:7] + model.sag(here)[:7, None]), G @ motion[7:]
+    way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
+    felt = Felt(travel.T, rate.T, way.T, np.zeros_like(travel.T))
+    chosen = [model.names.index(name) for name in brought]
+    unit = model.forces.sensitivity(here, felt).force[:, :, chosen]
+    pushes = -np.linalg.solve(model.linear.matrices(here).M, G.T)
+    into = np.linalg.inv(right)[:, 7:] @ pushes
+    modal = np.einsum("jf,tfb->jbt", into, unit, optimize=True)
+    answers = np.empty(modal.shape, dtype=np.complex128)
+    for j, pole in enumerate(poles):
+        turn = np.exp(pole * step)
+        held = (turn - 1) / pole
+        rising = (held / step - 1) / pole
+        answers[j] = lfilter([rising, held - rising], [1.0, -turn], modal[j], axis=-1)
+
+    every = max(int(decay.rate / _ENOUGH), 1)
+    at = np.arange(0, samples, every)
+    S = place.likelihood.sensors.at(place.values)
+    forced = np.einsum("cj,jbt->tcb", shapes, answers[:, :, at], optimize=True).real
+    forced += np.einsum("cf,tfb->tcb", S @ pushes, unit[at], optimize=True)
+    waves = np.exp(np.multiply.outer(at, poles * step))
+    driven = waves * (np.linalg.inv(right) @ state)
+    slopes = place.slopes_of(position)
+    fitted = (np.hstack([driven, driven * at[:, None]]) @ slopes.reshape(-1, 28).T).real.reshape(
+        len(at), *slopes.shape[:2]
+    )
+    starts = (shapes[:, None, :] * np.linalg.inv(right).T[None]).reshape(-1, 14)
+    begun = (waves @ starts.T).real.reshape(len(at), len(shapes), 14)
+    whole = np.concatenate([fitted, forced, begun, np.nan_to_num(residual)[:, at].T[:, :, None]], axis=2)
+    whole = (whole - whole.mean(axis=0)) * np.sqrt(weights * run.present)[:, None]
+    flat = whole.reshape(-1, whole.shape[2])
+    products = flat.T @ flat * (samples / len(at))
+    count = fitted.shape[2] + forced.shape[2]
+    across, within = products[:count, count:-1], products[count:-1, count:-1] + np.diag(REACH**-2)
+    taken = np.linalg.solve(within, np.column_stack([across.T, products[count:-1, -1]]))
+    information = products[:count, :count] - across @ taken[:, :-1]
+    return information, products[:count, -1] - across @ taken[:, -1]
