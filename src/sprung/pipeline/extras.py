@@ -193,17 +193,16 @@ class Way:
         nonlinear = [extra for extra in self.choice.free if extra not in LINEAR_EXTRAS]
         if not nonlinear or any(decay.clocks for decay in self.decays):
             return self
-        way = self
-        if plain.names != self.choice.names:
-            way = replace(way, choice=plain, summit=fit_from(plain, self.decays, self.summit, NEAR, self.progress))
-        tried = way._open(nonlinear)
+        tried = self._open(nonlinear)
         self.progress("scoring " + ", ".join(tried))
-        promised = way._scores(tried)
+        promised = self._scores(tried)
         hopeful = [extra for extra in tried if promised[extra] > self._asked(extra)]
         scored = [Attempt(one, promised[one], self._asked(one), False, False) for one in tried if one not in hopeful]
         if not hopeful:
             return replace(self, path=(*self.path, *scored))
-        start = replace(way, path=(*self.path, *scored))
+        start = replace(self, path=(*self.path, *scored))
+        if plain.names != self.choice.names:
+            start = replace(start, choice=plain, summit=fit_from(plain, self.decays, self.summit, NEAR, self.progress))
         # Nearly every suspension rubs, and what rubs looks like everything else: friction is fitted first, and alone.
         found = start._together([extra for extra in hopeful if extra == "friction"] or hopeful)
         if not found.choice.nonlinear and hopeful != ["friction"]:
