@@ -24,6 +24,7 @@ from sprung.identification import (
     mode_estimates,
     suspects,
 )
+from sprung.pipeline.candidates import fit_from
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.clocks import clock_reports, set_clocks
@@ -36,7 +37,7 @@ from sprung.pipeline.diagnosis import (
     walking_slowly,
     without_looking_at_wheels,
 )
-from sprung.pipeline.extras import Attempt, Way, fit_from
+from sprung.pipeline.extras import Attempt, Way
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit

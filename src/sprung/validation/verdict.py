@@ -126,7 +126,7 @@ def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
     if size > EXPLAINED:
         beyond = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
         yield (
-            f"the linear model does not explain the records: in {channel} its error is {100 * size:.1f} % of the "
+            f"the model does not explain the records: in {channel} its error is {100 * size:.1f} % of the "
             f"signal{beyond}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
         )
 

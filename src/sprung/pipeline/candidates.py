@@ -1,0 +1,159 @@
+"""Candidates: what each extra brings to a model, where its fit starts, whether it can be and what it matters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.identification import Summit, ascend, ascend_stepped, lost_without
+from sprung.pipeline.choice import Choice
+from sprung.prepare import Decay
+from sprung.vehicle import EXTRA_PARAMETERS, NEUTRAL, separated
+
+Real = NDArray[np.float64]
+
+SEPARATE = "tracks apart"
+"""Springs and dampers at half-distances of their own, as one candidate among the extras."""
+
+_TRAVEL = 0.002
+"""m of travel at which a spring's force is the size of the friction from which a fit starts."""
+
+_STIFFER = 10.0
+"""How many times stiffer than the spring a friction is before it slides, at the start of a fit."""
+
+_NOT_NEGATIVE = frozenset(name for name, value in NEUTRAL.items() if value == 0) - {"w_h", "p_f", "p_r"}
+"""Parameters of extras that cannot be below zero."""
+
+_BY_CHANCE = 4.0
+"""Likelihood ratio that a parameter below zero may have by chance: two standard errors, squared."""
+
+_STROKE = 0.05
+"""m of travel over which a progressive spring is judged."""
+
+_ENOUGH = 250.0
+"""Samples per second, at least, that tell what an extra promises."""
+
+_LONG_ENOUGH = 3.0
+"""s of each decay that tell it."""
+
+
+def fit_from(
+    choice: Choice,
+    decays: Sequence[Decay],
+    before: Summit,
+    enough: float,
+    progress: Callable[[str], None],
+    states: Real | None = None,
+    begun: bool = False,
+) -> Summit:
+    """Fit a model from where another one's fit ended.
+
+    Parameters
+    ----------
+    choice
+        The model.
+    decays
+        The decays.
+    before
+        Where the other fit of these decays ended.
+    enough
+        Expected gain in log-likelihood at which to stop.
+    progress
+        Told in words what is being done.
+    states
+        {X, Ẋ} of each drop at its first sample, (drop, 14), where these decays begin elsewhere than those.
+    begun
+        Whether their beginnings will do.
+    """
+    states = before.states if states is None else states
+    sensors, known = choice.campaign.sensors, choice.known
+    start = start_of(choice.names, before.parameters)
+    if not choice.nonlinear:
+        found = ascend(decays, choice.models, sensors, known, start=start, enough=enough)
+    else:
+        found = ascend_stepped(
+            decays,
+            choice.stepped,
+            sensors,
+            known,
+            start=start,
+            states=states,
+            enough=enough,
+            near=states.shape[1] > 14,
+            begun=begun,
+            tilting=choice.tilting,
+            progress=progress,
+        )
+    return found.after(before)
+
+
+def decided(choice: Choice) -> list[str]:
+    """Give what the records brought into the model."""
+    tracks = [SEPARATE] if choice.open and choice.tracks == "separate" else []
+    return [*tracks, *(extra for extra in choice.extras if extra in choice.free)]
+
+
+def without(choice: Choice, extra: str) -> Choice:
+    """Give a model without an extra."""
+    if extra == SEPARATE:
+        return choice.having(choice.extras, "shared")
+    return choice.having(tuple(one for one in choice.extras if one != extra))
+
+
+def size_of(extra: str, p: Mapping[str, float]) -> float:
+    """Give what an extra matters beside what it is an extra to, as a part."""
+    parts = {
+        SEPARATE: lambda axle: p[f"t_{axle}1"] / p[f"t_{axle}2"] - 1,
+        "anti-roll": lambda axle: p[f"k_a{axle}"] / p[f"k_s{axle}"],
+        "tyre-damping": lambda axle: p[f"c_t{axle}"] / p[f"c_s{axle}"],
+        "gravity": lambda axle: p["w_h"] / p[f"k_s{axle}"],
+        "friction": lambda axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"]),
+        "rebound": lambda axle: p[f"r_{axle}"] - 1,
+        "progressive": lambda axle: _STROKE * p[f"p_{axle}"],
+    }
+    return max(abs(parts[extra](axle)) for axle in "fr")
+
+
+def possible(extra: str, summit: Summit) -> bool:
+    """Say whether an extra's parameters are what they can be: friction that drives is none, nor is a damper that does."""
+    below = [name for name in EXTRA_PARAMETERS.get(extra, ()) if name in _NOT_NEGATIVE and summit.parameters[name] < 0]
+    return not any(lost_without(summit, [(name, 0.0)]) > _BY_CHANCE for name in below)
+
+
+def brought(extra: str) -> tuple[str, ...]:
+    """Name the parameters that move on their own in the larger model only."""
+    return ("t_f1", "t_r1") if extra == SEPARATE else EXTRA_PARAMETERS[extra]
+
+
+def neutral(extra: str) -> list[tuple[str, str | float]]:
+    """Give what each parameter would have to be for the extra not to be there: a value, or another parameter."""
+    if extra == SEPARATE:
+        return [("t_f1", "t_f2"), ("t_r1", "t_r2")]
+    return [(name, NEUTRAL[name]) for name in EXTRA_PARAMETERS[extra] if name in NEUTRAL]
+
+
+def neutral_start(names: Sequence[str], own: Mapping[str, float]) -> dict[str, float]:
+    """Give the same vehicle by the names of a larger model."""
+    own = {**own, **separated(own), **{name: own[f"{name}2"] for name in ("t_f", "t_r") if f"{name}2" in own}}
+    stiff = {f"s_{axle}": _STIFFER * own[f"k_s{axle}"] for axle in "fr"}
+    return {name: own.get(name, {**NEUTRAL, **stiff}.get(name, 0.0)) for name in names}
+
+
+def start_of(names: Sequence[str], own: Mapping[str, float]) -> dict[str, float]:
+    """Give where to start a model from: friction that is not there yet starts with some."""
+    slid = {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr" if f"F_{axle}" not in own}
+    start = neutral_start(names, own)
+    return {name: slid.get(name, value) for name, value in start.items()}
+
+
+def thinned(decays: Sequence[Decay]) -> tuple[list[Decay], float]:
+    """Take as many samples as tell what an extra promises, and give the part of all that they are."""
+    thin = []
+    for decay in decays:
+        every = max(int(decay.rate / _ENOUGH), 1)
+        values = decay.values[:, : int(_LONG_ENOUGH * decay.rate) : every]
+        thin.append(replace(decay, values=values, rate=decay.rate / every))
+    return thin, sum(decay.samples for decay in thin) / sum(decay.samples for decay in decays)
