@@ -48,7 +48,7 @@ def imports(session: nox.Session) -> None:
 def bench(session: nox.Session) -> None:
     """Measure speed as ratios, side by side; the result is kept in benchmarks/, and fails where one is not as wanted."""
     session.install(".[dev,all]")
-    session.run("pytest", "benchmarks", "--benchmark-json=benchmarks/result.json", *session.posargs)
+    session.run("pytest", "benchmarks", "-n", "0", "--benchmark-json=benchmarks/result.json", *session.posargs)
     session.run("python", "benchmarks/table.py")
 
 

@@ -21,6 +21,9 @@ Real = NDArray[np.float64]
 _COARSE, _FINE = 0.0025, 0.00101
 """s of a step at most: on the way, and where what it errs by must not be taken for anything else."""
 
+_MOST = 100
+"""Steps at the most."""
+
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
 
@@ -39,6 +42,7 @@ def ascend_stepped(
     enough: float = CONVERGED,
     near: bool = False,
     begun: bool = False,
+    most: int = _MOST,
     tilting: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Summit:
@@ -65,6 +69,8 @@ def ascend_stepped(
         Whether the start is near the summit.
     begun
         Whether the beginnings of the decays will do.
+    most
+        Steps at the most, of each fit on the way.
     tilting
         Whether the sensors turn with the body, and feel the less of gravity.
     progress
@@ -82,7 +88,7 @@ def ascend_stepped(
         stages.append((list(decays), enough, _FINE))
     for part, gain, longest in stages:
         climb = _climb(part, models, sensors, known, values, states, tilting, longest)
-        point = climb.to_the_top(climb.knowledge.bind(_coordinates(climb, values)), None, gain, CLOSE_BY)
+        point = climb.to_the_top(climb.knowledge.bind(_coordinates(climb, values)), None, gain, CLOSE_BY, most)
         states, steps = point.place.states(point.weights), steps + point.steps
         # Whoever climbs on starts with the initial states that were found.
         climb = replace(climb, likelihood=climb.likelihood.beginning(states))

@@ -214,7 +214,12 @@ class Climb:
         return found
 
     def to_the_top(
-        self, u: Real, summit: Point | None = None, enough: float = CONVERGED, damping: float = FAR
+        self,
+        u: Real,
+        summit: Point | None = None,
+        enough: float = CONVERGED,
+        damping: float = FAR,
+        most: int = _ITERATIONS,
     ) -> Point:
         """Climb from a start.
 
@@ -230,6 +235,8 @@ class Climb:
         damping
             At the first step: `FAR` from a start that is only a guess, `NEARER` from a direct one, `CLOSE_BY` from one that
             is nearly there.
+        most
+            Steps at the most.
 
         Returns
         -------
@@ -237,7 +244,7 @@ class Climb:
         """
         point = self.at(u)
         before, settled = np.inf, False
-        while point.steps < (_ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
+        while point.steps < min(most, _ITERATIONS if enough <= CONVERGED else _PROVISIONAL):
             slope = self.slope(point)
             if not slope.gradient.size:
                 return replace(point, converged=True)

@@ -48,6 +48,7 @@ def fit_from(
     progress: Callable[[str], None],
     states: Real | None = None,
     begun: bool = False,
+    most: int = 100,
 ) -> Summit:
     """Fit a model from where another one's fit ended.
 
@@ -67,6 +68,8 @@ def fit_from(
         {X, Ẋ} of each drop at its first sample, (drop, 14), where these decays begin elsewhere than those.
     begun
         Whether their beginnings will do.
+    most
+        Steps at the most.
     """
     states = before.states if states is None else states
     sensors, known = choice.campaign.sensors, choice.known
@@ -84,6 +87,7 @@ def fit_from(
             enough=enough,
             near=states.shape[1] > 14,
             begun=begun,
+            most=most,
             tilting=choice.tilting,
             progress=progress,
         )

@@ -48,8 +48,11 @@ _ERRS = 2.0
 _MATTERS = 0.03
 """Size of an extra, as a part, below which it may be what is left of a model error."""
 
-_STILL = 0.3
-"""Part of what a linear vehicle leaves unexplained that may be left by one with forces beside it."""
+_STILL, _STILL_AT_FIRST = 0.3, 0.7
+"""Part of what a linear vehicle leaves unexplained that may be left by one with forces beside it, and after its first steps."""
+
+_FIRST = 8
+"""Steps after which a fit has to promise something."""
 
 _MORE = 2
 """How many times further extras are looked for where the first ones have been found."""
@@ -234,13 +237,13 @@ class Way:
         refused = ", ".join(one.text for one in last.values() if one.extra not in decided(choice))
         return f"the records ask for {taken or 'nothing more'}" + (f"; not for {refused}" if refused else "")
 
-    def _explains_little(self, begun: Summit) -> bool:
-        """Say whether much of what the linear vehicle leaves is left still: then something else is the matter."""
+    def _explains_little(self, begun: Summit, part: float) -> bool:
+        """Say whether more than a part of what the linear vehicle leaves is left still: then something else is the matter."""
         rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
         rest = np.mean([np.nan_to_num(noise.var(axis=1)) for noise in rests], axis=0) if rests else 0.0
         before, after = (np.maximum(one.noise**2 - rest, 0.0) for one in (self.summit, begun))
         much = before > rest
-        return bool(much.any()) and float(np.mean(after[much] / before[much])) > _STILL
+        return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
     def _feigned(self, extra: str, inflation: float) -> bool:
         """Say whether an extra may be a model error in disguise: where there is one, what is small counts for nothing."""
@@ -249,8 +252,11 @@ class Way:
     def _together(self, hopeful: Sequence[str]) -> Way:
         """Fit extras together, and leave out again what is not missed, the least missed first."""
         larger = self._with(hopeful)
-        begun = fit_from(larger, self.decays, self.summit, NEAR, self.progress, begun=True)
-        if self._explains_little(begun):
+        begun = fit_from(larger, self.decays, self.summit, NEAR, self.progress, begun=True, most=_FIRST)
+        promising = not self._explains_little(begun, _STILL_AT_FIRST)
+        if promising and not begun.converged:
+            begun = fit_from(larger, self.decays, begun, NEAR, self.progress, begun=True)
+        if not promising or self._explains_little(begun, _STILL):
             notes = [Attempt(extra, 0.0, self._asked(extra), True, False) for extra in hopeful]
             return replace(self, path=(*self.path, *notes))
         summit = fit_from(larger, self.decays, begun, NEAR, self.progress)
