@@ -84,7 +84,7 @@ def test_scores_are_those_of_the_linear_fit(
         states=summit.states,
         together=[(name,) for name in summit.names],
         candidates={"anti-roll": [("k_af",), ("k_ar",)]},
-    )["anti-roll"].gain
+    )["anti-roll"]
     assert by_modes > 10
     # The weights of the channels are not quite the same: those of the modes are taken before initial states are known.
     assert by_steps == pytest.approx(by_modes, rel=0.15)
@@ -116,7 +116,7 @@ def test_scores_of_forces_need_no_steps(campaign: Campaign, plain: Choice, summi
     )
     assert min(by_modes["friction"], by_modes["rebound"]) > 50
     for extra in extras:
-        assert by_modes[extra] == pytest.approx(by_steps[extra].gain, rel=0.15, abs=3)
+        assert by_modes[extra] == pytest.approx(by_steps[extra], rel=0.15, abs=3)
 
 
 def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(

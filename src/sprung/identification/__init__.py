@@ -1,7 +1,7 @@
 """From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
 
 from sprung.identification.added_mass import added_mass
-from sprung.identification.beyond import Prospect, ascend_stepped, lost_without, prospects
+from sprung.identification.beyond import ascend_stepped, lost_without, prospects
 from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK
 from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
@@ -15,7 +15,7 @@ from sprung.identification.prediction import Prediction, predictions
 from sprung.identification.profile import profiled
 from sprung.identification.scores import force_scores
 from sprung.identification.structured import StructuredFit, structured_least_squares
-from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around, reference
+from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around
 from sprung.identification.suspects import Suspect, suspects
 from sprung.identification.timing import timed_by_decay, timed_by_release, told_alone
 
@@ -35,7 +35,6 @@ __all__ = [
     "ModeEstimate",
     "Place",
     "Prediction",
-    "Prospect",
     "Scale",
     "StructuredFit",
     "Summit",
@@ -61,7 +60,6 @@ __all__ = [
     "predictions",
     "profiled",
     "prospects",
-    "reference",
     "residual_records",
     "structured_least_squares",
     "suspects",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from sprung.estimate import Known
 from sprung.identification.climb import CLOSE_BY, CONVERGED, Climb, told_directions
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.stepped import SteppedLikelihood
-from sprung.identification.summit import NEAR, Summit, reference
+from sprung.identification.summit import NEAR, Summit
 from sprung.prepare import Decay
 from sprung.vehicle import NonlinearModel, Rows, Sensor
 
@@ -88,28 +88,14 @@ def ascend_stepped(
         stages.append((list(decays), enough, _FINE))
     for part, gain, longest in stages:
         climb = _climb(part, models, sensors, known, values, states, tilting, longest)
-        point = climb.to_the_top(climb.knowledge.bind(_coordinates(climb, values)), None, gain, CLOSE_BY, most)
+        point = climb.to_the_top(
+            climb.knowledge.bind(climb.knowledge.coordinates.by_name(values)), None, gain, CLOSE_BY, most
+        )
         states, steps = point.place.states(point.weights), steps + point.steps
         # Whoever climbs on starts with the initial states that were found.
         climb = replace(climb, likelihood=climb.likelihood.beginning(states))
         values = dict(zip(climb.knowledge.coordinates.names, point.place.values.tolist(), strict=True))
     return Summit(climb, point, steps, 1, 1)
-
-
-@dataclass(frozen=True, eq=False)
-class Prospect:
-    """What a larger model would gain over a smaller one, to second order, from where the smaller one was fitted.
-
-    Attributes
-    ----------
-    gain
-        In twice the log-likelihood.
-    parameters
-        Values to start from, SI, by name.
-    """
-
-    gain: float
-    parameters: dict[str, float]
 
 
 def prospects(
@@ -123,8 +109,7 @@ def prospects(
     together: Sequence[Sequence[str]],
     candidates: Mapping[str, Sequence[Sequence[str]]],
     tilting: bool = False,
-    longest: float = _COARSE,
-) -> dict[str, Prospect]:
+) -> dict[str, float]:
     """Score larger models against a smaller one that is fitted already.
 
     Parameters
@@ -141,40 +126,33 @@ def prospects(
         The further directions of each larger one.
     tilting
         As for `ascend_stepped`.
-    longest
-        s of a step at most.
 
     Returns
     -------
     dict
-        By the candidate's name: score tests (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50), all from one evaluation.
+        What each would gain in twice the log-likelihood, to second order: score tests, all from one evaluation
+        (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50).
     """
-    climb = _climb(decays, models, sensors, known, values, states, tilting, longest)
+    climb = _climb(decays, models, sensors, known, values, states, tilting, _COARSE)
     names = climb.knowledge.coordinates.names
-    u = climb.knowledge.bind(_coordinates(climb, values))
+    u = climb.knowledge.bind(climb.knowledge.coordinates.by_name(values))
     point = climb.at(u)
     slopes, prior = climb.knowledge.coordinates.slopes(u), climb.knowledge.prior(u)
     free = climb.knowledge.free(u)
     information = point.evaluation.information * np.outer(slopes, slopes) + prior.slopes.T @ prior.slopes
     gradient = point.evaluation.gradient * slopes + prior.slopes.T @ prior.residual
 
-    def step(directions: Sequence[Sequence[str]]) -> tuple[Real, float]:
+    def gain(directions: Sequence[Sequence[str]]) -> float:
         basis = np.array([[float(name in direction) for name in names] for direction in directions]).T
         # Of these, what exact knowledge leaves free.
         _, bound, ways = np.linalg.svd(basis - free @ (free.T @ basis))
         basis = basis @ ways[int(np.sum(bound > _BOUND)) :].T
         system, slope = basis.T @ information @ basis, basis.T @ gradient
         told = told_directions(system)
-        found = told @ np.linalg.solve(told.T @ system @ told, told.T @ slope)
-        return basis @ found, float(slope @ found)
+        return float(slope @ told @ np.linalg.solve(told.T @ system @ told, told.T @ slope))
 
-    _, before = step(together)
-    found = {}
-    for name, more in candidates.items():
-        move, gain = step([*together, *more])
-        reached = climb.knowledge.coordinates.values(u + np.clip(move, -1.0, 1.0))
-        found[name] = Prospect(gain - before, dict(zip(names, reached.tolist(), strict=True)))
-    return found
+    before = gain(together)
+    return {name: gain([*together, *more]) - before for name, more in candidates.items()}
 
 
 def lost_without(summit: Summit, constraints: Sequence[tuple[str, str | float]]) -> float:
@@ -223,15 +201,9 @@ def _climb(
     names = next(iter(models.values())).names
     rows = Rows.of([sensor.row for sensor in sensors], names)
     likelihood = SteppedLikelihood.of(decays, models, rows, states, tilting, longest)
-    coordinates = Coordinates(names, np.array([reference(name, typical) for name in names]))
-    return Climb(likelihood, Knowledge(coordinates, known))
+    return Climb(likelihood, Knowledge(Coordinates.beside(names, typical), known))
 
 
 def _begun(decay: Decay) -> Decay:
     """Give the beginning of a decay."""
     return replace(decay, values=decay.values[:, : int(_HORIZON * decay.rate)])
-
-
-def _coordinates(climb: Climb, values: Mapping[str, float]) -> Real:
-    coordinates = climb.knowledge.coordinates
-    return coordinates.of(np.array([values[name] for name in coordinates.names]))

@@ -20,6 +20,10 @@ _FINEST = 1e-6
 """Smallest relative uncertainty that a statement is taken to have: beside a finer one, rounding would hide the records."""
 
 
+_TRAVEL = 0.03
+"""m of travel at which a spring's force is the size of a friction that is large."""
+
+
 class Prior(NamedTuple):
     """The uncertain statements at some parameter values.
 
@@ -53,6 +57,11 @@ class Coordinates:
     names: tuple[str, ...]
     references: Real
 
+    @classmethod
+    def beside(cls, names: tuple[str, ...], typical: Mapping[str, float]) -> Coordinates:
+        """Make coordinates of parameters, those that may be zero in sizes of a typical vehicle's, SI by name."""
+        return cls(names, np.array([_reference(name, typical) for name in names]))
+
     @cached_property
     def _logarithmic(self) -> NDArray[np.bool_]:
         return np.array([PARAMETERS[name].positive for name in self.names])
@@ -62,6 +71,10 @@ class Coordinates:
         values = self.references * u
         values[self._logarithmic] = np.exp(u[self._logarithmic])
         return values
+
+    def by_name(self, values: Mapping[str, float]) -> Real:
+        """Give coordinates at parameter values, SI, by name."""
+        return self.of(np.array([values[name] for name in self.names]))
 
     def slopes(self, u: Real) -> Real:
         """Give the derivative of each value by its coordinate; shape (parameter,)."""
@@ -148,3 +161,14 @@ class Knowledge:
         _, singular, right = np.linalg.svd(rows)
         rank = int(np.sum(singular > 1e-10 * singular[0]))
         return right[rank:].T
+
+
+def _reference(name: str, typical: Mapping[str, float]) -> float:
+    """Give the size by which a parameter's coordinate is multiplied, SI; 1 for those that are fitted by their logarithms."""
+    if PARAMETERS[name].positive:
+        return 1.0
+    if not PARAMETERS[name].scales:
+        return 1.0
+    if name.startswith("F"):
+        return _TRAVEL * typical[f"k_s{name[-1]}"]
+    return typical["c_sf"] if name.startswith("c") else typical["k_sf"]

@@ -305,8 +305,7 @@ class Place:
     def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
         """Follow one drop from some samples before its first one to some after it: {X, Ẋ}, SI, shape (14, time)."""
         run, group = self.run_of(position)
-        model = self.likelihood.models[run.load[group]]
-        poles, shapes = np.linalg.eig(model.matrices(self.values).state)
+        poles, shapes = self.modes.poles[run.load[group]], self.modes.right[run.load[group]]
         exponent = poles[:, None] * np.arange(-before, after) * run.step[group]
         powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
         amplitudes = np.linalg.solve(shapes, self.states(weights)[position].astype(np.complex128))

@@ -98,7 +98,7 @@ def _of_drop(
     weights = summit.point.weights
     run, group = place.run_of(position)
     load, step, samples = int(run.load[group]), float(run.step[group]), decay.samples
-    poles, right, shapes = place.modes.poles[load], place.modes.right[load], place.modes.shapes[load]
+    poles, left, shapes = place.modes.poles[load], place.modes.left[load], place.modes.shapes[load]
     state = summit.states[position]
     motion = place.motion(weights, position, 0, samples)
 
@@ -111,7 +111,7 @@ def _of_drop(
     chosen = [model.names.index(name) for name in brought]
     unit = model.forces.sensitivity(here, felt).force[:, :, chosen]
     pushes = -np.linalg.solve(model.linear.matrices(here).M, G.T)
-    into = np.linalg.inv(right)[:, 7:] @ pushes
+    into = left[:, 7:] @ pushes
     modal = np.einsum("jf,tfb->jbt", into, unit, optimize=True)
     answers = np.empty(modal.shape, dtype=np.complex128)
     for j, pole in enumerate(poles):
@@ -126,12 +126,12 @@ def _of_drop(
     forced = np.einsum("cj,jbt->tcb", shapes, answers[:, :, at], optimize=True).real
     forced += np.einsum("cf,tfb->tcb", S @ pushes, unit[at], optimize=True)
     waves = np.exp(np.multiply.outer(at, poles * step))
-    driven = waves * (np.linalg.inv(right) @ state)
+    driven = waves * (left @ state)
     slopes = place.slopes_of(position)
     fitted = (np.hstack([driven, driven * at[:, None]]) @ slopes.reshape(-1, 28).T).real.reshape(
         len(at), *slopes.shape[:2]
     )
-    starts = (shapes[:, None, :] * np.linalg.inv(right).T[None]).reshape(-1, 14)
+    starts = (shapes[:, None, :] * left.T[None]).reshape(-1, 14)
     begun = (waves @ starts.T).real.reshape(len(at), len(shapes), 14)
     whole = np.concatenate([fitted, forced, begun, np.nan_to_num(residual)[:, at].T[:, :, None]], axis=2)
     whole = (whole - whole.mean(axis=0)) * np.sqrt(weights * run.present)[:, None]

@@ -74,8 +74,8 @@ class SteppedLikelihood:
         models: Mapping[str, NonlinearModel],
         sensors: Rows,
         states: Real,
-        tilting: bool = False,
-        longest: float = 0.001,
+        tilting: bool,
+        longest: float,
     ) -> SteppedLikelihood:
         """Take up the records, once.
 
@@ -191,15 +191,25 @@ class SteppedPlace:
         return rows, slopes
 
     @cached_property
+    def _inputs(self) -> Real:
+        """{X, Ẋ, u, 1} at every sample, shape (time, drop, input)."""
+        path, every = self._path, self.likelihood.every
+        states, forces = path.states[::every], path.forces[::every]
+        return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
+
+    @cached_property
+    def _motion(self) -> Real:
+        """Accelerations of the seven coordinates at every sample, shape (time, drop, 7)."""
+        motion: Real = np.einsum("dij,kdj->kdi", self._accelerations[0], self._inputs, optimize=True)
+        return motion
+
+    @cached_property
     def _left(self) -> Real:
         """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
-        likelihood, path = self.likelihood, self._path
-        rows, every = self._accelerations[0], likelihood.every
+        likelihood = self.likelihood
         with np.errstate(over="ignore", invalid="ignore"):
-            inputs = _inputs(path.states[::every], path.forces[::every])
-            motion = np.einsum("dij,kdj->dik", rows, inputs, optimize=True)
-            left = likelihood.values - likelihood.sensors.at(self.values) @ motion
-            angles = path.states[::every, :, 1:3]
+            left = likelihood.values - likelihood.sensors.at(self.values) @ self._motion.transpose(1, 2, 0)
+            angles = self._inputs[:, :, 1:3]
             left += 0.5 * likelihood.tilting * STANDARD_GRAVITY * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
             left -= (left @ likelihood.there[:, :, None]) / likelihood.samples[:, None, None]
             left *= likelihood.there[:, None, :]
@@ -235,21 +245,14 @@ class SteppedPlace:
             if not len(driven):
                 continue
             last = first + len(driven)
-            path = self._path
-            inputs = _inputs(
-                path.states[first * every : (last - 1) * every + 1 : every],
-                path.forces[first * every : (last - 1) * every + 1 : every],
-            )
+            inputs = self._inputs[first:last]
             moved = rows[:, :, :-1] @ driven
             moved[..., :parameters] += np.einsum("dpij,kdj->kdip", slopes, inputs, optimize=True)
-            motion = np.einsum("dij,kdj->kdi", rows, inputs, optimize=True)
             all_of = np.empty((drops, channels, last - first, unknown + 1))
             readings = S @ moved
-            readings[..., :parameters] += np.einsum("kdi,cip->kdcp", motion, by_S, optimize=True)
-            angles = path.states[first * every : (last - 1) * every + 1 : every, :, 1:3]
-            readings -= (
-                likelihood.tilting * STANDARD_GRAVITY * (angles[:, :, None, :] @ change.states[chosen][:, :, 1:3])
-            )
+            readings[..., :parameters] += np.einsum("kdi,cip->kdcp", self._motion[first:last], by_S, optimize=True)
+            turned = inputs[:, :, None, 1:3] @ change.states[chosen][:, :, 1:3]
+            readings -= likelihood.tilting * STANDARD_GRAVITY * turned
             all_of[..., :unknown] = readings.transpose(1, 2, 0, 3)
             all_of[..., :unknown] *= likelihood.there[:, None, first:last, None]
             all_of[..., unknown] = self._left[:, :, first:last]
@@ -337,8 +340,3 @@ class _System:
     within: Real
     gradient: Real
     own: Real
-
-
-def _inputs(states: Real, forces: Real) -> Real:
-    """Put {X, Ẋ, u, 1} together, shape (..., input)."""
-    return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)

@@ -25,7 +25,7 @@ from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.start import Outline, catalogue
 from sprung.prepare import Decay
-from sprung.vehicle import PARAMETERS, LinearModel, Rows, Sensor
+from sprung.vehicle import LinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
 
@@ -40,9 +40,6 @@ _AROUND, _FARTHEST, _PROBED = (4.0, 8.0), 0.5, 2
 
 _SHALLOW = 0.5
 """Part of the fall that the curvature says, below which the likelihood is worth another climb."""
-
-_TRAVEL = 0.03
-"""m of travel at which a spring's force is the size of a friction that is large."""
 
 STARTS = 3
 """How many starts are usually refined: enough to see whether they agree."""
@@ -165,10 +162,7 @@ def ascend(
     outline = Outline.of(known, sensors)
     usual = [dict(start)] if start is not None else list(catalogue(outline, known))
     climb = _climb(decays, models, sensors, known, usual[0])
-
-    def at(values: Mapping[str, float]) -> Real:
-        return climb.knowledge.coordinates.of(np.array([values[name] for name in climb.knowledge.coordinates.names]))
-
+    at = climb.knowledge.coordinates.by_name
     if start is not None:
         return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(start)), None, enough, CLOSE_BY)], enough)
     likelihood = climb.likelihood
@@ -242,8 +236,7 @@ def expected_gain(
         In twice the log-likelihood, to second order: the score test (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50).
     """
     climb = _climb(decays, models, sensors, known, values)
-    coordinates = climb.knowledge.coordinates
-    point = climb.at(climb.knowledge.bind(coordinates.of(np.array([values[name] for name in coordinates.names]))))
+    point = climb.at(climb.knowledge.bind(climb.knowledge.coordinates.by_name(values)))
     return climb.slope(point).newton[1]
 
 
@@ -256,22 +249,10 @@ def _climb(
 ) -> Climb:
     names = next(iter(models.values())).names
     likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
-    coordinates = Coordinates(names, np.array([reference(name, typical) for name in names]))
-    return Climb(likelihood, Knowledge(coordinates, known))
+    return Climb(likelihood, Knowledge(Coordinates.beside(names, typical), known))
 
 
 def _best(climb: Climb, ends: Sequence[Point], enough: float) -> Summit:
     best = min(ends, key=climb.cost)
     agreeing = sum(climb.cost(end) - climb.cost(best) < max(1e-3, 4 * enough) for end in ends)
     return Summit(climb, best, best.steps, len(ends), agreeing)
-
-
-def reference(name: str, typical: Mapping[str, float]) -> float:
-    """Give the size by which a parameter's coordinate is multiplied, SI; 1 for those that are fitted by their logarithms."""
-    if PARAMETERS[name].positive:
-        return 1.0
-    if not PARAMETERS[name].scales:
-        return 1.0
-    if name.startswith("F"):
-        return _TRAVEL * typical[f"k_s{name[-1]}"]
-    return typical["c_sf"] if name.startswith("c") else typical["k_sf"]

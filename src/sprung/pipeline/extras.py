@@ -8,7 +8,7 @@ residuals' colour and the drops' disagreement allowed for.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +16,6 @@ import numpy as np
 from sprung.identification import (
     NEAR,
     Summit,
-    ascend,
     expected_gain,
     force_scores,
     inflation_of,
@@ -131,8 +130,10 @@ class Way:
         added = tuple(extra for extra in extras if extra != SEPARATE)
         return self.choice.having((*self.choice.extras, *added), "separate" if SEPARATE in extras else None)
 
-    def _noted(self, extra: str, gain: float, fitted: bool, taken: bool) -> Way:
-        return replace(self, path=(*self.path, Attempt(extra, gain, self._asked(extra), fitted, taken)))
+    def _noted(self, gains: Mapping[str, float], fitted: bool, taken: bool) -> Way:
+        """Give the same with attempts noted, by extra and gain."""
+        notes = [Attempt(extra, gain, self._asked(extra), fitted, taken) for extra, gain in gains.items()]
+        return replace(self, path=(*self.path, *notes))
 
     def linear(self) -> Way:
         """Try the extras that matrices carry, the most promising first, until none gains what is asked."""
@@ -148,25 +149,22 @@ class Way:
                 gain = expected_gain(self.decays, larger.models, campaign.sensors, larger.known, start)
                 promised[extra] = gain / way.summit.disagreement
             hopeful = [extra for extra, gain in promised.items() if gain > _UNLIKELY * way._asked(extra)]
-            for extra in promised.keys() - set(hopeful):
-                way = way._noted(extra, promised[extra], False, False)
+            way = way._noted({extra: gain for extra, gain in promised.items() if extra not in hopeful}, False, False)
             if not hopeful:
                 return way
             extra = max(hopeful, key=promised.__getitem__)
             refused |= (promised.keys() - set(hopeful)) | {extra}
             larger = way._with([extra])
             self.progress(f"with {extra}")
-            start = neutral_start(larger.names, way.summit.parameters)
-            models, sensors, known = larger.models, campaign.sensors, larger.known
-            summit = ascend(self.decays, models, sensors, known, start=start, enough=NEAR).after(way.summit)
+            summit = fit_from(larger, self.decays, way.summit, NEAR, self.progress)
             gain = 2 * (summit.loglikelihood - way.summit.loglikelihood) / summit.disagreement
             inflation, tried = inflation_of(summit, self.decays), replace(way, choice=larger, summit=summit)
             sound = summit.converged and possible(extra, summit) and not tried._feigned(extra, inflation)
             if gain > way._asked(extra) and sound:
-                way = replace(way._noted(extra, gain, True, True), choice=larger, summit=summit)
+                way = replace(way._noted({extra: gain}, True, True), choice=larger, summit=summit)
                 refused.clear()
             else:
-                way = way._noted(extra, gain, True, False)
+                way = way._noted({extra: gain}, True, False)
 
     def nonlinear(self, plain: Choice) -> Way:
         """Fit the extras with laws of their own that promise something together, and leave out what is not missed.
@@ -184,10 +182,9 @@ class Way:
         self.progress("scoring " + ", ".join(tried))
         promised = self._scores(tried)
         hopeful = [extra for extra in tried if promised[extra] > self._asked(extra)]
-        scored = [Attempt(one, promised[one], self._asked(one), False, False) for one in tried if one not in hopeful]
+        start = self._noted({extra: promised[extra] for extra in tried if extra not in hopeful}, False, False)
         if not hopeful:
-            return replace(self, path=(*self.path, *scored))
-        start = replace(self, path=(*self.path, *scored))
+            return start
         if plain.names != self.choice.names:
             start = replace(start, choice=plain, summit=fit_from(plain, self.decays, self.summit, NEAR, self.progress))
         # Nearly every suspension rubs, and what rubs looks like everything else: friction is fitted first, and alone.
@@ -257,14 +254,12 @@ class Way:
         if promising and not begun.converged:
             begun = fit_from(larger, self.decays, begun, NEAR, self.progress, begun=True)
         if not promising or self._explains_little(begun, _STILL):
-            notes = [Attempt(extra, 0.0, self._asked(extra), True, False) for extra in hopeful]
-            return replace(self, path=(*self.path, *notes))
+            return self._noted(dict.fromkeys(hopeful, 0.0), True, False)
         summit = fit_from(larger, self.decays, begun, NEAR, self.progress)
         inflation = inflation_of(summit, self.decays)
         gain = 2 * (summit.loglikelihood - self.summit.loglikelihood) / inflation
         if not summit.converged or gain < sum(map(self._asked, hopeful)):
-            notes = [Attempt(extra, gain, self._asked(extra), True, False) for extra in hopeful]
-            return replace(self, path=(*self.path, *notes))
+            return self._noted(dict.fromkeys(hopeful, gain), True, False)
         way = replace(self, choice=larger, summit=summit)
         for _ in range(len(EXTRA_PARAMETERS)):
             lost = {extra: lost_without(way.summit, neutral(extra)) / inflation for extra in decided(way.choice)}
@@ -273,10 +268,9 @@ class Way:
             least = min(lost, key=lambda extra: lost[extra] / way._asked(extra), default=None)
             if least is None or lost[least] > way._asked(least):
                 break
-            way = replace(way._noted(least, lost[least], True, False), choice=without(way.choice, least))
+            way = replace(way._noted({least: lost[least]}, True, False), choice=without(way.choice, least))
             way = replace(way, summit=fit_from(way.choice, self.decays, way.summit, NEAR, self.progress))
-        taken = [Attempt(extra, lost[extra], self._asked(extra), True, True) for extra in decided(way.choice)]
-        return replace(way, path=(*way.path, *taken))
+        return way._noted({extra: lost[extra] for extra in decided(way.choice)}, True, True)
 
     def _scores(self, extras: Sequence[str]) -> dict[str, float]:
         """Score extras with laws of their own from where a linear fit is."""
@@ -301,4 +295,4 @@ class Way:
             candidates={extra: [(name,) for name in brought(extra)] for extra in extras},
             tilting=self.choice.tilting,
         )
-        return {extra: one.gain / share for extra, one in found.items()}
+        return {extra: gain / share for extra, gain in found.items()}

@@ -13,7 +13,6 @@ from sprung.errors import Fault, Problems
 from sprung.identification import (
     CONVERGED,
     NEAR,
-    STARTS,
     Fit,
     Summit,
     ascend,
@@ -282,10 +281,9 @@ def _ascend(
     start: Mapping[str, float] | None,
     enough: float,
     progress: Callable[[str], None],
-    starts: int = STARTS,
 ) -> Summit:
     models, sensors, known = choice.models, campaign.sensors, choice.known
-    return ascend(decays, models, sensors, known, start=start, starts=starts, enough=enough, progress=progress)
+    return ascend(decays, models, sensors, known, start=start, enough=enough, progress=progress)
 
 
 def _need_decays(campaign: Campaign, prepared: Prepared) -> None:

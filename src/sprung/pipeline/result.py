@@ -186,10 +186,15 @@ class Result(_Frozen):
             arrays[f"{name}/time"] = series.time
             arrays[f"{name}/measured"] = series.measured
             arrays[f"{name}/fitted"] = series.fitted
-        buffer = io.BytesIO()
-        np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
-        write_whole(Path(folder), {"series.npz": buffer.getvalue(), "results.json": self.to_json().encode()})
+        write_whole(Path(folder), {"series.npz": packed(arrays), "results.json": self.to_json().encode()})
         return Path(folder)
+
+
+def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
+    """Give the bytes of an .npz file of arrays by name."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
+    return buffer.getvalue()
 
 
 def load(folder: str | Path) -> Result:

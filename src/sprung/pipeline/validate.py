@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.pipeline.identify import fit_campaign, result_of
-from sprung.pipeline.result import Result
+from sprung.pipeline.result import Result, packed
 from sprung.recording import Campaign, write_whole
 from sprung.validation import BodyMotion, ModeAmplitude, Trace, body_motions, mode_amplitudes
 from sprung.vehicle import EMPTY, Tracks
@@ -70,10 +69,8 @@ class Validation:
             for where, trace in named.items():
                 series = _plain(trace).items()
                 arrays |= {f"amplitude/{one.mode}/{where}/{name}": np.array(values) for name, values in series}
-        buffer = io.BytesIO()
-        np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
         text = json.dumps(self.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-        return {"validation.npz": buffer.getvalue(), "validation.json": text.encode()}
+        return {"validation.npz": packed(arrays), "validation.json": text.encode()}
 
     def save(self, folder: str | Path) -> Path:
         """Write validation.json and validation.npz, whole or not at all.

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import InputError, Problem
 from sprung.estimate import Known
-from sprung.identification import Coordinates, Knowledge, Likelihood, reference
+from sprung.identification import Coordinates, Knowledge, Likelihood
 from sprung.prepare import Decay, no_rest
 from sprung.vehicle import (
     PARAMETERS,
@@ -114,8 +114,7 @@ class Subject:
     @cached_property
     def knowledge(self) -> Knowledge:
         """What is known beforehand, in the coordinates of the fit: an extra counts in parts of a spring or damper rate."""
-        references = [reference(name, self.vehicle.parameters) for name in self.names]
-        return Knowledge(Coordinates(self.names, np.array(references)), self.known)
+        return Knowledge(Coordinates.beside(self.names, self.vehicle.parameters), self.known)
 
     @cached_property
     def u(self) -> Real:
