@@ -15,10 +15,11 @@ from sprung.identification import (
     lost_without,
     prospects,
 )
+from sprung.identification.stepped import SteppedLikelihood
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.prepare import Decay, prepare
 from sprung.recording import Campaign
-from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Vehicle
+from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Rows, Vehicle
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
@@ -128,3 +129,27 @@ def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(
     known = dict(plain.known) | {"m_uf": sprung.estimate.Known(value)}
     held = ascend(decays, plain.models, campaign.sensors, known, start=summit.parameters | {"m_uf": value})
     assert 2 * (summit.loglikelihood - held.loglikelihood) == pytest.approx(expected, rel=0.05)
+
+
+def test_a_friction_that_went_astray_begins_anew_without_a_jolt(
+    campaign: Campaign, decays: tuple[Decay, ...], plain: Choice, summit: Summit
+) -> None:
+    """Memories of more than one cannot be: without them each drop begins with the forces, so the accelerations, it had."""
+    larger = plain.having(("friction",))
+    values = np.array(
+        [(summit.parameters | {"F_f": 30.0, "F_r": 80.0, "s_f": 6e4, "s_r": 1.2e5})[n] for n in larger.names]
+    )
+    rows = Rows.of([sensor.row for sensor in campaign.sensors], larger.names)
+    states = np.hstack([summit.states, np.tile([1.0, 0.3, -1.4, 1.3], (len(decays), 1))])
+    likelihood = SteppedLikelihood.of(decays, larger.stepped, rows, states, False, 0.002)
+    anew = likelihood.at(values).believable()
+    assert anew is not None
+    np.testing.assert_array_equal(anew[:, 14:], np.tile([1.0, 0.3, 0.0, 0.0], (len(decays), 1)))
+    np.testing.assert_array_equal(anew[:, 7:14], states[:, 7:14])
+    assert np.all(np.abs(anew[:, :7] - states[:, :7]).max(axis=1) > 1e-3)
+    begun = [one.at(values).motion(np.ones(8), 0, 0, 1) for one in (likelihood, likelihood.beginning(anew))]
+    model, forces = larger.stepped["empty"], np.array([30.0, 30.0, 80.0, 80.0])
+    matrices, G = model.linear.matrices(values), model.forces.rows.at(values)
+    pulls = [matrices.K @ one[:7, 0] + matrices.C @ one[7:14, 0] + G.T @ (forces * one[14:, 0]) for one in begun]
+    np.testing.assert_allclose(pulls[1], pulls[0], rtol=1e-9, atol=1e-6)
+    assert likelihood.beginning(anew).at(values).believable() is None

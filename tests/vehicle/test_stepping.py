@@ -17,6 +17,7 @@ from sprung.vehicle import (
     Vehicle,
     forces_beside,
     free_decay,
+    ground_forces,
     parameter_names,
     seven_degrees_of_freedom,
 )
@@ -36,11 +37,10 @@ def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
     return names, np.array([getattr(CAR, name) for name in names])
 
 
-def model_of(extras: tuple[str, ...], load: Load = EMPTY) -> NonlinearModel:
+def model_of(extras: tuple[str, ...], load: Load = EMPTY, ground: bool = False) -> NonlinearModel:
     names, _ = values_of(extras)
-    return NonlinearModel.of(
-        seven_degrees_of_freedom("separate", extras), forces_beside("separate", extras), names, load
-    )
+    forces = forces_beside("separate", extras) + (ground_forces(extras) if ground else ())
+    return NonlinearModel.of(seven_degrees_of_freedom("separate", extras), forces, names, load)
 
 
 def some_states(drops: int, seed: int = 0) -> Array:
@@ -49,8 +49,8 @@ def some_states(drops: int, seed: int = 0) -> Array:
     return states
 
 
-def stepper(extras: tuple[str, ...], step: float, values: Array | None = None) -> Stepper:
-    models = [model_of(extras), model_of(extras, BALLAST)]
+def stepper(extras: tuple[str, ...], step: float, values: Array | None = None, ground: bool = False) -> Stepper:
+    models = [model_of(extras, load, ground) for load in (EMPTY, BALLAST)]
     return Stepper.of(models, [step, step], np.array([0, 1]), values_of(extras)[1] if values is None else values)
 
 
@@ -115,15 +115,21 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
     assert np.all(np.abs(path.states[::50, 0] - there.y[:14].T) < 3e-4 * scale)
 
 
-def test_derivatives_are_those_of_the_steps_themselves() -> None:
+@pytest.mark.parametrize("ground", [False, True])
+def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     extras = tuple(extra for extra in EXTRAS if extra in ("friction", "rebound", "progressive"))
     names, values = values_of(extras)
     states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 200
-    before = stepper(extras, step)
+    if ground:
+        states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
+    before = stepper(extras, step, ground=ground)
     path = before.follow(states, memories, steps)
     chunks = list(before.changes(path))
     found = np.concatenate([np.concatenate([one.states, one.forces], axis=2) for one in chunks])
     assert [one.first for one in chunks] == [0, 128]
+    if ground:
+        assert np.any(path.forces[0, :, -4:] < 0)
+        assert not np.any(path.forces[-1, :, -4:] < 0)
 
     def moved(unknown: int, by: float) -> Array:
         p, x, m = values.copy(), states.copy(), memories.copy()
@@ -133,21 +139,22 @@ def test_derivatives_are_those_of_the_steps_themselves() -> None:
             x[:, unknown - len(names)] += by
         else:
             m[:, unknown - len(names) - 14] += by
-        there = stepper(extras, step, p).follow(x, m, steps)
+        there = stepper(extras, step, p, ground).follow(x, m, steps)
         return np.concatenate([there.states, there.forces], axis=2)
 
     for unknown in range(len(names) + 18):
         size = 1e-6 * (abs(values[unknown]) if unknown < len(names) else 1.0)
         slope = (moved(unknown, size) - moved(unknown, -size)) / (2 * size)
         scale = np.abs(slope).max(axis=(0, 1)) + 1e-9 * np.abs(slope).max()
-        assert np.all(np.abs(found[..., unknown] - slope) < 2e-3 * scale)
+        # In the step in which a wheel lands, the force at its end is put right only so often.
+        assert np.all(np.abs(found[..., unknown] - slope) < (1e-2 if ground else 2e-3) * scale)
 
 
 @pytest.mark.parametrize(
     ("law", "parameters"),
     [
         (FRICTION, (100.0, 2e5)), (FRICTION, (0.0, 2e5)), (REBOUND, (1.7, 1500.0)), (PROGRESSIVE, (3.0, 2e4)),
-        (BUMP_STOP, (1e5, 0.004)), (GROUND, (90.0, 2e4, 30.0)),
+        (BUMP_STOP, (1e5, 0.004)), (GROUND, (2e4,)), (GROUND, (2e4, 30.0)),
     ],
 )  # fmt: skip
 def test_laws_tell_their_own_derivatives(law: ForceLaw, parameters: tuple[float, ...]) -> None:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimate import Known
-from sprung.identification.climb import CLOSE_BY, CONVERGED, Climb, told_directions
+from sprung.identification.climb import CLOSE_BY, CONVERGED, Climb, Point, told_directions
 from sprung.identification.knowledge import Coordinates, Knowledge
-from sprung.identification.stepped import SteppedLikelihood
+from sprung.identification.stepped import SteppedLikelihood, SteppedPlace
 from sprung.identification.summit import NEAR, Summit
 from sprung.prepare import Decay
 from sprung.vehicle import NonlinearModel, Rows, Sensor
@@ -23,6 +23,9 @@ _COARSE, _FINE = 0.0025, 0.00101
 
 _MOST = 100
 """Steps at the most."""
+
+_ANEW = 2
+"""Times that a climb begins anew where a friction has gone astray."""
 
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
@@ -88,9 +91,7 @@ def ascend_stepped(
         stages.append((list(decays), enough, _FINE))
     for part, gain, longest in stages:
         climb = _climb(part, models, sensors, known, values, states, tilting, longest)
-        point = climb.to_the_top(
-            climb.knowledge.bind(climb.knowledge.coordinates.by_name(values)), None, gain, CLOSE_BY, most
-        )
+        point = _to_the_top(climb, values, gain, most)
         states, steps = point.place.states(point.weights), steps + point.steps
         # Whoever climbs on starts with the initial states that were found.
         climb = replace(climb, likelihood=climb.likelihood.beginning(states))
@@ -135,7 +136,7 @@ def prospects(
     """
     climb = _climb(decays, models, sensors, known, values, states, tilting, _COARSE)
     names = climb.knowledge.coordinates.names
-    u = climb.knowledge.bind(climb.knowledge.coordinates.by_name(values))
+    u = _bound(climb, values)
     point = climb.at(u)
     slopes, prior = climb.knowledge.coordinates.slopes(u), climb.knowledge.prior(u)
     free = climb.knowledge.free(u)
@@ -202,6 +203,27 @@ def _climb(
     rows = Rows.of([sensor.row for sensor in sensors], names)
     likelihood = SteppedLikelihood.of(decays, models, rows, states, tilting, longest)
     return Climb(likelihood, Knowledge(Coordinates.beside(names, typical), known))
+
+
+def _to_the_top(climb: Climb, values: Mapping[str, float], enough: float, most: int) -> Point:
+    """Climb, and once more from where no friction remembers what it cannot, as long as that leads higher."""
+    names = climb.knowledge.coordinates.names
+    point = climb.to_the_top(_bound(climb, values), None, enough, CLOSE_BY, most)
+    for _ in range(_ANEW):
+        begin = point.place.believable() if isinstance(point.place, SteppedPlace) else None
+        if begin is None:
+            break
+        anew = replace(climb, likelihood=point.place.likelihood.beginning(begin))
+        there = dict(zip(names, point.place.values.tolist(), strict=True))
+        found = anew.to_the_top(_bound(climb, there), None, enough, CLOSE_BY, most)
+        if climb.cost(found) >= climb.cost(point):
+            break
+        point = replace(found, steps=point.steps + found.steps)
+    return point
+
+
+def _bound(climb: Climb, values: Mapping[str, float]) -> Real:
+    return climb.knowledge.bind(climb.knowledge.coordinates.by_name(values))
 
 
 def _begun(decay: Decay) -> Decay:

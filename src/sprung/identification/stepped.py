@@ -18,13 +18,16 @@ from sprung.identification.longhand import REACH
 from sprung.identification.records import channel_shares
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import NonlinearModel, Path, Rows, Stepper
+from sprung.vehicle import Felt, NonlinearModel, Path, Rows, Stepper
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 _MEMORY = 1.0
 """How far a friction may be from none when a decay begins, in parts of itself."""
+
+_MOST = 1.15
+"""Memory that no friction has: it slides at one, and noise adds little."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,6 +299,30 @@ class SteppedPlace:
         pull = system.own - np.einsum("dpz,p->dz", system.across, values - self.values)
         step = np.linalg.solve(system.within, pull[:, :, None])[:, :, 0]
         return SteppedPlace(self.likelihood, values, self.begin + step)
+
+    def believable(self) -> Real | None:
+        """Give beginnings without memories that no friction can have, or None where there are none such.
+
+        Accelerations do not tell a friction's force from a spring's while neither changes: a drop may be explained for a
+        while by a friction that holds against where the vehicle stands. It then begins anew from none, and stands where
+        all forces are what they were.
+        """
+        forces, likelihood = self._stepper.forces, self.likelihood
+        remembered = self.begin[:, 14:]
+        gone = np.abs(remembered) > _MOST
+        if not gone.any():
+            return None
+        rows = forces.rows.at(self.values)
+        memory = np.zeros((len(remembered), forces.number))
+        memory[:, forces.remembering] = remembered
+        travel = self.begin[:, :7] @ rows.T
+        answer = forces.answer(self.values, Felt(travel, self.begin[:, 7:14] @ rows.T, np.zeros_like(travel), memory))
+        lost = np.where(gone, remembered, 0.0) * answer.by_memory[:, forces.remembering] @ rows[forces.remembering]
+        stiffness = np.array([model.linear.matrices(self.values).K for model in likelihood.models])[likelihood.kind]
+        begin = self.begin.copy()
+        begin[:, :7] += np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
+        begin[:, 14:][gone] = 0.0
+        return begin - likelihood.sag(self.values)
 
     def feigned(self, weights: Real) -> Real:
         """Give the information that noise alone feigns: none is known of, shape (parameter, parameter)."""

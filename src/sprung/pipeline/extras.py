@@ -185,16 +185,30 @@ class Way:
         start = self._noted({extra: promised[extra] for extra in tried if extra not in hopeful}, False, False)
         if not hopeful:
             return start
-        if plain.names != self.choice.names:
-            start = replace(start, choice=plain, summit=fit_from(plain, self.decays, self.summit, NEAR, self.progress))
+        found = start._parted(plain)._found(hopeful)
+        if plain.names != self.choice.names and found._errs:
+            other = replace(start, path=found.path)._found(hopeful)
+            found = other if other._worth(self) > found._worth(self) else replace(found, path=other.path)
+        if found.choice.nonlinear and found._worth(self) > 0:
+            return found.tilted()
+        return replace(self, path=found.path)
+
+    def _parted(self, choice: Choice) -> Way:
+        """Go on from another linear model."""
+        if choice.names == self.choice.names:
+            return self
+        return replace(self, choice=choice, summit=fit_from(choice, self.decays, self.summit, NEAR, self.progress))
+
+    def _found(self, hopeful: Sequence[str]) -> Way:
+        """Fit what promises something, and look for more until nothing does."""
         # Nearly every suspension rubs, and what rubs looks like everything else: friction is fitted first, and alone.
-        found = start._together([extra for extra in hopeful if extra == "friction"] or hopeful)
-        if not found.choice.nonlinear and hopeful != ["friction"]:
-            found = start._together(hopeful)
+        found = self._together([extra for extra in hopeful if extra == "friction"] or hopeful)
+        if not found.choice.nonlinear and list(hopeful) != ["friction"]:
+            found = self._together(hopeful)
         for _ in range(_MORE):
             if not found.choice.nonlinear:
                 break
-            refused = {one.extra for one in found.path[len(start.path) :] if one.fitted and not one.taken}
+            refused = {one.extra for one in found.path[len(self.path) :] if one.fitted and not one.taken}
             tried = [extra for extra in found._open([SEPARATE, *EXTRAS]) if extra not in refused]
             promised = found._prospects(tried) if tried else {}
             inflation = inflation_of(found.summit, self.decays)
@@ -203,12 +217,17 @@ class Way:
             if larger.choice.names == found.choice.names:
                 break
             found = larger
-        inflation = inflation_of(found.summit, self.decays)
-        gain = 2 * (found.summit.loglikelihood - self.summit.loglikelihood) / inflation
-        parameters = len(found.choice.names) - len(self.choice.names)
-        if found.choice.nonlinear and gain > parameters * self._each:
-            return found.tilted()
-        return replace(self, path=found.path)
+        return found
+
+    @property
+    def _errs(self) -> bool:
+        """Whether the model errs, and not only the sensors."""
+        return not self.choice.nonlinear or inflation_of(self.summit, self.decays) > _ERRS
+
+    def _worth(self, than: Way) -> float:
+        """Give what it gains over another way, in twice the log-likelihood, beyond what is asked of its parameters."""
+        gain = 2 * (self.summit.loglikelihood - than.summit.loglikelihood) / inflation_of(self.summit, self.decays)
+        return gain - (len(self.choice.names) - len(than.choice.names)) * self._each
 
     def with_forces(self, wanted: Choice) -> Way:
         """Fit the model that is wanted, whatever it gains."""

@@ -9,6 +9,7 @@ from sprung.vehicle.elements import (
     Force,
     Tracks,
     forces_beside,
+    ground_forces,
     half_distances,
     seven_degrees_of_freedom,
 )
@@ -82,6 +83,7 @@ __all__ = [
     "drops_with_forces",
     "forces_beside",
     "free_decay",
+    "ground_forces",
     "half_distances",
     "half_sine_bump",
     "parameter_names",

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sprung.vehicle import rows
-from sprung.vehicle.laws import FRICTION, PROGRESSIVE, REBOUND, ForceLaw
+from sprung.vehicle.laws import FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
 from sprung.vehicle.rows import Row, Wheel
 
 Law = Literal["mass", "damper", "spring"]
@@ -57,11 +57,14 @@ class Force:
         Names of the law's parameters, in its order.
     row
         The travel it feels, and on which it acts.
+    weightless
+        Whether the travel counts from where the empty vehicle would be without gravity, not from where it rests.
     """
 
     law: ForceLaw
     parameters: tuple[str, ...]
     row: Row
+    weightless: bool = False
 
 
 def half_distances(tracks: Tracks) -> dict[tuple[str, Law], str]:
@@ -114,6 +117,21 @@ def forces_beside(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tu
     tuple of Force
     """
     return tuple(_forces(half_distances(tracks), extras))
+
+
+def ground_forces(extras: Collection[str] = ()) -> tuple[Force, ...]:
+    """List what the ground takes off the tyres' forces where they would pull.
+
+    Parameters
+    ----------
+    extras
+        Any of `EXTRAS`; with ``tyre-damping`` it damps too.
+    """
+    damping = "tyre-damping" in extras
+    return tuple(
+        Force(GROUND, (f"k_t{station[0]}", f"c_t{station[0]}")[: 1 + damping], rows.wheel(station), weightless=True)
+        for station in rows.WHEELS
+    )
 
 
 def _forces(half_distance: dict[tuple[str, Law], str], extras: Collection[str]) -> Iterator[Force]:

@@ -164,19 +164,24 @@ def _stop_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
     return Sensitivity(force, np.zeros_like(force))
 
 
+def _pull(parameters: Array, felt: Felt) -> Array:
+    """Give what a tyre that held fast to the ground would pull with, N: by its damping as well where that is a parameter."""
+    stiffness, *damping = parameters
+    pull: Array = stiffness * felt.travel + sum((each * felt.rate for each in damping), np.zeros_like(felt.travel))
+    return np.maximum(pull, 0.0)
+
+
 def _lifted(parameters: Array, felt: Felt) -> Answer:
-    weight, stiffness, damping = parameters
-    nothing = np.zeros_like(felt.travel)
-    push = weight - stiffness * felt.travel - damping * felt.rate
-    off = push < 0
-    force = np.where(off, push, 0.0)
-    return Answer(force, felt.memory, -stiffness * off, -damping * off, nothing, nothing, nothing)
+    stiffness, *damping = parameters
+    pull, nothing = _pull(parameters, felt), np.zeros_like(felt.travel)
+    off = pull > 0
+    by_rate = -sum(damping, np.zeros_like(stiffness)) * off
+    return Answer(-pull, felt.memory, -stiffness * off, by_rate, nothing, nothing, nothing)
 
 
 def _lifted_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
-    weight, stiffness, damping = parameters
-    off = (weight - stiffness * felt.travel - damping * felt.rate < 0).astype(np.float64)
-    force = np.stack([off, -felt.travel * off, -felt.rate * off])
+    off = _pull(parameters, felt) > 0
+    force = np.stack([-felt.travel * off, -felt.rate * off][: len(parameters)])
     return Sensitivity(force, np.zeros_like(force))
 
 
@@ -194,5 +199,5 @@ BUMP_STOP = ForceLaw("bump-stop", False, _stop, _stop_sensitivity)
 """A stop: stiffness, N/m, and the compression at which the suspension meets it, m, from the empty vehicle at rest."""
 
 GROUND = ForceLaw("ground", False, _lifted, _lifted_sensitivity)
-"""The ground, which pushes and never pulls: what a linear tyre would pull with is taken off. Static wheel load, N, tyre rate,
-N/m, and tyre damping, N s/m; the travel is the wheel's height above where it stands at rest."""
+"""The ground, which pushes and never pulls: what a linear tyre would pull with is taken off. Tyre rate, N/m, and tyre
+damping, N s/m, where there is any; the travel is the wheel's height above where its tyre just touches the ground."""

@@ -37,11 +37,14 @@ class Forces(NamedTuple):
         Each law, which of the forces have it, and where its parameters are in the list, shape (parameter, force).
     remembering
         Which forces have a memory, in the order of the memories.
+    weightless
+        1 for those whose travel counts from where the empty vehicle would be without gravity, else 0; shape (force,).
     """
 
     rows: Rows
     laws: tuple[tuple[ForceLaw, slice, Index], ...]
     remembering: Index
+    weightless: Array
 
     @classmethod
     def of(cls, forces: Sequence[Force], names: Sequence[str]) -> Forces:
@@ -54,7 +57,8 @@ class Forces(NamedTuple):
             positions = np.array([[names.index(name) for name in ordered[i].parameters] for i in own]).T
             laws.append((law, slice(own[0], own[-1] + 1), positions))
         remembering = np.array([i for i, force in enumerate(ordered) if force.law.remembers], dtype=np.int64)
-        return cls(Rows.of([force.row for force in ordered], names), tuple(laws), remembering)
+        weightless = np.array([float(force.weightless) for force in ordered])
+        return cls(Rows.of([force.row for force in ordered], names), tuple(laws), remembering, weightless)
 
     @property
     def number(self) -> int:
@@ -145,6 +149,25 @@ class NonlinearModel:
         """Give where the load's weight brings the vehicle to rest without the forces, from the empty one; X, shape (7,)."""
         weight = self.load.matrices(values).M @ HEAVE * self.gravity
         return -np.asarray(np.linalg.solve(self.linear.matrices(values).K, weight), dtype=np.float64)
+
+    def offsets(self, values: Array) -> tuple[Array, Array]:
+        """Give the travels of the forces where the empty vehicle rests, m, each from where it counts.
+
+        Returns
+        -------
+        offsets
+            Shape (force,).
+        slopes
+            By each parameter, shape (force, parameter).
+        """
+        K, dK = self.linear.matrices(values).K, self.linear.slopes(values).K
+        M = self.linear.matrices(values).M - self.load.matrices(values).M
+        dM = self.linear.slopes(values).M - self.load.slopes(values).M
+        sag = -np.linalg.solve(K, M @ HEAVE * self.gravity)
+        by_sag = -np.linalg.solve(K, (dM @ HEAVE * self.gravity + dK @ sag).T)
+        G, by_row = self.forces.rows.at(values), self.forces.rows.slopes
+        counted = self.forces.weightless
+        return counted * (G @ sag), counted[:, None] * (by_row @ sag + G @ by_sag)
 
     def accelerations(self, values: Array) -> tuple[Array, Array]:
         """Give accelerations from {X, Ẋ, u, 1} and their derivatives.

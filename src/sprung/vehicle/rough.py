@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.elements import Force, forces_beside, seven_degrees_of_freedom
-from sprung.vehicle.ground import Ground, static_wheel_loads
-from sprung.vehicle.laws import GROUND, Felt
+from sprung.vehicle.elements import Force, forces_beside, ground_forces, seven_degrees_of_freedom
+from sprung.vehicle.ground import Ground
+from sprung.vehicle.laws import Felt
 from sprung.vehicle.load import Load
 from sprung.vehicle.nonlinear import NonlinearModel
 from sprung.vehicle.parameters import Vehicle
 from sprung.vehicle.response import Motion
-from sprung.vehicle.rows import WHEELS, Wheel, wheel
+from sprung.vehicle.rows import WHEELS, Wheel
 from sprung.vehicle.stepping import Stepper
 
 Array = NDArray[np.float64]
@@ -81,14 +81,8 @@ def drops_with_forces(
     list of Motion
         Displacement from where the vehicle rests with its load, velocity and acceleration, each (7, samples).
     """
-    weights = static_wheel_loads(vehicle, gravity=gravity).tolist()
-    names = (*vehicle.parameters, *(f"W_{station}" for station in WHEELS), "c_tf", "c_tr")
-    names = tuple(dict.fromkeys(names))
-    known = vehicle.parameters | {f"W_{station}": weight for station, weight in zip(WHEELS, weights, strict=True)}
-    values = np.array([known.get(name, 0.0) for name in names])
-    on_ground = [
-        Force(GROUND, (f"W_{station}", f"k_t{station[0]}", f"c_t{station[0]}"), wheel(station)) for station in WHEELS
-    ]
+    names, values = tuple(vehicle.parameters), np.array(list(vehicle.parameters.values()))
+    on_ground = ground_forces(vehicle.extras)
     loads = list({block.load.name: block.load for block in blocks}.values())
     models = [_model(vehicle, names, on_ground, load, gravity) for load in loads]
     kind = np.array([[load.name for load in loads].index(block.load.name) for block in blocks])
@@ -141,14 +135,14 @@ def _heights(block: Block) -> Array:
 def _at_rest(model: NonlinearModel, values: Array, rest: Array, heights: Array) -> Array:
     """Find how a vehicle rests on blocks, X from the empty one at rest on the ground; shape (7,)."""
     forces, K = model.forces, model.linear.matrices(values).K
-    G = forces.rows.at(values)
+    G, offsets = forces.rows.at(values), model.offsets(values)[0]
     tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
     pull = -K @ model.sag(values) - np.append(np.zeros(3), tyres * heights)
     lifted = np.zeros(forces.number)
     lifted[-4:] = heights
     X = rest
     for _ in range(_SETTLING):
-        travel = G @ X - lifted
+        travel = G @ X - lifted + offsets
         nothing = np.zeros_like(travel)
         answer = forces.answer(values, Felt(travel, nothing, nothing, nothing))
         left = K @ X + pull + G.T @ answer.force

@@ -71,6 +71,8 @@ class Stepper:
         The forces, the same for all.
     values
         Parameters, SI, shape (parameter,).
+    offsets, by_offset
+        Travel of each force where the empty vehicle rests, m, shape (force,), and by each parameter, (force, parameter).
     steps, slopes
         One step of each kind, and its derivatives by each parameter, stacked along a leading axis.
     kind
@@ -79,6 +81,8 @@ class Stepper:
 
     forces: Forces
     values: Array
+    offsets: Array
+    by_offset: Array
     steps: Step
     slopes: Step
     kind: Index
@@ -88,7 +92,7 @@ class Stepper:
         """Make the steps of models, each of a length of time in s."""
         made = [model.step(values, time) for model, time in zip(models, times, strict=True)]
         stacked = [Step(*(np.stack(each) for each in zip(*those, strict=True))) for those in zip(*made, strict=True)]
-        return cls(models[0].forces, values, stacked[0], stacked[1], kind)
+        return cls(models[0].forces, values, *models[0].offsets(values), stacked[0], stacked[1], kind)
 
     @cached_property
     def _travel(self) -> Array:
@@ -119,6 +123,7 @@ class Stepper:
         # One product gives where a step ends without the force at its end, and travel and rate there.
         whole = np.concatenate([self.steps.transition, self.steps.before, self.steps.constant[:, :, None]], axis=2)
         whole = np.concatenate([whole, feel @ whole], axis=1)[at]
+        whole[:, 14 : 14 + count, -1] += self.offsets
         after = self.steps.after[at]
         yields = (feel @ self.steps.after)[at]
         path = Path(
@@ -128,7 +133,7 @@ class Stepper:
         )
         path.states[0] = states
         path.memories[0][:, self.forces.remembering] = memories
-        travel = states[:, :7] @ rows.T
+        travel = states[:, :7] @ rows.T + self.offsets
         at_rest = Felt(travel, states[:, 7:] @ rows.T, np.zeros_like(travel), path.memories[0])
         path.forces[0] = self.forces.answer(values, at_rest).force
         now = np.ones((len(at), 15 + count))
@@ -187,9 +192,10 @@ class Stepper:
     def _answers(self, path: Path, first: int, last: int) -> tuple[Answer, Felt]:
         """Give the answers of the steps that end at each of first..last, and what they answered."""
         travel, rate = path.states[first:last, :, :7] @ self._travel.T, path.states[first:last, :, 7:] @ self._travel.T
+        travel += self.offsets
         earlier = np.arange(first, last) - 1
         earlier[earlier < 0] = 0
-        way = travel - path.states[earlier, :, :7] @ self._travel.T
+        way = travel - (path.states[earlier, :, :7] @ self._travel.T + self.offsets)
         asked = Felt(travel, rate, way, path.memories[earlier])
         return self.forces.answer(self.values, asked), asked
 
@@ -205,9 +211,8 @@ class Stepper:
         forces += answer.by_memory[..., None] * memory
         forces[..., :parameters] += self.forces.sensitivity(self.values, asked).force
         X, V = path.states[first:last, :, :7], path.states[first:last, :, 7:]
-        forces[..., :parameters] += answer.by_travel[..., None] * _moved(X, by_row) + answer.by_rate[
-            ..., None
-        ] * _moved(V, by_row)
+        forces[..., :parameters] += answer.by_travel[..., None] * (_moved(X, by_row) + self.by_offset)
+        forces[..., :parameters] += answer.by_rate[..., None] * _moved(V, by_row)
         return forces
 
     @cached_property
@@ -236,7 +241,7 @@ class Stepper:
         feel = _beside(now.by_travel, rows, now.by_rate)
         start = (
             of_now
-            + now.by_travel[..., None] * _moved(x[..., :7], by_row)
+            + now.by_travel[..., None] * (_moved(x[..., :7], by_row) + self.by_offset)
             + now.by_rate[..., None] * _moved(x[..., 7:], by_row)
         )
         # The force at the end: by the state there, and by state and memory at the start.
@@ -246,7 +251,7 @@ class Stepper:
         kept = then.by_memory * then.memory_by_memory
         ways = _moved(y[..., :7] - x[..., :7], by_row)
         end = of_then.force + then.by_memory[..., None] * of_then.memory
-        end += then.by_travel[..., None] * _moved(y[..., :7], by_row) + held[..., None] * ways
+        end += then.by_travel[..., None] * (_moved(y[..., :7], by_row) + self.by_offset) + held[..., None] * ways
         end += then.by_rate[..., None] * _moved(y[..., 7:], by_row)
 
         at = self.kind
