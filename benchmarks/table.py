@@ -34,6 +34,10 @@ medians over the rounds, with quartiles.
   finite differences and each library's own tolerances (lmfit with twice its step: with its own, rounding stops
   it short). They are given a start a fifth beside the truth, the noise levels, and the elimination of initial states and
   offsets. SciPy's gives no error bars.
+- *Whole fit with friction*: the same drops of the same car with 100 N of dry friction at each wheel, from the linear fit on,
+  both coarse and fine steps. *solve_ivp and differences* (`plain_stepped.py`): the same sum of squares, every drop followed by
+  `scipy.integrate.solve_ivp` (LSODA, 1e-6), derivatives by differences, `least_squares`; it is given a start two percent beside
+  our end, our initial states and our noise levels.
 - *Floor*: one product of the records (80 × 1500) with the fourteen exponentials (1500 × 14, complex), in NumPy
   `records @ exponentials`. In real arithmetic the same product takes half the time.
 

@@ -14,8 +14,9 @@ import pytest
 import sprung
 from measure import Run, Turns, peak_memory
 from plain import PlainFit
+from plain_stepped import PlainSteppedFit
 from sprung.vehicle import TABLE_1_CAR
-from ten_drops import RATE, SAMPLES, Task, ten_drops
+from ten_drops import RATE, SAMPLES, Task, ten_drops, ten_rubbing_drops
 
 TIMES = (1, 2, 4, 8, 16)
 """How many times as many samples."""
@@ -75,6 +76,25 @@ def test_beside_others(benchmark: Any, task: Task) -> None:
     }
     assert distances["SciPy, as timed"] < SAME
     assert distances["SciPy, polished"] < SAME
+
+
+def test_with_friction_beside_a_general_solver(benchmark: Any) -> None:
+    """SciPy is given a start two percent beside our end, initial states at it, and our noise levels; we the linear fit."""
+    task = ten_rubbing_drops()
+    ours = task.found
+    plain = PlainSteppedFit(task, ours.noise)
+    found: dict[str, Any] = {}
+    turns = Turns({"with friction": (task.fit, 1), "solve_ivp": (lambda: found.update(scipy=plain.fit()), 1)})
+    benchmark.pedantic(turns, rounds=1)
+    count = len(task.names)
+    jacobian = found["scipy"].jac
+    std = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian))[:count])  # of the parameters' logarithms
+    apart = np.abs(found["scipy"].x[:count] - np.log(ours.values)) / std
+    benchmark.extra_info["ratios"] = {
+        "solve_ivp and differences / whole fit with friction": turns.ratio("solve_ivp", "with friction", least=20),
+    }
+    benchmark.extra_info["standard_errors"] = {"solve_ivp, with friction": float(apart.max())}
+    benchmark.extra_info["seconds"] = {name: float(np.median(times)) for name, times in turns.seconds.items()}
 
 
 def test_beside_the_floor(benchmark: Any, task: Task) -> None:

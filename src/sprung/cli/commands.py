@@ -56,13 +56,21 @@ def identify(
             "can be given more than once; all for every one.",
         ),
     ] = None,
+    fall: Annotated[
+        Optional[bool],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            "--fall/--no-fall",
+            help="Use the drops from their release on, not only from when the last tyre is down: sharper, and slower.",
+            show_default="where the decays leave a parameter uncertain by more than 2 %",
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Identify every parameter and write the results folder (default: results/ beside the campaign)."""
     with working("reading the recordings") as progress:
         read = sprung.read(campaign)
         folder = output or (read.path or campaign).parent / "results"
-        result = sprung.identify(read, profile=profile or (), progress=progress)
+        result = sprung.identify(read, profile=profile or (), fall=fall, progress=progress)
         result.save(folder)
     conclude(result, folder, as_json)
 

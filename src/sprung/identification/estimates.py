@@ -123,10 +123,10 @@ def estimate_of(fit: Fit, known: Mapping[str, Known], name: str) -> Estimate:
     if name in known and known[name].exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
-    std = fit.spread(gradient * fit.slopes, value)
+    std = fit.spread(gradient * fit.slopes, fit.size(name) if name in fit.names else value)
     if std is None:
         return Estimate(None, None, None, unit, "unidentifiable")
-    if std <= 1e-12 * abs(value):
+    if std <= 1e-12 * abs(value) and value:
         return Estimate(value, 0.0, (value, value), unit, "known")
     return Estimate(value, std, _interval(name, value, std), unit, "estimated", "curvature")
 
@@ -148,7 +148,7 @@ def _scale(fit: Fit) -> Scale:
         if PARAMETERS[name].scales:
             ratio = float(fit.values[i]) / total
             direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
-            std = fit.spread(direction, ratio)
+            std = fit.spread(direction, fit.size(name) / total)
             if std is not None:
                 per_total_mass[name] = Ratio(ratio, std, _PER_MASS[PARAMETERS[name].unit])
     return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)

@@ -129,6 +129,12 @@ class Fit:
         wider = self.relative_covariance + by**2 * open_ @ open_.T
         return replace(self, relative_covariance=wider, covariance=wider * np.outer(self.slopes, self.slopes))
 
+    def size(self, name: str) -> float:
+        """Give what counts as much of a parameter: its value, or, where that may be zero, what would matter beside others."""
+        at = self.names.index(name)
+        value = abs(float(self.values[at]))
+        return value if PARAMETERS[name].positive else max(value, abs(float(self.slopes[at])))
+
     def spread(self, direction: Real, value: float) -> float | None:
         """Give the standard uncertainty of a function of the coordinates.
 

@@ -165,10 +165,15 @@ class Knowledge:
 
 def _reference(name: str, typical: Mapping[str, float]) -> float:
     """Give the size by which a parameter's coordinate is multiplied, SI; 1 for those that are fitted by their logarithms."""
-    if PARAMETERS[name].positive:
+    told = PARAMETERS[name]
+    if told.positive or not told.scales:
         return 1.0
-    if not PARAMETERS[name].scales:
-        return 1.0
-    if name.startswith("F"):
-        return _TRAVEL * typical[f"k_s{name[-1]}"]
-    return typical["c_sf"] if name.startswith("c") else typical["k_sf"]
+    stiffness = typical["k_sf"]
+    sizes = {
+        "N": _TRAVEL * stiffness,
+        "N/m": stiffness,
+        "N m": stiffness,
+        "N s/m": typical["c_sf"],
+        "kg": typical["m_uf"],
+    }
+    return sizes[told.unit]

@@ -15,6 +15,7 @@ from sprung.identification.monomials import shape_of
 from sprung.vehicle import (
     DERIVED,
     PARAMETERS,
+    Heights,
     LinearModel,
     Load,
     Tracks,
@@ -126,7 +127,7 @@ def structured_least_squares(
 
     Examples
     --------
-    >>> from sprung.vehicle import EMPTY, SCHOOL_BUS, Added, Load
+    >>> from sprung.vehicle import EMPTY, SCHOOL_BUS, Added, Load, Heights
     >>> load = Load(name="on the body", added=Added(mass=470, I_yy=1057.5, I_xx=339.6))
     >>> states = [(load, SCHOOL_BUS.matrices(load).state) for load in (EMPTY, load)]
     >>> fit = structured_least_squares(states, tracks="separate")
@@ -137,7 +138,7 @@ def structured_least_squares(
     _check(states, known, names, std)
     elements = seven_degrees_of_freedom(tracks, extras)
     lower = [np.asarray(A, dtype=float)[7:] for _, A in states]
-    models = [LinearModel.of(elements + load.elements(cg_height), names) for load, _ in states]
+    models = [LinearModel.of(elements + load.elements(Heights(cg_height)), names) for load, _ in states]
     weights = [_row_weights(A) for A in lower] if std is None else [1 / np.asarray(s, dtype=float) for s in std]
     fitted = [_State(*one) for one in zip(models, lower, weights, strict=True)]
 

@@ -16,7 +16,7 @@ from sprung.identification.climb import told_directions
 from sprung.identification.likelihood import Place
 from sprung.identification.solution import ModalSlopes, respond
 from sprung.identification.summit import Summit
-from sprung.vehicle import LinearModel, Load, Rows, Sensor
+from sprung.vehicle import Heights, LinearModel, Load, Rows, Sensor
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -65,7 +65,7 @@ class Suspect(NamedTuple):
 
 
 def suspects(
-    summit: Summit, sensors: Sequence[Sensor], loads: Mapping[str, Load], cg_height: float | None
+    summit: Summit, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
 ) -> tuple[Suspect, ...]:
     """List everything that may be otherwise, what would gain most first.
 
@@ -77,8 +77,8 @@ def suspects(
         The sensors.
     loads
         The loads by name.
-    cg_height
-        Height of the body's centre of gravity, m, where it is known.
+    heights
+        How high things are, as far as it is known.
 
     Returns
     -------
@@ -88,7 +88,7 @@ def suspects(
     place, climb = summit.point.place, summit.climb
     if not isinstance(place, Place):
         return ()
-    changes = list(_changes(summit, place, sensors, loads, cg_height))
+    changes = list(_changes(summit, place, sensors, loads, heights))
     accused, slopes = [who for who, _ in changes], [slope for _, slope in changes]
     more = ModalSlopes(
         np.zeros((*place.modes.poles.shape[:-1], len(slopes), 14), dtype=np.complex128),
@@ -129,7 +129,7 @@ _Who = tuple[Kind, str, int, int]
 
 
 def _changes(
-    summit: Summit, place: Place, sensors: Sequence[Sensor], loads: Mapping[str, Load], cg_height: float | None
+    summit: Summit, place: Place, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
 ) -> Iterator[tuple[_Who, ModalSlopes]]:
     """Give what each change does to the response of every load."""
     modes, likelihood = place.modes, place.likelihood
@@ -150,7 +150,7 @@ def _changes(
         for item, piece in enumerate(loads[name].items):
             for axis in (0, 1) if piece.position is not None else ():
                 forces = np.zeros((len(modes.poles), 7, 1, 14), dtype=np.complex128)
-                forces[number, :, 0] = _moved(loads[name], item, axis, cg_height, summit) @ modes.accelerations[number]
+                forces[number, :, 0] = _moved(loads[name], item, axis, heights, summit) @ modes.accelerations[number]
                 changed = respond(likelihood.loads, likelihood.sensors, place.values, modes, forces, likelihood.span)
                 yield ("load-position", name, axis, item), changed
 
@@ -164,13 +164,13 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
     return rows[1] - rows[0], rows[2] - rows[0]
 
 
-def _moved(load: Load, item: int, axis: int, cg_height: float | None, summit: Summit) -> Real:
+def _moved(load: Load, item: int, axis: int, heights: Heights, summit: Summit) -> Real:
     """Give what M changes by, per metre that an item is moved; shape (7, 7)."""
     sides = []
     for step in (-_NUDGE, _NUDGE):
         place = list(load.items[item].position or ())
         place[axis] += step
         there = load.items[item].model_copy(update={"position": tuple(place)})
-        model = LinearModel.of(list(there.elements(cg_height)), summit.names)
+        model = LinearModel.of(list(there.elements(heights)), summit.names)
         sides.append(model.matrices(summit.values).M)
     return (sides[1] - sides[0]) / (2 * _NUDGE)

@@ -20,7 +20,7 @@ from sprung.identification.likelihood import Likelihood
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay, Seen
 from sprung.recording import Drop
-from sprung.vehicle import Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
+from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
 
 Real = NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def timed_by_release(
     parameters = separated(vehicle.parameters)
     try:
         fall = drop_from_blocks(vehicle, load, drop.wheels, drop.height or _LOW, duration=_FLIGHT)
-        flight, slopes = _flights(parameters, drop, load, sensors, vehicle.cg_height)
+        flight, slopes = _flights(parameters, drop, load, sensors, vehicle.heights)
     except SprungError:  # so rough a vehicle that it does not even stand
         return decay
     if seen.release is None:
@@ -136,7 +136,7 @@ class _Moment(NamedTuple):
 
 
 def _flights(
-    parameters: Mapping[str, float], drop: Drop, load: Load, sensors: Sequence[Sensor], cg_height: float | None
+    parameters: Mapping[str, float], drop: Drop, load: Load, sensors: Sequence[Sensor], heights: Heights
 ) -> tuple[Real, Real]:
     """Give what the sensors read after the release, and by how much more with each parameter.
 
@@ -145,7 +145,7 @@ def _flights(
     names, samples = tuple(parameters), int((_FLIGHT + 2 * _AWAY) / _FINE)
 
     def flight(values: Mapping[str, float]) -> Real:
-        vehicle = Vehicle.from_parameters(values, cg_height=cg_height)
+        vehicle = Vehicle.from_parameters(values, name="falling", **heights.by_key)
         # From high blocks, for until the landing their height makes no difference.
         fall = drop_from_blocks(vehicle, load, drop.wheels, _HIGH, duration=_FLIGHT + 2 * _AWAY)
         rows = Rows.of([sensor.row for sensor in sensors], names).at(np.array(list(values.values())))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.identification import Summit, ascend, ascend_stepped, lost_without
 from sprung.pipeline.choice import Choice
 from sprung.prepare import Decay
-from sprung.vehicle import EXTRA_PARAMETERS, NEUTRAL, separated
+from sprung.vehicle import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, Rows, Tracks, brought_by, forces_beside, separated
 
 Real = NDArray[np.float64]
 
@@ -24,14 +24,20 @@ _TRAVEL = 0.002
 _STIFFER = 10.0
 """How many times stiffer than the spring a friction is before it slides, at the start of a fit."""
 
-_NOT_NEGATIVE = frozenset(name for name, value in NEUTRAL.items() if value == 0) - {"w_h", "p_f", "p_r"}
+_NOT_NEGATIVE = frozenset(name for name, value in NEUTRAL.items() if value == 0 and not PARAMETERS[name].signed)
 """Parameters of extras that cannot be below zero."""
+
+_UNEVEN = ("ks", "kt", "cs")
+"""Rates that may differ between left and right, by their names without the axle."""
 
 _BY_CHANCE = 4.0
 """Likelihood ratio that a parameter below zero may have by chance: two standard errors, squared."""
 
 _STROKE = 0.05
 """m of travel over which a progressive spring is judged."""
+
+_MET = (0.35, 0.6, 0.85)
+"""Parts of the largest compression at which stops may be met, where a fit begins."""
 
 _ENOUGH = 250.0
 """Samples per second, at least, that tell what an extra promises."""
@@ -73,8 +79,8 @@ def fit_from(
     """
     states = before.states if states is None else states
     sensors, known = choice.campaign.sensors, choice.known
-    start = start_of(choice.names, before.parameters)
-    if not choice.nonlinear:
+    start = start_of(choice, before.parameters)
+    if not choice.followed:
         found = ascend(decays, choice.models, sensors, known, start=start, enough=enough)
     else:
         found = ascend_stepped(
@@ -117,39 +123,54 @@ def size_of(extra: str, p: Mapping[str, float]) -> float:
         "friction": lambda axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"]),
         "rebound": lambda axle: p[f"r_{axle}"] - 1,
         "progressive": lambda axle: _STROKE * p[f"p_{axle}"],
+        "bump-stop": lambda axle: p[f"k_b{axle}"] / p[f"k_s{axle}"],
+        "asymmetry": lambda axle: max(abs(p[f"d_{rate}{axle}"] / p[f"{rate[0]}_{rate[1:]}{axle}"]) for rate in _UNEVEN),
+        "rigid-axle": lambda axle: 1 - p[f"n_{axle}" if f"n_{axle}" in p else f"n_{axle}2"],
     }
     return max(abs(parts[extra](axle)) for axle in "fr")
 
 
 def possible(extra: str, summit: Summit) -> bool:
     """Say whether an extra's parameters are what they can be: friction that drives is none, nor is a damper that does."""
-    below = [name for name in EXTRA_PARAMETERS.get(extra, ()) if name in _NOT_NEGATIVE and summit.parameters[name] < 0]
+    brought = () if extra == SEPARATE else EXTRA_PARAMETERS[extra]
+    below = [name for name in _NOT_NEGATIVE.intersection(brought, summit.names) if summit.parameters[name] < 0]
     return not any(lost_without(summit, [(name, 0.0)]) > _BY_CHANCE for name in below)
 
 
-def brought(extra: str) -> tuple[str, ...]:
+def brought(extra: str, tracks: Tracks) -> tuple[str, ...]:
     """Name the parameters that move on their own in the larger model only."""
-    return ("t_f1", "t_r1") if extra == SEPARATE else EXTRA_PARAMETERS[extra]
+    return ("t_f1", "t_r1") if extra == SEPARATE else brought_by(extra, tracks)
 
 
-def neutral(extra: str) -> list[tuple[str, str | float]]:
+def neutral(extra: str, tracks: Tracks) -> list[tuple[str, str | float]]:
     """Give what each parameter would have to be for the extra not to be there: a value, or another parameter."""
     if extra == SEPARATE:
         return [("t_f1", "t_f2"), ("t_r1", "t_r2")]
-    return [(name, NEUTRAL[name]) for name in EXTRA_PARAMETERS[extra] if name in NEUTRAL]
+    return [(name, NEUTRAL[name]) for name in brought_by(extra, tracks) if name in NEUTRAL]
 
 
-def neutral_start(names: Sequence[str], own: Mapping[str, float]) -> dict[str, float]:
-    """Give the same vehicle by the names of a larger model."""
-    own = {**own, **separated(own), **{name: own[f"{name}2"] for name in ("t_f", "t_r") if f"{name}2" in own}}
+def places_of_stops(choice: Choice, summit: Summit, decays: Sequence[Decay]) -> list[float]:
+    """Give compressions, m, at which stops may be met, from how far a fitted vehicle moves."""
+    rows = Rows.of([force.row for force in forces_beside(choice.tracks, ("bump-stop",))], choice.names)
+    G, point = rows.at(summit.values), summit.point
+    motions = (point.place.motion(point.weights, i, 0, decay.samples)[:7] for i, decay in enumerate(decays))
+    largest = max(float(-(G @ X).min()) for X in motions)
+    return [part * largest for part in _MET] if largest > 0 else []
+
+
+def neutral_start(names: Sequence[str], own: Mapping[str, float], met: float = 1.0) -> dict[str, float]:
+    """Give the same vehicle by the names of a larger model, which meets its stops at a compression in m."""
+    together = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
     stiff = {f"s_{axle}": _STIFFER * own[f"k_s{axle}"] for axle in "fr"}
-    return {name: own.get(name, {**NEUTRAL, **stiff}.get(name, 0.0)) for name in names}
+    stops = dict.fromkeys(("x_bf", "x_br"), met)
+    known = {**NEUTRAL, **stiff, **stops, **separated(own), **together, **own}
+    return {name: known[name] for name in names}
 
 
-def start_of(names: Sequence[str], own: Mapping[str, float]) -> dict[str, float]:
+def start_of(choice: Choice, own: Mapping[str, float]) -> dict[str, float]:
     """Give where to start a model from: friction that is not there yet starts with some."""
     slid = {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr" if f"F_{axle}" not in own}
-    start = neutral_start(names, own)
+    start = neutral_start(choice.names, own, choice.met)
     return {name: slid.get(name, value) for name, value in start.items()}
 
 

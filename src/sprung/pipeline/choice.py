@@ -10,13 +10,16 @@ from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
 from sprung.recording import Campaign
 from sprung.vehicle import (
-    EXTRA_PARAMETERS,
     EXTRAS,
     LINEAR_EXTRAS,
+    CarriedAt,
+    Heights,
     LinearModel,
     NonlinearModel,
     Tracks,
+    brought_by,
     forces_beside,
+    ground_forces,
     parameter_names,
     seven_degrees_of_freedom,
 )
@@ -46,6 +49,12 @@ class Choice:
     tilting
         Whether the sensors tilt with the body, so that they feel the less of gravity the further it turns: an effect of the
         second order that only the model with forces beside it can show.
+    airborne
+        Whether wheels may be off the ground, so that the ground is a force beside the others.
+    met
+        Compression at which stops are thought to be met before a fit says so, m.
+    carried_at
+        Where the body is carried sideways, where two heights are known at which it may be.
     """
 
     campaign: Campaign
@@ -55,6 +64,14 @@ class Choice:
     open: bool
     free: tuple[str, ...]
     tilting: bool = False
+    airborne: bool = False
+    met: float = 1.0
+    carried_at: CarriedAt = "wheels"
+
+    @property
+    def heights(self) -> Heights:
+        """How high things are, as far as it was measured."""
+        return self.campaign.heights._replace(carried_at=self.carried_at)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -64,22 +81,31 @@ class Choice:
     @cached_property
     def models(self) -> Mapping[str, LinearModel]:
         """Equations of motion by load name, without the forces that no matrix carries."""
-        elements, height = seven_degrees_of_freedom(self.tracks, self.extras), self.campaign.cg_height
-        return {load.name: LinearModel.of(elements + load.elements(height), self.names) for load in self.campaign.loads}
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
+        return {
+            load.name: LinearModel.of(elements + load.elements(self.heights), self.names)
+            for load in self.campaign.loads
+        }
 
     @cached_property
     def stepped(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with the forces that no matrix carries."""
-        elements = seven_degrees_of_freedom(self.tracks, self.extras)
-        forces, height = forces_beside(self.tracks, self.extras), self.campaign.cg_height
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
+        forces = forces_beside(self.tracks, self.extras) + (ground_forces(self.extras) if self.airborne else ())
         return {
-            load.name: NonlinearModel.of(elements, forces, self.names, load, height) for load in self.campaign.loads
+            load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
+            for load in self.campaign.loads
         }
 
     @property
     def nonlinear(self) -> bool:
         """Whether it has such forces."""
         return any(extra not in LINEAR_EXTRAS for extra in self.extras)
+
+    @property
+    def followed(self) -> bool:
+        """Whether its motion has to be followed step by step."""
+        return self.nonlinear or self.airborne
 
     @property
     def linear_extras(self) -> tuple[str, ...]:
@@ -134,7 +160,8 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
             'Set tracks = "separate" in [model] or rename the known half-distances.',
         )
     names = parameter_names(chosen, chosen_extras) if not problems else ()
-    for extra, brought in EXTRA_PARAMETERS.items():
+    for extra in EXTRAS:
+        brought = brought_by(extra, chosen)
         for name in (one for one in brought if one in campaign.known and names and one not in names):
             problems.add(
                 f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",
@@ -146,6 +173,8 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
     if campaign.wheelbase is not None:
         known["wheelbase"] = campaign.wheelbase
     undecided = tracks is None and campaign.model.tracks is None and not apart and not together
-    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in campaign.model.forbid)
+    # Where heights are known they say all that gravity does.
+    said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.known else ()))
+    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in said)
     ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
     return Choice(campaign, chosen, ordered, known, undecided, free)

@@ -90,7 +90,7 @@ def set_clocks(
     by_name = {seen.recording.name: (drop, seen) for drop, seen in zip(campaign.drops, prepared.seen, strict=True)}
     decays = prepared.decays
     for _ in range(_PASSES):
-        vehicle = Vehicle.from_parameters(summit.parameters, cg_height=campaign.cg_height, name=campaign.name)
+        vehicle = Vehicle.from_parameters(summit.parameters, name=campaign.name, **campaign.heights.by_key)
         timed = []
         for decay in prepared.decays:
             drop, seen = by_name[decay.file]

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sprung.identification import (
     NEAR,
@@ -29,6 +31,7 @@ from sprung.pipeline.candidates import (
     fit_from,
     neutral,
     neutral_start,
+    places_of_stops,
     possible,
     size_of,
     thinned,
@@ -36,7 +39,11 @@ from sprung.pipeline.candidates import (
 )
 from sprung.pipeline.choice import Choice
 from sprung.prepare import Decay
-from sprung.vehicle import EXTRA_PARAMETERS, EXTRAS, LINEAR_EXTRAS, separate_names
+from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, separate_names
+
+Real = NDArray[np.float64]
+
+STOPS = "bump-stop"
 
 _UNLIKELY = 0.25
 """Part of the gain that is asked of a larger model below which it is not even fitted."""
@@ -50,8 +57,14 @@ _MATTERS = 0.03
 _STILL, _STILL_AT_FIRST = 0.3, 0.7
 """Part of what a linear vehicle leaves unexplained that may be left by one with forces beside it, and after its first steps."""
 
+_MUCH = 0.2
+"""Part of the sensors' variance that a model may leave unexplained beside it."""
+
 _FIRST = 8
 """Steps after which a fit has to promise something."""
+
+_LOOKS_LIKE = 0.05
+"""Part of what another extra promises above which friction may be what it promises it for."""
 
 _MORE = 2
 """How many times further extras are looked for where the first ones have been found."""
@@ -112,7 +125,7 @@ class Way:
 
     def _asked(self, extra: str) -> float:
         """Give what is asked of an extra."""
-        return (2 if extra == SEPARATE else len(EXTRA_PARAMETERS[extra])) * self._each
+        return len(brought(extra, self.choice.tracks)) * self._each
 
     @property
     def _each(self) -> float:
@@ -134,6 +147,15 @@ class Way:
         """Give the same with attempts noted, by extra and gain."""
         notes = [Attempt(extra, gain, self._asked(extra), fitted, taken) for extra, gain in gains.items()]
         return replace(self, path=(*self.path, *notes))
+
+    def carried(self) -> Way:
+        """Let the records decide at which of two heights the body is carried, where they may."""
+        if not self.choice.heights.undecided:
+            return self
+        other = replace(self.choice, carried_at="roll axis")
+        summit = fit_from(other, self.decays, self.summit, NEAR, self.progress)
+        better = summit.loglikelihood > self.summit.loglikelihood
+        return replace(self, choice=other, summit=summit) if better else self
 
     def linear(self) -> Way:
         """Try the extras that matrices carry, the most promising first, until none gains what is asked."""
@@ -180,13 +202,14 @@ class Way:
             return self
         tried = self._open(nonlinear)
         self.progress("scoring " + ", ".join(tried))
-        promised = self._scores(tried)
+        way, promised = self._scored(tried)
         hopeful = [extra for extra in tried if promised[extra] > self._asked(extra)]
-        start = self._noted({extra: promised[extra] for extra in tried if extra not in hopeful}, False, False)
+        start = way._noted({extra: promised[extra] for extra in tried if extra not in hopeful}, False, False)
         if not hopeful:
             return start
-        found = start._parted(plain)._found(hopeful)
-        if plain.names != self.choice.names and found._errs:
+        hopeful = _in_order({extra: promised[extra] / self._asked(extra) for extra in hopeful})
+        found = start._parted(replace(plain, met=way.choice.met))._found(hopeful)
+        if plain.names != self.choice.names and found.choice.nonlinear and found._errs:
             other = replace(start, path=found.path)._found(hopeful)
             found = other if other._worth(self) > found._worth(self) else replace(found, path=other.path)
         if found.choice.nonlinear and found._worth(self) > 0:
@@ -200,18 +223,19 @@ class Way:
         return replace(self, choice=choice, summit=fit_from(choice, self.decays, self.summit, NEAR, self.progress))
 
     def _found(self, hopeful: Sequence[str]) -> Way:
-        """Fit what promises something, and look for more until nothing does."""
-        # Nearly every suspension rubs, and what rubs looks like everything else: friction is fitted first, and alone.
-        found = self._together([extra for extra in hopeful if extra == "friction"] or hopeful)
-        if not found.choice.nonlinear and list(hopeful) != ["friction"]:
+        """Fit what promises something, the first alone, and look for more until nothing does."""
+        found = self._together(hopeful[:1])
+        if not found.choice.nonlinear and len(hopeful) > 1:
             found = self._together(hopeful)
         for _ in range(_MORE):
             if not found.choice.nonlinear:
                 break
+            inflation = inflation_of(found.summit, self.decays)
+            if inflation > _ERRS and not found._errs:
+                break  # what is left is small and no noise: anything would seem to explain some of it
             refused = {one.extra for one in found.path[len(self.path) :] if one.fitted and not one.taken}
             tried = [extra for extra in found._open([SEPARATE, *EXTRAS]) if extra not in refused]
             promised = found._prospects(tried) if tried else {}
-            inflation = inflation_of(found.summit, self.decays)
             more = [extra for extra in tried if promised[extra] / inflation > self._asked(extra)]
             larger = found._together(more) if more else found
             if larger.choice.names == found.choice.names:
@@ -219,10 +243,19 @@ class Way:
             found = larger
         return found
 
+    @cached_property
+    def _rest(self) -> Real:
+        """Variance of each channel while the vehicle stood on its blocks, (m/s²)²; 0 where nobody knows; shape (channel,)."""
+        rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
+        variances = [np.nan_to_num(noise.var(axis=1)) for noise in rests] or [np.zeros_like(self.summit.noise)]
+        rest: Real = np.mean(variances, axis=0)
+        return rest
+
     @property
     def _errs(self) -> bool:
-        """Whether the model errs, and not only the sensors."""
-        return not self.choice.nonlinear or inflation_of(self.summit, self.decays) > _ERRS
+        """Whether the model leaves much beside the sensors' noise."""
+        known = self._rest > 0
+        return bool(known.any()) and float(np.mean(self.summit.noise[known] ** 2 / self._rest[known])) > 1 + _MUCH
 
     def _worth(self, than: Way) -> float:
         """Give what it gains over another way, in twice the log-likelihood, beyond what is asked of its parameters."""
@@ -255,10 +288,8 @@ class Way:
 
     def _explains_little(self, begun: Summit, part: float) -> bool:
         """Say whether more than a part of what the linear vehicle leaves is left still: then something else is the matter."""
-        rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
-        rest = np.mean([np.nan_to_num(noise.var(axis=1)) for noise in rests], axis=0) if rests else 0.0
-        before, after = (np.maximum(one.noise**2 - rest, 0.0) for one in (self.summit, begun))
-        much = before > rest
+        before, after = (np.maximum(one.noise**2 - self._rest, 0.0) for one in (self.summit, begun))
+        much = before > self._rest
         return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
     def _feigned(self, extra: str, inflation: float) -> bool:
@@ -280,8 +311,11 @@ class Way:
         if not summit.converged or gain < sum(map(self._asked, hopeful)):
             return self._noted(dict.fromkeys(hopeful, gain), True, False)
         way = replace(self, choice=larger, summit=summit)
-        for _ in range(len(EXTRA_PARAMETERS)):
-            lost = {extra: lost_without(way.summit, neutral(extra)) / inflation for extra in decided(way.choice)}
+        for _ in range(len(EXTRAS)):
+            lost = {
+                extra: lost_without(way.summit, neutral(extra, way.choice.tracks)) / inflation
+                for extra in decided(way.choice)
+            }
             vain = [extra for extra in lost if not possible(extra, way.summit) or way._feigned(extra, inflation)]
             lost |= dict.fromkeys(vain, 0.0)
             least = min(lost, key=lambda extra: lost[extra] / way._asked(extra), default=None)
@@ -294,8 +328,20 @@ class Way:
     def _scores(self, extras: Sequence[str]) -> dict[str, float]:
         """Score extras with laws of their own from where a linear fit is."""
         larger = self._with(extras)
-        start = neutral_start(larger.names, self.summit.parameters)
-        return force_scores(self.summit, self.decays, larger.stepped, start, {one: brought(one) for one in extras})
+        start = neutral_start(larger.names, self.summit.parameters, self.choice.met)
+        candidates = {extra: brought(extra, larger.tracks) for extra in extras}
+        return force_scores(self.summit, self.decays, larger.stepped, start, candidates)
+
+    def _scored(self, extras: Sequence[str]) -> tuple[Way, dict[str, float]]:
+        """Score extras, stops where they would explain most; and go on with stops there."""
+        places = places_of_stops(self.choice, self.summit, self.decays) if STOPS in extras else []
+        first, *others = [replace(self, choice=replace(self.choice, met=met)) for met in places] or [self]
+        promised = first._scores(extras)
+        if promised.get(STOPS, 0.0) < self._asked(STOPS) * self.summit.disagreement:
+            return first, promised
+        scores = [promised[STOPS], *(way._scores([STOPS])[STOPS] for way in others)]
+        best = int(np.argmax(scores))
+        return (first, *others)[best], promised | {STOPS: scores[best]}
 
     def _prospects(self, extras: Sequence[str]) -> dict[str, float]:
         """Score any extras from where a fit with forces is."""
@@ -308,10 +354,19 @@ class Way:
             largest.stepped,
             self.choice.campaign.sensors,
             largest.known,
-            values=neutral_start(names, own),
+            values=neutral_start(names, own, self.choice.met),
             states=self.summit.states,
             together=[separate_names(name) if parted else (name,) for name in own],
-            candidates={extra: [(name,) for name in brought(extra)] for extra in extras},
+            candidates={extra: [(name,) for name in brought(extra, largest.tracks)] for extra in extras},
             tilting=self.choice.tilting,
         )
         return {extra: gain / share for extra, gain in found.items()}
+
+
+def _in_order(promised: Mapping[str, float]) -> list[str]:
+    """Give extras in the order in which to try them: what promises most for each parameter, unless it may be friction.
+
+    Nearly every suspension rubs, and what rubs looks like everything else.
+    """
+    rubs = promised.get("friction", 0.0) > _LOOKS_LIKE * max(promised.values())
+    return sorted(promised, key=lambda extra: (rubs and extra == "friction", promised[extra]), reverse=True)

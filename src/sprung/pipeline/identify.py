@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from sprung.identification import (
     mode_estimates,
     suspects,
 )
+from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.candidates import fit_from
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
@@ -37,6 +38,7 @@ from sprung.pipeline.diagnosis import (
     without_looking_at_wheels,
 )
 from sprung.pipeline.extras import Attempt, Way
+from sprung.pipeline.flight import fly, is_needed
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, Series, VehicleName
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
@@ -51,6 +53,9 @@ METHOD = "joint maximum likelihood"
 _DIAGNOSES = 3
 """How many times what is wrong is looked for, each time in what was put right before."""
 
+_SOUND = 10.0
+"""Inflation above which a model errs by so much that nothing is to be gained from more samples."""
+
 _BEFORE_DECAY = 0.1
 """s from the release to the decay in a usual drop, for planning further ones."""
 
@@ -60,6 +65,7 @@ def identify(
     *,
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
+    fall: bool | None = None,
     profile: str | Sequence[str] = (),
     progress: Callable[[str], None] = lambda _: None,
 ) -> Result:
@@ -73,6 +79,10 @@ def identify(
         ``shared``: one half-distance per axle; ``separate``: springs and dampers apart. Overrides the campaign.
     extras
         Exactly these extras beyond the paper's model, such as ``anti-roll``. Overrides the campaign.
+    fall
+        Whether drops are used from their release on, and not only from when the last tyre is down. It halves the uncertainties
+        and takes a few times as long; left open, it is done where a parameter is uncertain by more than 2 %. Overrides the
+        campaign.
     profile
         Parameters whose 95 % interval is to follow from the whole profile of the likelihood, not from its curvature at the
         maximum: for those that are weakly determined, whose interval is not symmetric. Also derived quantities
@@ -101,7 +111,8 @@ def identify(
     ('accept', True)
     """
     asked = check_asked(profile, campaign, tracks, extras)
-    return result_of(fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress), asked, progress)
+    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
+    return result_of(fitted, asked, progress)
 
 
 class Fitted(NamedTuple):
@@ -123,6 +134,8 @@ class Fitted(NamedTuple):
         The decays as they were found, before any fit.
     accused
         What is probably wrong, though nothing was done about it.
+    since
+        Whether drops are used from their release on, or from when the last tyre was down.
     """
 
     campaign: Campaign
@@ -134,6 +147,7 @@ class Fitted(NamedTuple):
     found: tuple[Decay, ...]
     path: tuple[Attempt, ...] = ()
     accused: tuple[Fault, ...] = ()
+    since: Literal["release", "landing"] = "landing"
 
 
 def fit_campaign(
@@ -141,6 +155,7 @@ def fit_campaign(
     *,
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
+    fall: bool | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
@@ -160,10 +175,28 @@ def fit_campaign(
             break
     if any(one.settle is not None for one in mended):
         loads = {load.name: load for load in fitted.campaign.loads}
-        listed = suspects(fitted.summit, fitted.campaign.sensors, loads, campaign.cg_height)
+        listed = suspects(fitted.summit, fitted.campaign.sensors, loads, fitted.choice.heights)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
-    return _with_drifts(fitted)
+    return _with_the_fall(_with_drifts(fitted), campaign.model.fall if fall is None else fall, progress)
+
+
+def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
+    """Use the drops from their releases on, where that is wanted or needed, and where it says more."""
+    sound = fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
+    if wanted is False or (wanted is None and not (sound and is_needed(fitted.fit))):
+        return fitted
+    flown = fly(fitted.campaign, fitted.choice, fitted.prepared, fitted.summit, fitted.fit, progress)
+    if flown is None:
+        return fitted._replace(why=f"{fitted.why}; the fall before the landing was tried and says nothing more")
+    return fitted._replace(
+        choice=flown.choice,
+        why=f"{fitted.why}; the fall is used too, which makes uncertainties {flown.sharper:.2f} times what they were",
+        prepared=fitted.prepared._replace(decays=flown.decays),
+        summit=flown.summit,
+        fit=flown.fit,
+        since="release",
+    )
 
 
 def _with_drifts(fitted: Fitted) -> Fitted:
@@ -199,9 +232,13 @@ def _fit(
     )
     start = None if first is None else first.parameters
     first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
-    way = Way(choice, first, prepared.decays, (), progress).linear()
+    way = Way(choice, first, prepared.decays, (), progress).carried().linear()
     way = _from_contact(way)
-    way = way.with_forces(wanted) if wanted.nonlinear else way.nonlinear(choice)
+    way = (
+        way.with_forces(wanted)
+        if wanted.nonlinear
+        else way.nonlinear(replace(choice, carried_at=way.choice.carried_at))
+    )
     if way.choice.nonlinear:
         way = _from_contact(way)
     progress("judging the fit")
@@ -262,7 +299,7 @@ def as_test(fitted: Fitted) -> PlannedTest:
         campaign.sensors,
         rate=float(np.median([decay.rate for decay in decays])),
         duration=_BEFORE_DECAY + float(np.median([decay.samples / decay.rate for decay in decays])),
-        cg_height=campaign.cg_height,
+        heights=choice.heights,
         name=campaign.name,
     )
     used = {decay.file for decay in decays}
@@ -300,7 +337,7 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
 
 def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None) -> Result:
     """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
-    campaign, choice, why, prepared, summit, fit, _, path, accused = fitted
+    campaign, choice, why, prepared, summit, fit, _, path, accused, since = fitted
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
@@ -321,12 +358,15 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
         verdict=verdict,
         next_step=None if verdict.state == "reject" else next_step(as_test(fitted)).text,
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
-        derived={name: found for name, found in profiles.items() if name not in estimates.parameters},
+        derived={
+            **about_roll_axis(fit, choice.heights),
+            **{name: found for name, found in profiles.items() if name not in estimates.parameters},
+        },
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
         modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
-        fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
+        fit=_fit_report(choice, why, path, fit, decays, channels, misfit, since),
         drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         validation=validated,
@@ -342,6 +382,7 @@ def _fit_report(
     decays: Sequence[Decay],
     channels: Sequence[str],
     misfit: Misfit,
+    since: Literal["release", "landing"],
 ) -> FitReport:
     return FitReport(
         samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
@@ -350,6 +391,8 @@ def _fit_report(
         model=choice.extras,
         tracks=choice.tracks,
         why=why,
+        axes=axes_of(choice.heights),
+        since=since,
         path=path,
         method=METHOD,
         iterations=fit.iterations,

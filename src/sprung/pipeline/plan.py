@@ -18,7 +18,7 @@ from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up
 from sprung.recording import Campaign, Drop, ModelChoice, read, read_vehicle
 from sprung.simulation import DEFAULT_HEIGHT, Given, Setup
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EXTRA_PARAMETERS, Load, Sensor, Vehicle
+from sprung.vehicle import Load, Sensor, Vehicle
 
 RATE, NOISE = 500.0, 0.02
 """Samples per second and m/s² root-mean-square where nobody says."""
@@ -97,10 +97,12 @@ def plan(
         loads=setup.loads,
         wheelbase=setup.known["wheelbase"],
         cg_height=vehicle.cg_height,
+        wheel_height=vehicle.wheel_height,
+        roll_axis_height=vehicle.roll_axis_height,
         known={name: quantity for name, quantity in setup.known.items() if name != "wheelbase"},
         model=setup.model,
     )
-    own = tuple(extra for extra, names in EXTRA_PARAMETERS.items() if names[0] in vehicle.parameters)
+    own = vehicle.extras
     choice = choose_model(
         statement,
         setup.model.tracks or ("separate" if vehicle.tracks == "separate" else None),

@@ -70,6 +70,10 @@ class FitReport(_Frozen):
         Whether springs and dampers of an axle share their half-distance.
     why
         What decided that.
+    axes
+        About which axes the inertias are; empty where an older sprung wrote the result.
+    since
+        Whether drops were used from their release on, or from when the last tyre was down.
     path
         What was tried on the way to the model, and what it gained; empty where an older sprung wrote the result.
     method
@@ -92,6 +96,8 @@ class FitReport(_Frozen):
     model: tuple[str, ...]
     tracks: Literal["shared", "separate"]
     why: str
+    axes: str = ""
+    since: Literal["release", "landing"] = "landing"
     path: tuple[Attempt, ...] = ()
     method: str
     iterations: int
@@ -118,7 +124,8 @@ class Result(_Frozen):
     parameters
         By name: value, std, interval95, unit, status, interval_from.
     derived
-        The same of derived quantities, such as ``total_mass``, whose profile was asked for.
+        The same of derived quantities: those whose profile was asked for, such as ``total_mass``, and ``I_xx_roll_axis``, the
+        roll inertia about the axis of roll, where its height is given.
     scale
         Whether absolute scale is known, and what is left without it.
     unidentifiable

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -138,7 +138,9 @@ def validate(
     motions = body_motions(fit, decays, fitted.campaign.sensors)
     loads = [decay.load for decay in decays]
     load = EMPTY.name if EMPTY.name in loads else loads[0]
-    model = choice.stepped[load] if choice.nonlinear else choice.models[load]
+    # Modes belong to a vehicle on the ground.
+    grounded = replace(choice, airborne=False)
+    model = grounded.stepped[load] if choice.nonlinear else choice.models[load]
     own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
     return Validation(result, motions, load, mode_amplitudes(fit, model, fitted.campaign.sensors, own))
 

@@ -9,7 +9,7 @@ import numpy as np
 from sprung.estimate import Known
 from sprung.identification import Fit
 from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
-from sprung.vehicle import Sensor, Tracks, Vehicle
+from sprung.vehicle import LEVEL, Heights, Sensor, Tracks, Vehicle
 
 
 def subject_of_fit(
@@ -21,7 +21,7 @@ def subject_of_fit(
     *,
     rate: float,
     duration: float,
-    cg_height: float | None = None,
+    heights: Heights = LEVEL,
     name: str = "vehicle",
 ) -> Subject:
     """Take the vehicle that a fit has found, and its noise, for further tests.
@@ -34,14 +34,14 @@ def subject_of_fit(
         Of the campaign that was fitted.
     rate, duration
         Samples per second, and seconds after the release, of further recordings.
-    cg_height
-        Height of the sprung mass's centre of gravity, m.
+    heights
+        How high things are, as far as it is known.
     name
         The vehicle's.
     """
     # An extra may come out a little below zero, where no vehicle is.
     parameters = {name: max(value, 0.0) for name, value in zip(fit.names, fit.values.tolist(), strict=True)}
-    vehicle = Vehicle.from_parameters(parameters, cg_height=cg_height, name=name)
+    vehicle = Vehicle.from_parameters(parameters, name=name, **heights.by_key)
     return Subject(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
 
 

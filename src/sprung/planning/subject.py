@@ -161,9 +161,9 @@ class Subject:
         sampling = rate or self.rate
         names = {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
-        elements = seven_degrees_of_freedom(self.tracks, self.extras)
-        height = self.vehicle.cg_height
-        models = {name: LinearModel.of(elements + load.elements(height), self.names) for load, name in names.items()}
+        heights = self.vehicle.heights
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights)
+        models = {name: LinearModel.of(elements + load.elements(heights), self.names) for load, name in names.items()}
         likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
         weights = self.rate / sampling / self.noise**2
         told = likelihood.at(self.values).evaluate(weights).information

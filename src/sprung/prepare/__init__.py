@@ -12,12 +12,14 @@ from sprung.prepare.fallen import (
     wheel_score,
 )
 from sprung.prepare.finding import Found, Refusal, drops_in, find_drops
+from sprung.prepare.flight import Flight, flights
 from sprung.prepare.prepare import Prepared, prepare
 from sprung.prepare.release import Rest, no_rest
 
 __all__ = [
     "Decay",
     "Events",
+    "Flight",
     "Found",
     "FoundDrop",
     "Mark",
@@ -30,6 +32,7 @@ __all__ = [
     "align",
     "drops_in",
     "find_drops",
+    "flights",
     "no_rest",
     "on_wheels",
     "prepare",

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from sprung.errors import Fault
 from sprung.estimate import Known
 from sprung.recording.recording import Recording
-from sprung.vehicle import EMPTY, WHEELS, Finite, Load, Positive, Sensor, Wheel
+from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel
 
 KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
@@ -173,6 +173,8 @@ class ModelChoice(BaseModel):
     """Exactly these beyond the plain model of seven degrees of freedom."""
     forbid: tuple[str, ...] = ()
     """Never these, whatever else sprung chooses."""
+    fall: bool | None = None
+    """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,6 +216,11 @@ class Campaign:
     model: ModelChoice = field(default_factory=ModelChoice)
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
+
+    @property
+    def heights(self) -> Heights:
+        """How high things are, as far as it was measured."""
+        return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
 
     def load(self, name: str) -> Load:
         """Give the load of that name.

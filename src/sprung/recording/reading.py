@@ -164,7 +164,7 @@ def _vehicle(draft: Draft[VehicleFileSchema], name: str, problems: Problems) -> 
     held = {str(place[1]): 1.0 for place in draft.lost if place[0] == "parameters"}
     parameters = {**held, **draft.file.parameters}
     try:
-        return Vehicle.from_parameters(parameters, cg_height=draft.file.vehicle.cg_height, name=name)
+        return Vehicle.from_parameters(parameters, name=name, **draft.file.vehicle.heights.by_key)
     except InputError as error:
         for problem in error.problems:
             where = problem.where.replace(f"vehicle {name}: ", f"{draft.name}: parameters.")

@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from sprung.estimate import Known
 from sprung.recording.campaign import Drop, ModelChoice
-from sprung.vehicle import DERIVED, PARAMETERS, Finite, Load, NotNegative, Positive, Sensor
+from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
 
 SCHEMA = 1
 """The schema that this version reads and writes."""
@@ -52,7 +52,12 @@ class VehicleSection(BaseModel):
     wheel_height: Positive | None = None
     """Of the wheel centres above the ground, m."""
     roll_axis_height: Finite | None = None
-    """Above the ground, m."""
+    """Of the axis about which the body rolls, above the ground, m."""
+
+    @property
+    def heights(self) -> Heights:
+        """The same as the record of the vehicle room."""
+        return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
 
 
 class CampaignFile(BaseModel):

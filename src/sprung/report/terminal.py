@@ -22,6 +22,10 @@ _FINEST = 6
 
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²"})
 
+_OF_ALL = "of the empty vehicle"
+_DERIVED = {"I_xx_roll_axis": "roll inertia of the sprung mass about the axis of roll"}
+"""What derived quantities mean."""
+
 
 def result_view(result: Result) -> RenderableType:
     """Show a result.
@@ -61,7 +65,7 @@ def parameter_table(result: Result) -> RenderableType:
     """Show every parameter with its uncertainty."""
     headers = ("parameter", "value", "±", "%", "unit", "status", "meaning")
     rows = [[name, *_value_cells(found), PARAMETERS[name].meaning] for name, found in result.parameters.items()]
-    rows += [[name, *_value_cells(found), "of the empty vehicle"] for name, found in result.derived.items()]
+    rows += [[name, *_value_cells(found), _DERIVED.get(name, _OF_ALL)] for name, found in result.derived.items()]
     title = f"{result.vehicle.name}: parameters, one standard uncertainty"
     return table(title, headers, rows, ("value", "±", "%"), ("meaning", "%", "status"))
 
@@ -155,7 +159,8 @@ def fit_line(result: Result) -> RenderableType:
         text += (
             f"\nError bars are {fit.inflation**0.5:.2f} times as wide as white noise would make them{_because(fit)}."
         )
-    return Text(f"{text}\nModel: {fit.why}.\nNoise, m/s² rms: {noise}.")
+    axes = f"\nAxes: {fit.axes}." if fit.axes else ""
+    return Text(f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
 
 
 def _because(fit: FitReport) -> str:

@@ -129,6 +129,8 @@ class Setup:
             loads=self.loads,
             wheelbase=self.known["wheelbase"],
             cg_height=self.vehicle.cg_height,
+            wheel_height=self.vehicle.wheel_height,
+            roll_axis_height=self.vehicle.roll_axis_height,
             known={name: quantity for name, quantity in self.known.items() if name != "wheelbase"},
             model=self.model,
         )

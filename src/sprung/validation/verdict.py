@@ -94,7 +94,7 @@ def judge(
         *(unexplained if size <= UNUSABLE else ()),
         *_contradictions(fit),
         *_unpredicted(drops),
-        *_undetermined(parameters),
+        *_undetermined(fit, parameters),
     ]
     if reject:
         return Verdict("reject", (*reject, *doubt))
@@ -186,13 +186,13 @@ def _predicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
         yield f"each drop is predicted by the others, {at_worst}"
 
 
-def _undetermined(parameters: Mapping[str, Estimate]) -> Iterator[str]:
+def _undetermined(fit: Fit, parameters: Mapping[str, Estimate]) -> Iterator[str]:
     names = [name for name, estimate in parameters.items() if estimate.status == "unidentifiable"]
     if names:
         yield f"these drops do not determine {', '.join(names)}"
     for name, estimate in parameters.items():
-        if estimate.percent is not None and estimate.percent > 100 * COARSE:
-            yield f"{name} is only known to {estimate.percent:.0f} %"
+        if estimate.std is not None and estimate.std > COARSE * fit.size(name):
+            yield f"{name} is only known to {100 * estimate.std / fit.size(name):.0f} %"
 
 
 def _below(size: float) -> str:

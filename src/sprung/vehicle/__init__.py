@@ -15,6 +15,7 @@ from sprung.vehicle.elements import (
 )
 from sprung.vehicle.examples import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.ground import static_wheel_loads, tyre_rates
+from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
 from sprung.vehicle.laws import Felt
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
@@ -24,7 +25,7 @@ from sprung.vehicle.parameters import (
     NEUTRAL,
     PARAMETERS,
     Parameter,
-    Vehicle,
+    brought_by,
     parameter_names,
     separate_names,
     separated,
@@ -34,6 +35,7 @@ from sprung.vehicle.rough import Block, decays_with_forces, drops_with_forces
 from sprung.vehicle.rows import COORDINATES, HEAVE, WHEELS, Row, Wheel
 from sprung.vehicle.sensor import Sensor
 from sprung.vehicle.stepping import Changes, Path, Stepper
+from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
     "COORDINATES",
@@ -43,6 +45,7 @@ __all__ = [
     "EXTRA_PARAMETERS",
     "HEAVE",
     "LAWS",
+    "LEVEL",
     "LINEAR_EXTRAS",
     "NEUTRAL",
     "PARAMETERS",
@@ -51,6 +54,7 @@ __all__ = [
     "WHEELS",
     "Added",
     "Block",
+    "CarriedAt",
     "Changes",
     "Element",
     "Event",
@@ -59,6 +63,7 @@ __all__ = [
     "Finite",
     "Force",
     "Forces",
+    "Heights",
     "Item",
     "LinearModel",
     "Load",
@@ -78,6 +83,7 @@ __all__ = [
     "Vehicle",
     "Wheel",
     "affine_response",
+    "brought_by",
     "decays_with_forces",
     "drop_from_blocks",
     "drops_with_forces",

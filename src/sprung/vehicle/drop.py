@@ -21,9 +21,9 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.crossing import first_fall
 from sprung.vehicle.ground import Ground
 from sprung.vehicle.load import EMPTY, Load
-from sprung.vehicle.parameters import Vehicle
 from sprung.vehicle.response import Motion, affine_response
 from sprung.vehicle.rows import WHEELS, Wheel
+from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 

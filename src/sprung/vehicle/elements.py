@@ -12,16 +12,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sprung.vehicle import rows
-from sprung.vehicle.laws import FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
+from sprung.vehicle.heights import LEVEL, Heights
+from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
 from sprung.vehicle.rows import Row, Wheel
 
 Law = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 
-LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity")
+LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle")
 """Extras, by the name used in a campaign's ``[model]``, which the linear model can carry."""
 
-EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive")
+EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
 """All extras; those beyond the linear ones are forces with laws of their own."""
 
 
@@ -81,11 +82,33 @@ def half_distances(tracks: Tracks) -> dict[tuple[str, Law], str]:
     dict
         Name by (axle, law), axle being ``f`` or ``r``.
     """
+    return _by_place("t", tracks)
+
+
+def inboard_shares(tracks: Tracks) -> dict[tuple[str, Law], str]:
+    """Name where each axle's springs and dampers stand on a rigid axle, as parts of its wheels' half-distance.
+
+    Parameters
+    ----------
+    tracks
+        As for `half_distances`.
+
+    Returns
+    -------
+    dict
+        Name by (axle, law).
+    """
+    return _by_place("n", tracks)
+
+
+def _by_place(letter: str, tracks: Tracks) -> dict[tuple[str, Law], str]:
     suffix = {"spring": "2", "damper": "1"} if tracks == "separate" else {"spring": "", "damper": ""}
-    return {(axle, law): f"t_{axle}{suffix[law]}" for axle in "fr" for law in ("spring", "damper")}
+    return {(axle, law): f"{letter}_{axle}{suffix[law]}" for axle in "fr" for law in ("spring", "damper")}
 
 
-def seven_degrees_of_freedom(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[Element, ...]:
+def seven_degrees_of_freedom(
+    tracks: Tracks = "shared", extras: Collection[str] = (), heights: Heights = LEVEL
+) -> tuple[Element, ...]:
     """List the elements of the paper's seven-degree-of-freedom vehicle.
 
     Parameters
@@ -94,12 +117,14 @@ def seven_degrees_of_freedom(tracks: Tracks = "shared", extras: Collection[str] 
         Whether springs and dampers of an axle share their half-distance.
     extras
         Any of `EXTRAS`; only those of `LINEAR_EXTRAS` add elements.
+    heights
+        How high things are, as far as anybody knows; roll and pitch then carry what follows from it.
 
     Returns
     -------
     tuple of Element
     """
-    return tuple(_elements(half_distances(tracks), extras))
+    return (*_elements(_Places(tracks, extras), extras), *_of_heights(heights))
 
 
 def forces_beside(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[Force, ...]:
@@ -116,7 +141,7 @@ def forces_beside(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tu
     -------
     tuple of Force
     """
-    return tuple(_forces(half_distances(tracks), extras))
+    return tuple(_forces(_Places(tracks, extras), extras))
 
 
 def ground_forces(extras: Collection[str] = ()) -> tuple[Force, ...]:
@@ -134,37 +159,68 @@ def ground_forces(extras: Collection[str] = ()) -> tuple[Force, ...]:
     )
 
 
-def _forces(half_distance: dict[tuple[str, Law], str], extras: Collection[str]) -> Iterator[Force]:
+class _Places:
+    """Where springs and dampers stand."""
+
+    def __init__(self, tracks: Tracks, extras: Collection[str]) -> None:
+        self._half_distance = half_distances(tracks)
+        self._share = inboard_shares(tracks) if "rigid-axle" in extras else {}
+
+    def travel(self, station: Wheel, law: Law) -> Row:
+        """Give what a spring or a damper feels."""
+        at = station[0], law
+        return rows.travel(station, self._half_distance[at], self._share.get(at))
+
+
+def _forces(places: _Places, extras: Collection[str]) -> Iterator[Force]:
     for station in rows.WHEELS:
         axle = station[0]
-        at_spring = rows.travel(station, half_distance[axle, "spring"])
+        at_spring = places.travel(station, "spring")
         if "friction" in extras:
             yield Force(FRICTION, (f"F_{axle}", f"s_{axle}"), at_spring)
         if "rebound" in extras:
-            yield Force(REBOUND, (f"r_{axle}", f"c_s{axle}"), rows.travel(station, half_distance[axle, "damper"]))
+            yield Force(REBOUND, (f"r_{axle}", f"c_s{axle}"), places.travel(station, "damper"))
         if "progressive" in extras:
             yield Force(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), at_spring)
+        if "bump-stop" in extras:
+            yield Force(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), at_spring)
 
 
-def _elements(half_distance: dict[tuple[str, Law], str], extras: Collection[str]) -> Iterator[Element]:
-    yield Element("mass", "m_s", rows.bounce())
+def _elements(places: _Places, extras: Collection[str]) -> Iterator[Element]:
+    uneven = "asymmetry" in extras
+    yield Element("mass", "m_s", rows.bounce(uneven))
     yield Element("mass", "I_yy", rows.pitch())
     yield Element("mass", "I_xx", rows.roll())
-    stations: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
-    for station in stations:
-        axle = station[0]
+    for station in rows.WHEELS:
+        axle, side = station[0], rows.side(station)
+        rates: list[tuple[Law, str, Row]] = [
+            ("spring", f"k_s{axle}", places.travel(station, "spring")),
+            ("damper", f"c_s{axle}", places.travel(station, "damper")),
+            ("spring", f"k_t{axle}", rows.wheel(station)),
+        ]
         yield Element("mass", f"m_u{axle}", rows.wheel(station))
-        yield Element("spring", f"k_s{axle}", rows.travel(station, half_distance[axle, "spring"]))
-        yield Element("damper", f"c_s{axle}", rows.travel(station, half_distance[axle, "damper"]))
-        yield Element("spring", f"k_t{axle}", rows.wheel(station))
+        for law, rate, row in rates:
+            yield Element(law, rate, row)
+            if uneven:
+                yield Element(law, f"d_{rate.replace('_', '')}", row, side)
         if "tyre-damping" in extras:
             yield Element("damper", f"c_t{axle}", rows.wheel(station))
     if "gravity" in extras:
         yield Element("spring", "w_h", rows.roll(), -1.0)
         yield Element("spring", "w_h", rows.pitch(), -1.0)
-    if "anti-roll" in extras:
+    for left, right in rows.AXLES:
+        axle = left[0]
+        if "anti-roll" in extras:
+            yield Element("spring", f"k_a{axle}", places.travel(left, "spring") - places.travel(right, "spring"))
+        if "rigid-axle" in extras:
+            yield Element("mass", f"m_x{axle}", rows.wheel(left) - rows.wheel(right), 0.5)
+
+
+def _of_heights(heights: Heights) -> Iterator[Element]:
+    if not heights.known:
+        return
+    yield Element("mass", "m_s", rows.roll(), heights.cg_arm**2)
+    for row, arm in zip((rows.roll(), rows.pitch()), heights.wheel_arms, strict=True):
+        yield Element("spring", "m_s", row, -heights.tipping())
         for axle in "fr":
-            left: Wheel = "fl" if axle == "f" else "rl"
-            right: Wheel = "fr" if axle == "f" else "rr"
-            at = half_distance[axle, "spring"]
-            yield Element("spring", f"k_a{axle}", rows.travel(left, at) - rows.travel(right, at))
+            yield Element("mass", f"m_u{axle}", row, 2.0 * arm**2)

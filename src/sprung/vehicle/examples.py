@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sprung.vehicle.parameters import Vehicle
+from sprung.vehicle.vehicle import Vehicle
 
 TABLE_1_CAR = Vehicle(
     name="Table 1 car",

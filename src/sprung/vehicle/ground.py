@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import Matrices
-from sprung.vehicle.parameters import Vehicle
 from sprung.vehicle.rows import HEAVE, WHEELS, Wheel
+from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
+from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.rows import Wheel
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -36,23 +37,23 @@ class Item(BaseModel):
             raise ValueError('an item needs either a position on the body or the wheel it sits on (on = "fl")')
         return self
 
-    def elements(self, cg_height: float | None) -> Iterator[Element]:
+    def elements(self, heights: Heights) -> Iterator[Element]:
         """Give what the item adds to the vehicle.
 
         Parameters
         ----------
-        cg_height
-            Height of the empty body's centre of gravity above the ground, m; None counts the item as level with it.
+        heights
+            Of the empty vehicle; without them the item counts as level with the centre of gravity.
         """
         if self.on is not None:
             yield Element("mass", self.mass, rows.wheel(self.on))
         elif self.position is not None:
             x, y, z = self.position
-            above = 0.0 if cg_height is None else z - cg_height
-            roll_inertia, pitch_inertia = (own + self.mass * above**2 for own in self.inertia)
             yield Element("mass", self.mass, rows.body_point(x, y))
-            yield Element("mass", roll_inertia, rows.roll())
-            yield Element("mass", pitch_inertia, rows.pitch())
+            for row, own, arm in zip((rows.roll(), rows.pitch()), self.inertia, heights.item_arms(z), strict=True):
+                yield Element("mass", own + self.mass * arm**2, row)
+                if heights.known:
+                    yield Element("spring", -self.mass * heights.tipping(z), row)
 
 
 class Added(BaseModel):
@@ -111,17 +112,18 @@ class Load(BaseModel):
             return self.added.mass + 2 * (self.added.m_uf + self.added.m_ur)
         return sum(item.mass for item in self.items)
 
-    def elements(self, cg_height: float | None = None) -> tuple[Element, ...]:
-        """Give the mass elements that the load adds; ΔM is their sum, full where the items are off centre.
+    def elements(self, heights: Heights = LEVEL) -> tuple[Element, ...]:
+        """Give the elements that the load adds; ΔM is the sum of the masses, full where the items are off centre.
 
         Parameters
         ----------
-        cg_height
-            Height of the empty body's centre of gravity above the ground, m; None counts every item as level with it.
+        heights
+            Of the empty vehicle; without them every item counts as level with the centre of gravity. Where they tell what
+            carries the body, a load tips it the more the higher it stands.
         """
         if self.added is not None:
             return tuple(self.added.elements())
-        return tuple(element for item in self.items for element in item.elements(cg_height))
+        return tuple(element for item in self.items for element in item.elements(heights))
 
 
 EMPTY = Load(name="empty")

@@ -17,6 +17,7 @@ from scipy.linalg import expm
 
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.elements import Element, Force
+from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.laws import Answer, Felt, ForceLaw, Sensitivity
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Rows
@@ -132,11 +133,11 @@ class NonlinearModel:
         forces: Sequence[Force],
         names: Sequence[str],
         load: Load = EMPTY,
-        cg_height: float | None = None,
+        heights: Heights = LEVEL,
         gravity: float = STANDARD_GRAVITY,
     ) -> NonlinearModel:
         """Compile the elements of a vehicle, forces beside them, and a load on it, over a list of parameter names."""
-        added = load.elements(cg_height)
+        added = load.elements(heights)
         linear = LinearModel.of([*elements, *added], names)
         return cls(linear, LinearModel.of(added, names), Forces.of(forces, names), gravity)
 
@@ -160,9 +161,14 @@ class NonlinearModel:
         slopes
             By each parameter, shape (force, parameter).
         """
-        K, dK = self.linear.matrices(values).K, self.linear.slopes(values).K
-        M = self.linear.matrices(values).M - self.load.matrices(values).M
-        dM = self.linear.slopes(values).M - self.load.slopes(values).M
+        both = (
+            (self.linear.matrices(values), self.load.matrices(values)),
+            (
+                self.linear.slopes(values),
+                self.load.slopes(values),
+            ),
+        )
+        (M, _, K), (dM, _, dK) = ([own - added for own, added in zip(*pair, strict=True)] for pair in both)
         sag = -np.linalg.solve(K, M @ HEAVE * self.gravity)
         by_sag = -np.linalg.solve(K, (dM @ HEAVE * self.gravity + dK @ sag).T)
         G, by_row = self.forces.rows.at(values), self.forces.rows.slopes

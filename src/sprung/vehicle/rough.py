@@ -19,10 +19,10 @@ from sprung.vehicle.ground import Ground
 from sprung.vehicle.laws import Felt
 from sprung.vehicle.load import Load
 from sprung.vehicle.nonlinear import NonlinearModel
-from sprung.vehicle.parameters import Vehicle
 from sprung.vehicle.response import Motion
 from sprung.vehicle.rows import WHEELS, Wheel
 from sprung.vehicle.stepping import Stepper
+from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 
@@ -123,9 +123,9 @@ def decays_with_forces(
 def _model(
     vehicle: Vehicle, names: tuple[str, ...], more: Sequence[Force], load: Load, gravity: float
 ) -> NonlinearModel:
-    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras)
+    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights)
     forces = [*forces_beside(vehicle.tracks, vehicle.extras), *more]
-    return NonlinearModel.of(elements, forces, names, load, vehicle.cg_height, gravity)
+    return NonlinearModel.of(elements, forces, names, load, vehicle.heights, gravity)
 
 
 def _heights(block: Block) -> Array:

@@ -21,6 +21,9 @@ Wheel = Literal["fl", "fr", "rl", "rr"]
 WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
 """Wheel stations in the order of the coordinates: A, B, C, D of the paper."""
 
+AXLES: tuple[tuple[Wheel, Wheel], ...] = (("fl", "fr"), ("rl", "rr"))
+"""Left and right wheel of each axle, front first."""
+
 COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD")
 
 HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
@@ -91,9 +94,20 @@ def roll() -> Row:
     return Row(_PHI)
 
 
-def bounce() -> Row:
-    """Vertical displacement of the sprung mass's centre of gravity."""
-    return Row(_Z)
+def bounce(off_centre: bool = False) -> Row:
+    """Vertical displacement of the sprung mass's centre of gravity.
+
+    Parameters
+    ----------
+    off_centre
+        Whether it may be y_s left of the centreline; z_s is then the displacement beside it, on the centreline.
+    """
+    return Row(_Z, {"y_s": _PHI} if off_centre else {})
+
+
+def side(station: Wheel) -> float:
+    """1 for a wheel on the left, -1 for one on the right."""
+    return 1.0 if station[1] == "l" else -1.0
 
 
 def wheel(station: Wheel) -> Row:
@@ -111,11 +125,34 @@ def corner(station: Wheel, half_distance: str) -> Row:
     half_distance
         Name of the parameter: ``t_f2`` for the front springs.
     """
-    side = 1.0 if station[1] == "l" else -1.0
     along = {"a": -_THETA} if station[0] == "f" else {"b": _THETA}
-    return Row(_Z, {**along, half_distance: side * _PHI})
+    return Row(_Z, {**along, half_distance: side(station) * _PHI})
 
 
-def travel(station: Wheel, half_distance: str) -> Row:
-    """Suspension travel at one wheel: body above the wheel minus wheel, positive in rebound."""
-    return corner(station, half_distance) - wheel(station)
+def on_axle(station: Wheel, share: str) -> Row:
+    """Vertical displacement of a point on a rigid axle, between its middle and a wheel.
+
+    Parameters
+    ----------
+    station
+        The wheel on whose side it is.
+    share
+        Name of the parameter that says where: 0 in the middle, 1 at the wheel.
+    """
+    left, right = AXLES["fr".index(station[0])]
+    middle = 0.5 * (wheel(left).constant + wheel(right).constant)
+    return Row(middle, {share: wheel(station).constant - middle})
+
+
+def travel(station: Wheel, half_distance: str, share: str | None = None) -> Row:
+    """Suspension travel at one wheel: body minus what is below it, positive in rebound.
+
+    Parameters
+    ----------
+    station, half_distance
+        As for `corner`.
+    share
+        As for `on_axle` where the axle is rigid; None for a wheel of its own.
+    """
+    below = wheel(station) if share is None else on_axle(station, share)
+    return corner(station, half_distance) - below

@@ -155,7 +155,7 @@ def exchanges(bench: Bench) -> Iterator[Hypothesis]:
 def scores(trial: Trial) -> tuple[Suspect, ...]:
     """List everything that may be a little otherwise, what would gain most first."""
     loads = {load.name: load for load in trial.campaign.loads}
-    return suspects(trial.summit, trial.campaign.sensors, loads, trial.campaign.cg_height)
+    return suspects(trial.summit, trial.campaign.sensors, loads, trial.campaign.heights)
 
 
 def without(decay: Decay, channel: int) -> Decay:

@@ -51,7 +51,7 @@ def suspicious(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> S
     if not tally.explained(noise):
         return "senseless"
     loads = {load.name: load for load in campaign.loads}
-    listed = suspects(summit, campaign.sensors, loads, campaign.cg_height)
+    listed = suspects(summit, campaign.sensors, loads, campaign.heights)
     gain = max((one.gain for one in listed if abs(one.value) > MATTERS[one.kind]), default=0.0)
     serious = gain > max(SURE, MOST_OF_IT * tally.unexplained(noise))
     colour = max(colour_left(decays, summit), 1.0)

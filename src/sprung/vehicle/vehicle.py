@@ -1,0 +1,268 @@
+"""The vehicle: values of its parameters, and the equations of motion that follow from them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from sprung.errors import Problems, did_you_mean
+from sprung.vehicle.elements import Tracks, seven_degrees_of_freedom
+from sprung.vehicle.heights import Heights
+from sprung.vehicle.load import EMPTY, Load
+from sprung.vehicle.model import LinearModel, Matrices
+from sprung.vehicle.parameters import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, brought_by, parameter_names
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vehicle:
+    """A two-axle road vehicle, by its parameters in SI units; named as in the paper.
+
+    Give t_f and t_r where springs and dampers of an axle share their half-distance from the centreline, or t_f1, t_r1
+    (dampers) and t_f2, t_r2 (springs). Rates, and unsprung masses, are those of one wheel.
+
+    Attributes
+    ----------
+    m_s, I_yy, I_xx
+        Sprung mass, kg, its pitch and roll inertia, kg m².
+    m_uf, m_ur
+        Unsprung mass of each front and rear wheel, kg.
+    k_sf, k_sr, k_tf, k_tr
+        Spring and tyre rates, N/m.
+    c_sf, c_sr
+        Damper rates, N s/m.
+    a, b
+        Centre of gravity of the sprung mass to the front and rear axle, m.
+    t_f, t_r, t_f1, t_r1, t_f2, t_r2
+        Half-distances, m; t_f and t_r are None where springs and dampers differ.
+    c_tf, c_tr
+        Tyre damping, N s/m.
+    k_af, k_ar
+        Anti-roll bars, N per metre of left-right difference in suspension travel.
+    F_f, F_r, s_f, s_r
+        Dry friction of each suspension, N, and its stiffness before it slides, N/m.
+    r_f, r_r
+        Rebound damping over compression damping; c_s is then that of compression.
+    p_f, p_r
+        Growth of the spring rates with compression, as a part of them per metre.
+    k_bf, k_br, x_bf, x_br
+        Stiffness of the bump stops, N/m, and the compression from rest at which they are met, m.
+    y_s
+        Centre of gravity of the sprung mass, m left of the centreline.
+    d_ksf, d_ksr, d_ktf, d_ktr, d_csf, d_csr
+        By how much the left one's rate is above the mean of left and right.
+    n_f, n_r, n_f1, n_r1, n_f2, n_r2
+        Place of springs and dampers (or dampers, 1, and springs, 2) on a rigid axle, as a part of its wheels' half-distance;
+        1 where every wheel is on its own.
+    m_xf, m_xr
+        What rolls with a rigid axle beside its unsprung masses, as a mass at each wheel, kg: with the wheels T from the
+        middle, the axle's roll inertia is 2 T² (m_u + m_x).
+    cg_height, wheel_height, roll_axis_height
+        Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
+    name
+        For people to read.
+
+    Raises
+    ------
+    InputError
+        If a parameter is missing, not finite or not positive; all faults at once.
+
+    Examples
+    --------
+    >>> car = Vehicle(m_s=1380, I_yy=2440, I_xx=380, m_uf=40.5, m_ur=45.4, k_sf=17000, k_sr=22000, k_tf=192000,
+    ...               k_tr=192000, c_sf=1500, c_sr=1500, a=1.25, b=1.51, t_f=0.74, t_r=0.74)
+    >>> M, C, K = car.matrices()
+    >>> float(K[0, 0])
+    78000.0
+    """
+
+    m_s: float
+    I_yy: float
+    I_xx: float
+    m_uf: float
+    m_ur: float
+    k_sf: float
+    k_sr: float
+    k_tf: float
+    k_tr: float
+    c_sf: float
+    c_sr: float
+    a: float
+    b: float
+    t_f: float | None = None
+    t_r: float | None = None
+    t_f1: float | None = None
+    t_r1: float | None = None
+    t_f2: float | None = None
+    t_r2: float | None = None
+    c_tf: float = 0.0
+    c_tr: float = 0.0
+    k_af: float = 0.0
+    k_ar: float = 0.0
+    w_h: float = 0.0
+    F_f: float = 0.0
+    F_r: float = 0.0
+    s_f: float = 1e6
+    s_r: float = 1e6
+    r_f: float = 1.0
+    r_r: float = 1.0
+    p_f: float = 0.0
+    p_r: float = 0.0
+    k_bf: float = 0.0
+    k_br: float = 0.0
+    x_bf: float = 1.0
+    x_br: float = 1.0
+    y_s: float = 0.0
+    d_ksf: float = 0.0
+    d_ksr: float = 0.0
+    d_ktf: float = 0.0
+    d_ktr: float = 0.0
+    d_csf: float = 0.0
+    d_csr: float = 0.0
+    n_f: float | None = None
+    n_r: float | None = None
+    n_f1: float | None = None
+    n_r1: float | None = None
+    n_f2: float | None = None
+    n_r2: float | None = None
+    m_xf: float = 0.0
+    m_xr: float = 0.0
+    cg_height: float | None = None
+    wheel_height: float | None = None
+    roll_axis_height: float | None = None
+    name: str = "vehicle"
+
+    def __post_init__(self) -> None:
+        problems = Problems()
+        for axle in "fr":
+            self._resolve_places("t", axle, None, problems)
+            self._resolve_places("n", axle, 1.0, problems)
+        for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
+            value, told = getattr(self, name), PARAMETERS[name]
+            positive = told.positive and name not in ("c_sf", "c_sr")
+            fit = value is None or (
+                math.isfinite(value) and (value > 0 or told.signed or (value == 0 and not positive))
+            )
+            if not fit:
+                kind = "positive" if positive else "finite" if told.signed else "finite, not negative"
+                problems.add(
+                    f"vehicle {self.name}: {name}", repr(value), f"a {kind} number, {told.unit}", "Correct it."
+                )
+        for name in ("cg_height", "wheel_height"):
+            value = getattr(self, name)
+            if value is not None and not (math.isfinite(value) and value > 0):
+                problems.add(f"vehicle {self.name}: {name}", repr(value), "a positive number, m", "Correct it.")
+        problems.raise_if_any()
+
+    def _resolve_places(self, letter: str, axle: str, usual: float | None, problems: Problems) -> None:
+        shared, damper, spring = (getattr(self, f"{letter}_{axle}{suffix}") for suffix in ("", "1", "2"))
+        if shared is None and damper is None and spring is None:
+            shared = usual
+        if shared is not None:
+            damper = shared if damper is None else damper
+            spring = shared if spring is None else spring
+        if damper is None or spring is None or (shared is not None and not damper == spring == shared):
+            problems.add(
+                f"vehicle {self.name}: {letter}_{axle}",
+                f"{letter}_{axle}={shared}, {letter}_{axle}1={damper}, {letter}_{axle}2={spring}",
+                f"either {letter}_{axle}, or {letter}_{axle}1 (dampers) and {letter}_{axle}2 (springs)",
+                "Give one of the two.",
+            )
+            return
+        object.__setattr__(self, f"{letter}_{axle}1", damper)
+        object.__setattr__(self, f"{letter}_{axle}2", spring)
+        object.__setattr__(self, f"{letter}_{axle}", damper if damper == spring else None)
+
+    @classmethod
+    def from_parameters(
+        cls, parameters: Mapping[str, float], *, name: str = "vehicle", **heights: float | None
+    ) -> Vehicle:
+        """Make a vehicle from a mapping of parameter names, as a vehicle file holds them.
+
+        Parameters
+        ----------
+        parameters
+            Values by name, SI.
+        name
+            For people to read.
+        heights
+            `cg_height`, `wheel_height` and `roll_axis_height`, m, as far as they are known.
+
+        Raises
+        ------
+        InputError
+            If a name is unknown, a needed one missing or a value impossible; all faults at once.
+        """
+        problems = Problems()
+        where = f"vehicle {name}"
+        for unknown in parameters.keys() - PARAMETERS.keys():
+            problems.add(where, f"'{unknown}'", "the name of a parameter", did_you_mean(unknown, PARAMETERS))
+        needed = set(parameter_names()) - {"t_f", "t_r"}
+        for missing in [f.name for f in fields(cls) if f.name in needed and f.name not in parameters]:
+            if PARAMETERS[missing].positive:
+                unit, meaning, *_ = PARAMETERS[missing]
+                problems.add(where, f"no '{missing}'", f"the {meaning} in {unit}", f"Add {missing} = ... to it.")
+        problems.raise_if_any()
+        given: dict[str, Any] = {**parameters, **heights}
+        return cls(**given, name=name)
+
+    @property
+    def tracks(self) -> Tracks:
+        """Whether springs and dampers share their half-distance, and their place on the axle, on both axles."""
+        return "separate" if None in (self.t_f, self.t_r, self.n_f, self.n_r) else "shared"
+
+    @property
+    def wheelbase(self) -> float:
+        """Front axle to rear axle, m."""
+        return self.a + self.b
+
+    @property
+    def total_mass(self) -> float:
+        """Mass of the whole empty vehicle, kg."""
+        return self.m_s + 2 * (self.m_uf + self.m_ur)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Values of the parameters by name: shared half-distances where they are shared, extras where not zero."""
+        return {name: getattr(self, name) for name in parameter_names(self.tracks, self.extras)}
+
+    @property
+    def extras(self) -> tuple[str, ...]:
+        """What it has beyond the paper's vehicle."""
+        return tuple(
+            extra
+            for extra in EXTRA_PARAMETERS
+            if any(getattr(self, name) != NEUTRAL[name] for name in brought_by(extra, self.tracks) if name in NEUTRAL)
+        )
+
+    @property
+    def heights(self) -> Heights:
+        """How high things are, as far as it is known."""
+        return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
+
+    def model(self, load: Load = EMPTY) -> LinearModel:
+        """Give the equations of motion of this vehicle with a load, as functions of its parameters.
+
+        Parameters
+        ----------
+        load
+            What is on it.
+        """
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights) + load.elements(self.heights)
+        return LinearModel.of(elements, tuple(self.parameters))
+
+    def matrices(self, load: Load = EMPTY) -> Matrices:
+        """Give mass, damping and stiffness matrices.
+
+        Parameters
+        ----------
+        load
+            What is on it; nothing unless given.
+
+        Returns
+        -------
+        Matrices
+            M, C and K, each of shape (7, 7), SI: eq. (2) of the paper.
+        """
+        return self.model(load).matrices(list(self.parameters.values()))
