@@ -21,7 +21,6 @@ from sprung.identification import (
     describe,
     look_around,
     mode_estimates,
-    suspects,
 )
 from sprung.pipeline.candidates import fit_from
 from sprung.pipeline.check import check_prepared
@@ -32,6 +31,7 @@ from sprung.pipeline.diagnosis import (
     Hypothesis,
     Suspicion,
     diagnose,
+    scores,
     suspicious,
     walking_slowly,
     without_looking_at_wheels,
@@ -159,8 +159,7 @@ def fit_campaign(
         if accused or not taken:
             break
     if any(one.settle is not None for one in mended):
-        loads = {load.name: load for load in fitted.campaign.loads}
-        listed = suspects(fitted.summit, fitted.campaign.sensors, loads, campaign.cg_height)
+        listed = scores(fitted.campaign, fitted.prepared.decays, fitted.summit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
     return _with_drifts(fitted)

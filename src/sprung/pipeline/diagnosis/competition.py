@@ -9,6 +9,7 @@ import numpy as np
 
 from sprung.pipeline.diagnosis.bench import Bench
 from sprung.pipeline.diagnosis.changes import nothing
+from sprung.pipeline.diagnosis.coupled import coupled_otherwise
 from sprung.pipeline.diagnosis.hypotheses import Hypothesis
 from sprung.pipeline.diagnosis.of_all import exchanged_loads, misplaced_loads, twist
 from sprung.pipeline.diagnosis.of_channels import WithoutChannel, exchanges, scores
@@ -71,7 +72,7 @@ def compete(bench: Bench) -> Hypothesis | None:
         The best one, if it explains much; where another one does so about as well, it is only named, and that one with it.
     """
     base = bench.base
-    pool = [*_of_parts(bench), *misplaced_loads(bench)]
+    pool = [*_of_parts(bench), *misplaced_loads(bench), *coupled_otherwise(bench)]
     for more in (exchanged_loads, exchanges):
         if not any(one.tally.explained(bench.noise) or (one.trial.explained and not one.specific) for one in pool):
             pool += more(bench)
