@@ -153,10 +153,11 @@ def exchanged(first: str, second: str, in_one: bool = False) -> Act:
     return act
 
 
-def through(values: Real, corner: float, rate: float) -> Real:
-    """Send what a sensor reads through a first-order high-pass that has long settled at its first sample, corner in Hz."""
-    numerator, denominator = butter(1, corner, "highpass", fs=rate)
-    return np.asarray(lfilter(numerator, denominator, values - values[0]), dtype=np.float64)
+def through(values: Real, corner: float, test: DropTest) -> Real:
+    """Send what a sensor reads through a first-order high-pass that settled long before the release, corner in Hz."""
+    numerator, denominator = butter(1, corner, "highpass", fs=test.rate)
+    level = values[: int(0.9 * test.rest * test.rate)].mean()
+    return np.asarray(lfilter(numerator, denominator, values - level), dtype=np.float64)
 
 
 def corner_unstated(kind: str, every: bool = False) -> Act:
@@ -169,7 +170,7 @@ def corner_unstated(kind: str, every: bool = False) -> Act:
         chosen = chosen if every else [int(random.choice(chosen))]
         corner = float(np.exp(random.uniform(np.log(0.05), np.log(2.0))))
         felt = [i for i in chosen if campaign.sensors[i].high_pass is None]
-        spoilt = changed(campaign, felt, lambda values: through(values, corner, test.rate))
+        spoilt = changed(campaign, felt, lambda values: through(values, corner, test))
         sensors = [
             one.model_copy(update={"high_pass": None}) if i in chosen else one for i, one in enumerate(campaign.sensors)
         ]

@@ -100,7 +100,7 @@ def through(corner: float, *channels: str) -> Change:
     def change(values: Real) -> None:
         for channel in channels:
             one = values[CHANNELS.index(channel)]
-            one[:] = lfilter(*filters, one - one[0])
+            one[:] = lfilter(*filters, one - one[: int(0.3 * RATE)].mean())
 
     return samples(change)
 

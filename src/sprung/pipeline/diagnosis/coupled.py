@@ -45,7 +45,7 @@ def coupled_otherwise(bench: Bench) -> Iterator[Hypothesis]:
     stated = np.array([sensors[i].high_pass or 0.0 for i in which])
     now, start = stated, None
     for _ in range(_ROUNDS):
-        if found is None or found.gain < 1:
+        if found is None or found.worth < 1:
             break
         now, before = np.maximum(now + np.clip(found.step, -_FARTHEST, _FARTHEST), 0.0), now
         if np.abs(now - before).max() < _SETTLED:

@@ -26,6 +26,9 @@ Real = NDArray[np.float64]
 _ROUNDS = 4
 """Fits in which the numbers of a meaning settle."""
 
+_SETTLED = 0.1
+"""Gain in twice the log-likelihood below which they have settled."""
+
 _PULLS = 1.0
 """Standard uncertainties by which a number may move a parameter with one of its own, for it to be taken from the records."""
 
@@ -97,7 +100,7 @@ class WithoutChannel:
         for _ in range(_ROUNDS if numbers else 0):
             listed = scores(trial)
             mine = [one for one in listed if (one.kind, one.where) == (meaning.code, name)]
-            if all(one.gain < 1 for one in mine):
+            if all(one.gain < _SETTLED for one in mine):
                 break
             numbers = moved(meaning.code, name, numbers, listed)
             trial = bench.fit(put_right(numbers)(bench.campaign), trial.summit.parameters)
