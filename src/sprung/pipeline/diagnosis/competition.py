@@ -84,7 +84,7 @@ def compete(bench: Bench) -> Hypothesis | None:
     rivals = [
         one
         for one in pool
-        if one.fault.where != best.fault.where
+        if not _of_one_thing(one, best)
         and one.score(inflation) < best.score(inflation) + SURE
         and one.trial.unexplained <= most
     ]
@@ -94,6 +94,14 @@ def compete(bench: Bench) -> Hypothesis | None:
     what = f"{best.fault.what}; or {rival.fault.where}: {rival.fault.what}"
     fault = replace(best.fault, what=what)
     return replace(best, fault=fault, remedy="named", change=nothing, drop=None, specific=False)
+
+
+def _of_one_thing(one: Hypothesis, other: Hypothesis) -> bool:
+    """Say whether two hypotheses are about the same thing, or one has it among several of which it says the same."""
+    if one.fault.where == other.fault.where:
+        return True
+    named, by_other = (set(each.fault.where.split(", ")) for each in (one, other))
+    return one.fault.code == other.fault.code and (named <= by_other or by_other <= named)
 
 
 def _convincing(bench: Bench, pool: Sequence[Hypothesis]) -> Hypothesis | None:

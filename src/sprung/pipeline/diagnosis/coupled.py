@@ -27,6 +27,9 @@ _FARTHEST = 0.5
 """Hz by which a corner changes at once."""
 
 
+_SURE = 4.0
+"""Standard uncertainties by which a corner has to be another one than is stated."""
+
 _SETTLED = 1e-4
 """Hz by which corners may still change: they are none below 0."""
 
@@ -53,13 +56,17 @@ def coupled_otherwise(bench: Bench) -> Iterator[Hypothesis]:
         trial = bench.fit(_with_corners(which, now.tolist())(bench.campaign), start)
         start = trial.summit.parameters
         found = corners(trial.decays, trial.summit, trial.campaign.sensors)
-    changed = [k for k in range(len(which)) if abs(now[k] - stated[k]) > MATTERS["corner"]]
-    if found is None or len(changed) < 2:
+    if found is None:
         return
-    stds = np.sqrt(np.diag(found.covariance))[changed]
-    fault = of_corners([sensors[which[k]] for k in changed], now[changed].tolist(), stds.tolist())
-    fault = replace(fault, what=f"{fault.what}; that was undone")
+    stds = np.sqrt(np.diag(found.covariance))
+    changed = np.flatnonzero(np.abs(now - stated) > np.maximum(_SURE * stds, MATTERS["corner"])).tolist()
+    if len(changed) < 2:
+        return
     change = _with_corners([which[k] for k in changed], now[changed].tolist())
+    if len(changed) < len(which):
+        trial = bench.fit(change(bench.campaign), start)
+    fault = of_corners([sensors[which[k]] for k in changed], now[changed].tolist(), stds[changed].tolist())
+    fault = replace(fault, what=f"{fault.what}; that was undone")
     yield Hypothesis(fault, "repaired", change, trial.tally, trial, len(changed))
 
 
