@@ -266,9 +266,9 @@ def as_test(fitted: Fitted) -> PlannedTest:
     )
     used = {decay.file for decay in decays}
     dropped = [
-        PlannedDrop(campaign.load(drop.load), drop.wheels, drop.height or DEFAULT_HEIGHT)
-        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-        if recording.name in used
+        PlannedDrop(campaign.load(drop.load), seen.wheels, drop.height or DEFAULT_HEIGHT)
+        for drop, seen in zip(campaign.drops, fitted.prepared.seen, strict=True)
+        if seen.recording.name in used
     ]
     return campaign_of_fit(subject, fit, dropped)
 

@@ -113,9 +113,10 @@ def prepare(campaign: Campaign) -> Prepared:
             rest=no_rest(len(recording.channels)) if release is None else release.rest,
             marks=(*marked("clipped", over), *marked("spike", off)),
             fell=told,
+            wheels=drop.wheels,
         )
-        for recording, release, over, off, told in zip(
-            campaign.recordings, releases, clipped, spiked, fell, strict=True
+        for drop, recording, release, over, off, told in zip(
+            campaign.drops, campaign.recordings, releases, clipped, spiked, fell, strict=True
         )
     ]
     return Prepared(tuple(decays), tuple(left_out), tuple(seen))
