@@ -161,21 +161,21 @@ def through(values: Real, corner: float, test: DropTest) -> Real:
 
 
 def corner_unstated(kind: str, every: bool = False) -> Act:
-    """Let one sensor of a kind, or all sensors, have a high-pass of 0.05 to 2 Hz of which nothing is stated."""
+    """Say nothing of the high-pass of one or all AC-coupled sensors, or give such that feel gravity one of 0.05 to 2 Hz."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
-        chosen = list(range(len(campaign.sensors))) if every else of_kind(campaign, kind)
+        chosen = of_kind(campaign, kind)
         if not chosen:
             return None
         chosen = chosen if every else [int(random.choice(chosen))]
-        corner = float(np.exp(random.uniform(np.log(0.05), np.log(2.0))))
-        felt = [i for i in chosen if campaign.sensors[i].high_pass is None]
-        spoilt = changed(campaign, felt, lambda values: through(values, corner, test))
+        names = tuple(campaign.sensors[i].channel for i in chosen)
+        if kind == "DC":
+            corner = float(np.exp(random.uniform(np.log(0.05), np.log(2.0))))
+            return Injured(changed(campaign, chosen, lambda values: through(values, corner, test)), names)
         sensors = [
             one.model_copy(update={"high_pass": None}) if i in chosen else one for i, one in enumerate(campaign.sensors)
         ]
-        names = tuple(campaign.sensors[i].channel for i in chosen)
-        return Injured(replace(spoilt, sensors=tuple(sensors)), names)
+        return Injured(replace(campaign, sensors=tuple(sensors)), names)
 
     return act
 
@@ -288,8 +288,9 @@ OF_SENSORS: Sequence[Injury] = (
     Injury("corner, DC", ("corner",),
            "a channel stated to feel gravity has a high-pass of 0.05 to 2 Hz", corner_unstated("DC")),
     Injury("corner, AC", ("corner",), "nothing is stated of a channel's high-pass", corner_unstated("AC")),
-    Injury("corner, all", ("corner",), "all channels have a high-pass, one of 0.05 to 2 Hz where they felt gravity, of which "
-           "nothing is stated", corner_unstated("any", every=True)),
+    Injury("corner, all DC", ("corner",),
+           "all channels stated to feel gravity have one high-pass of 0.05 to 2 Hz", corner_unstated("DC", every=True)),
+    Injury("corner, all AC", ("corner",), "nothing is stated of any channel's high-pass", corner_unstated("AC", every=True)),
     Injury("corner, misstated", ("corner",), "twice or half the corner of a channel is stated", corner_misstated),
     Injury("offset", ("offset", "gain"), "a sensor leans by 15 to 25 degrees", everywhere("any", tilted)),
     Injury("drift, straight", ("drift",), "a channel drifts by 0.1 m/s² over each record", everywhere("any", ramp)),
