@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from campaigns import Real
 from fleet import DropTest
-from scipy.signal import bilinear, lfilter
+from scipy.signal import bilinear, butter, lfilter
 
 import sprung
 from sprung.units import STANDARD_GRAVITY as G
@@ -153,6 +153,46 @@ def exchanged(first: str, second: str, in_one: bool = False) -> Act:
     return act
 
 
+def through(values: Real, corner: float, test: DropTest) -> Real:
+    """Send what a sensor reads through a first-order high-pass that settled long before the release, corner in Hz."""
+    numerator, denominator = butter(1, corner, "highpass", fs=test.rate)
+    level = values[: int(0.9 * test.rest * test.rate)].mean()
+    return np.asarray(lfilter(numerator, denominator, values - level), dtype=np.float64)
+
+
+def corner_unstated(kind: str, every: bool = False) -> Act:
+    """Say nothing of the high-pass of one or all AC-coupled sensors, or give such that feel gravity one of 0.05 to 2 Hz."""
+
+    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+        chosen = of_kind(campaign, kind)
+        if not chosen:
+            return None
+        chosen = chosen if every else [int(random.choice(chosen))]
+        names = tuple(campaign.sensors[i].channel for i in chosen)
+        if kind == "DC":
+            corner = float(np.exp(random.uniform(np.log(0.05), np.log(2.0))))
+            return Injured(changed(campaign, chosen, lambda values: through(values, corner, test)), names)
+        sensors = [
+            one.model_copy(update={"high_pass": None}) if i in chosen else one for i, one in enumerate(campaign.sensors)
+        ]
+        return Injured(replace(campaign, sensors=tuple(sensors)), names)
+
+    return act
+
+
+def corner_misstated(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+    """State twice or half the corner of a sensor's high-pass."""
+    chosen = of_kind(campaign, "AC")
+    if not chosen:
+        return None
+    i = int(random.choice(chosen))
+    stated = (campaign.sensors[i].high_pass or 0.0) * float(random.choice([0.5, 2.0]))
+    sensors = [
+        one.model_copy(update={"high_pass": stated}) if one is campaign.sensors[i] else one for one in campaign.sensors
+    ]
+    return Injured(replace(campaign, sensors=tuple(sensors)), (campaign.sensors[i].channel,))
+
+
 def late(random: np.random.Generator, rate: float) -> Change:
     """Delay by 3 to 10 ms, whole samples."""
     by = max(round(random.uniform(0.003, 0.010) * rate), 1)
@@ -245,6 +285,13 @@ OF_SENSORS: Sequence[Injury] = (
     Injury("sign, AC", ("sign",), "a channel that does not feel gravity is upside down", everywhere("AC", units(-1.0))),
     Injury("gain", ("gain",), "a channel reads 5 % too much or too little", everywhere("any", reads_more)),
     Injury("late", ("late",), "a channel is 3 to 10 ms late", everywhere("any", late)),
+    Injury("corner, DC", ("corner",),
+           "a channel stated to feel gravity has a high-pass of 0.05 to 2 Hz", corner_unstated("DC")),
+    Injury("corner, AC", ("corner",), "nothing is stated of a channel's high-pass", corner_unstated("AC")),
+    Injury("corner, all DC", ("corner",),
+           "all channels stated to feel gravity have one high-pass of 0.05 to 2 Hz", corner_unstated("DC", every=True)),
+    Injury("corner, all AC", ("corner",), "nothing is stated of any channel's high-pass", corner_unstated("AC", every=True)),
+    Injury("corner, misstated", ("corner",), "twice or half the corner of a channel is stated", corner_misstated),
     Injury("offset", ("offset", "gain"), "a sensor leans by 15 to 25 degrees", everywhere("any", tilted)),
     Injury("drift, straight", ("drift",), "a channel drifts by 0.1 m/s² over each record", everywhere("any", ramp)),
     Injury("drift, random walk", ("drift",), "a channel wanders, 0.1 m/s² in a second", everywhere("any", walk)),

@@ -26,6 +26,11 @@ CAR, SMALL, VAN, BUS, TRUCK = FLEET
 NOWHERE = {
     "sign, DC": [VAN],
     "sign, AC": [CAR],
+    "corner, DC": [VAN],
+    "corner, all DC": [VAN],
+    "corner, AC": [CAR],
+    "corner, all AC": [CAR],
+    "corner, misstated": [CAR],
     "load exchanged, one": [BUS],
     "load exchanged, all": [BUS],
     "load position": [BUS],

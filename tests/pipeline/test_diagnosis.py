@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.signal import bilinear, lfilter
+from scipy.signal import bilinear, butter, lfilter
 
 import sprung
 from sprung.recording import Drop
@@ -93,6 +93,18 @@ def delayed(channel: str, by: int) -> Change:
     return samples(change)
 
 
+def through(corner: float, *channels: str) -> Change:
+    """Send channels through a first-order high-pass that had settled before the release."""
+    filters = butter(1, corner, "highpass", fs=RATE)
+
+    def change(values: Real) -> None:
+        for channel in channels:
+            one = values[CHANNELS.index(channel)]
+            one[:] = lfilter(*filters, one - one[: int(0.3 * RATE)].mean())
+
+    return samples(change)
+
+
 def exchanged(one: str, other: str, only: str | None = None) -> Change:
     def change(values: Real) -> None:
         pair = [CHANNELS.index(one), CHANNELS.index(other)]
@@ -173,6 +185,8 @@ MENDED = {
     "too much": (times("wheel_rr", 1.05), "gain", "wheel_rr"),
     "mirrored": (described("body_rl", position=(-2.8, -0.7, 0.5)), "position", "body_rl"),
     "on another wheel": (described("wheel_fl", on="rl"), "wrong-wheel", "wheel_fl"),
+    "AC-coupled, hardly": (through(0.05, "body_rr"), "corner", "body_rr"),
+    "AC-coupled, another corner": (described("wheel_fl", high_pass=0.2), "corner", "wheel_fl"),
     "two wheels": (exchanged("wheel_fl", "wheel_fr"), "exchanged", "wheel_fl, wheel_fr"),
     "in one drop": (exchanged("body_fl", "body_fr", "left.csv"), "exchanged", "left.csv: body_fl, body_fr"),
     "two drops": (with_loads(FILES[0], FILES[3]), "load-exchanged", "bounce.csv, laden_bounce.csv"),
@@ -188,6 +202,33 @@ def test_it_is_put_right_and_named(name: str) -> None:
     assert said(result) == [(code, where)]
     assert result.verdict.state == "accept"
     assert distance(result) < 1.0
+
+
+BODY = CHANNELS[:4]
+
+
+@pytest.mark.parametrize("corner", [0.1, 0.5])
+def test_corners_that_all_sensors_share_are_found(corner: float) -> None:
+    """No sensor contradicts another one; how the high-pass dies away tells."""
+    spoilt = through(corner, *BODY)(CLEAN)
+    for channel in CHANNELS[4:]:
+        spoilt = described(channel, high_pass=None)(spoilt)
+    result = sprung.identify(spoilt)
+    assert said(result) == [("corner", ", ".join(CHANNELS))]
+    told = [float(one.split(" ")[1]) for one in result.faults[0].what.split(": ")[1].split("; ")[0].split(", ")]
+    errors = [float(one.split(" ")[3]) for one in result.faults[0].what.split(": ")[1].split("; ")[0].split(", ")]
+    truth = [corner] * 4 + [0.1] * 4
+    assert all(abs(it - here) < 4 * std for it, here, std in zip(told, truth, errors, strict=True))
+    assert result.verdict.state == "accept"
+
+
+def test_a_corner_that_distorts_much_is_found() -> None:
+    """What undoing 1 Hz makes of the noise is more than what was there: the numbers stay right, and say less."""
+    result = sprung.identify(through(1.0, "body_fl")(CLEAN))
+    assert [(fault.code, fault.where) for fault in result.faults] == [("corner", "body_fl")]
+    assert "a corner of 1.0" in result.faults[0].what or "a corner of 0.99" in result.faults[0].what
+    assert result.verdict.state == "accept"
+    assert distance(result) < 4.0
 
 
 def stiffer(axle: str) -> Vehicle:

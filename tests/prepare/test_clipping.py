@@ -38,6 +38,15 @@ def test_without_a_file_the_sensor_does_and_otherwise_it_is_si() -> None:
     assert with_full_scale(CLEAN.recordings[0], CLEAN.sensors).full_scale == (None,) * 8
 
 
+def test_a_logger_that_shows_less_than_the_sensor_clips_as_well() -> None:
+    """A range of 50 g is stated; the logger's input ends at 3 g, for some samples in a row."""
+    one = CLEAN.recordings[0]
+    cut = replace(one, values=np.clip(one.values, -0.6 * FULL, 0.6 * FULL), full_scale=(10 * FULL,) * 8)
+    assert clipped_samples(cut).any()
+    assert (np.abs(cut.values)[clipped_samples(cut)] == 0.6 * FULL).all()
+    assert not clipped_samples(replace(one, full_scale=(10 * FULL,) * 8)).any()
+
+
 def test_a_range_that_is_exceeded_is_none() -> None:
     """5 g, taken for 5 m/s², would be exceeded by gravity already: nothing may be called clipped for it."""
     prepared = prepare(replace(CLEAN, sensors=RANGED))

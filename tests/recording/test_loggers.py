@@ -77,10 +77,37 @@ def test_a_channel_of_two_files_needs_its_logger(tmp_path: Path) -> None:
         read(campaign(tmp_path, SENSORS.replace('logger = "front_left"\n', "").replace('logger = "front_right"', "")))
 
 
-def test_several_files_have_no_window_in_common(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="no window in common: cut each file to the one drop") as caught:
-        read(campaign(tmp_path, SENSORS.replace("files = [", "window = [0.0, 1.0]\nfiles = [")))
-    assert len(caught.value.problems) == 1
+def day(columns: str, rate: float, start: float, seed: int, samples: int) -> str:
+    """Write a file of a logger that saw three falls, 5, 14 and 24 s after the first logger was started."""
+    time = np.arange(samples) / rate
+    since = (time + (0.0 if start == 10.0 else 1.7))[:, None] - [5.0, 14.0, 24.0]
+    motion = np.where(since > 0, 5 * np.exp(-2 * since) * np.sin(9 * since), 0.0).sum(axis=1)
+    motion += 0.02 * np.random.default_rng(seed).standard_normal(samples)
+    rows = np.column_stack([start + time, *[motion] * (columns.count(",") + 1)])
+    return "\n".join([f"time,{columns}", *(",".join(f"{one:.6f}" for one in row) for row in rows)]) + "\n"
+
+
+@pytest.mark.parametrize("fall", [5.0, 14.0, 24.0])
+def test_a_window_on_the_first_clock_is_found_on_the_others(tmp_path: Path, fall: float) -> None:
+    """The other clocks stand 1000 s and -3 s apart and were started 1.7 s later."""
+    path = campaign(tmp_path, SENSORS.replace("files = [", f"window = [{9 + fall}, {12 + fall}]\nfiles = ["))
+    (tmp_path / "drop1_front_left.csv").write_text(day("z", 200, 10.0, 1, 6000))
+    (tmp_path / "drop1_front_right.csv").write_text(day("z", 200, -3.0, 2, 5900))
+    (tmp_path / "drop1_body.csv").write_text(day("b1,b2,b3", 500, 1000.0, 3, 14000))
+    (recording,) = read(path).recordings
+    assert recording.name.endswith(f"from {9 + fall:g} s")
+    moved = [one.time[np.argmax(np.abs(one.values[0]) > 0.5)] for one in recording.parts]
+    np.testing.assert_allclose(moved, [10 + fall, fall - 4.7, fall + 998.3], atol=0.05)
+    lasts = [one.values.shape[1] / one.rate for one in recording.parts]
+    np.testing.assert_allclose(lasts, [3.0, 3.2, 3.2], atol=0.01)
+
+
+def test_a_window_is_on_the_clock_of_a_file_that_is_used(tmp_path: Path) -> None:
+    written = SENSORS.replace('files = ["drop1_front', 'window = [1.0, 2.0]\nfiles = ["unused.csv", "drop1_front')
+    path = campaign(tmp_path, written)
+    (tmp_path / "unused.csv").write_text(day("temperature", 200, 10.0, 1, 600))
+    with pytest.raises(InputError, match=r"window.*unused.csv.*Name another file first"):
+        read(path)
 
 
 def test_a_logger_without_a_file_is_missing_from_the_drop(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from sprung.identification.added_mass import added_mass
 from sprung.identification.beyond import ascend_stepped, lost_without, prospects
-from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK
+from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK, told_directions
 from sprung.identification.contact import ascend_from_contact
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
 from sprung.identification.inflation import corrections, of_colour
@@ -66,4 +66,5 @@ __all__ = [
     "timed_by_decay",
     "timed_by_release",
     "told_alone",
+    "told_directions",
 ]

@@ -21,7 +21,7 @@ from sprung.vehicle import Heights, LinearModel, Load, Rows, Sensor
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-Kind = Literal["gain", "late", "position", "load-position"]
+Kind = Literal["gain", "late", "position", "load-position", "corner"]
 
 _NUDGE = 0.01
 """m by which an item is moved to see what that does; its mass is quadratic in its place, so that any step is exact."""
@@ -34,7 +34,8 @@ class Suspect(NamedTuple):
     ----------
     kind
         ``gain``: a channel reads too much, as a part; ``late``: a channel is late, s; ``position``: a sensor, and
-        ``load-position``: an item of a load sits further forward or left than stated, m.
+        ``load-position``: an item of a load sits further forward or left than stated, m; ``corner``: of a channel's
+        high-pass, which is higher, Hz.
     where
         The channel, or the load's name.
     axis

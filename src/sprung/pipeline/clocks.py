@@ -87,7 +87,10 @@ def set_clocks(
         return prepared, None
     # As far as the first motion that each logger shows has told, all clocks are one: near enough for a first vehicle.
     summit = fit([replace(decay, clocks=()) for decay in prepared.decays])
-    by_name = {seen.recording.name: (drop, seen) for drop, seen in zip(campaign.drops, prepared.seen, strict=True)}
+    by_name = {
+        seen.recording.name: (drop.model_copy(update={"wheels": seen.wheels}), seen)
+        for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
+    }
     decays = prepared.decays
     for _ in range(_PASSES):
         vehicle = Vehicle.from_parameters(summit.parameters, name=campaign.name, **campaign.heights.by_key)

@@ -21,7 +21,6 @@ from sprung.identification import (
     describe,
     look_around,
     mode_estimates,
-    suspects,
 )
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.candidates import fit_from
@@ -33,6 +32,7 @@ from sprung.pipeline.diagnosis import (
     Hypothesis,
     Suspicion,
     diagnose,
+    scores,
     suspicious,
     walking_slowly,
     without_looking_at_wheels,
@@ -174,8 +174,7 @@ def fit_campaign(
         if accused or not taken:
             break
     if any(one.settle is not None for one in mended):
-        loads = {load.name: load for load in fitted.campaign.loads}
-        listed = suspects(fitted.summit, fitted.campaign.sensors, loads, fitted.choice.heights)
+        listed = scores(fitted.campaign, fitted.prepared.decays, fitted.summit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
     return _with_the_fall(_with_drifts(fitted), campaign.model.fall if fall is None else fall, progress)
@@ -304,9 +303,9 @@ def as_test(fitted: Fitted) -> PlannedTest:
     )
     used = {decay.file for decay in decays}
     dropped = [
-        PlannedDrop(campaign.load(drop.load), drop.wheels, drop.height or DEFAULT_HEIGHT)
-        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-        if recording.name in used
+        PlannedDrop(campaign.load(drop.load), seen.wheels, drop.height or DEFAULT_HEIGHT)
+        for drop, seen in zip(campaign.drops, fitted.prepared.seen, strict=True)
+        if seen.recording.name in used
     ]
     return campaign_of_fit(subject, fit, dropped)
 

@@ -1,6 +1,7 @@
 """Decays: the part of each drop in which the free-vibration model holds, and the faults that were met on the way."""
 
 from sprung.prepare.alignment import align
+from sprung.prepare.coupling import by_corner, coupled
 from sprung.prepare.decay import Decay, rounding
 from sprung.prepare.events import Events, Mark, Seen
 from sprung.prepare.fallen import (
@@ -30,6 +31,8 @@ __all__ = [
     "Rest",
     "Seen",
     "align",
+    "by_corner",
+    "coupled",
     "drops_in",
     "find_drops",
     "flights",

@@ -75,7 +75,7 @@ def clipped_samples(recording: Recording) -> NDArray[np.bool_]:
     Parameters
     ----------
     recording
-        With its full scale, which decides where it is known; otherwise the channel's own extremes do.
+        With its full scale, where it is known; a channel's own extremes tell as well.
 
     Returns
     -------
@@ -91,12 +91,12 @@ def clipped_samples(recording: Recording) -> NDArray[np.bool_]:
             continue
         if full_scale is not None:
             found[channel] = np.abs(signal) >= _FULL * full_scale
-        else:
-            step, usual = float(steps[channel]), float(np.median(np.abs(np.diff(signal))))
-            coarse = step > _COARSE * usual
-            jump = max(_STEEP * step, _NOISY * usual if coarse else 0.0)
-            for way in (1.0, -1.0):
-                found[channel] |= _plateaus(way * signal, jump, coarse)
+        # Whatever the sensor can show, its amplifier or the logger may be able to show less.
+        step, usual = float(steps[channel]), float(np.median(np.abs(np.diff(signal))))
+        coarse = step > _COARSE * usual
+        jump = max(_STEEP * step, _NOISY * usual if coarse else 0.0)
+        for way in (1.0, -1.0):
+            found[channel] |= _plateaus(way * signal, jump, coarse)
     return found
 
 

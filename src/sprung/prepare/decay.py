@@ -49,6 +49,9 @@ class Decay:
         Samples that were taken of each channel for each one that is here; empty where it is 1 for all of them.
     undone
         Corner of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
+    velocity
+        What each sensor read above its rest level, integrated from rest to the first of the `earlier` samples, m/s,
+        as far as the high-pass that was undone remembers it; shape (channel,).
     events
         When what happened, and why the decay has its limits.
     """
@@ -65,6 +68,7 @@ class Decay:
     clocks: tuple[LoggerClock, ...] = ()
     undone: tuple[float, ...] = ()
     shares: tuple[float, ...] = ()
+    velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     events: Events = field(default_factory=Events)
 
     @cached_property

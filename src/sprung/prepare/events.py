@@ -71,6 +71,8 @@ class Seen:
         Samples with which something is the matter.
     fell
         For each wheel with a sensor, as far as the release shows it: whether it lost its block.
+    wheels
+        Those that were dropped: as stated, or as far as the release contradicts that, as it shows.
     """
 
     recording: Recording
@@ -78,6 +80,7 @@ class Seen:
     rest: Rest = field(default_factory=lambda: no_rest(0))
     marks: tuple[Mark, ...] = ()
     fell: Mapping[Wheel, bool] = field(default_factory=dict)
+    wheels: tuple[Wheel, ...] = ()
 
 
 def marked(code: str, samples: NDArray[np.bool_]) -> tuple[Mark, ...]:

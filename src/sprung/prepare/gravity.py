@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.prepare.coupling import SILENT
 from sprung.prepare.release import Release, Rest
 from sprung.recording import Recording
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
@@ -23,9 +24,6 @@ _NEAR = 0.1
 
 _UNTOLD = 0.05
 """Part of gravity up to which that is not worth a word: a tilt of 18 degrees."""
-
-_SILENT = 0.5
-"""m/s² at rest below which a sensor does not feel gravity, whatever its unit."""
 
 _FARTHEST = 3.0
 """g at rest from which it is no offset any more, but numbers in an unknown unit."""
@@ -125,7 +123,7 @@ def _read(levels: Real, peaks: Real, sensors: Sequence[Sensor]) -> list[_Reading
     usual = np.array(
         [np.median(of[~np.isnan(of)]) if some else np.nan for of, some in zip(levels.T, known, strict=True)]
     )
-    silent = known & _in_every_drop(np.abs(levels) < _SILENT / STANDARD_GRAVITY, levels)
+    silent = known & _in_every_drop(np.abs(levels) < SILENT / STANDARD_GRAVITY, levels)
     scale = _scales(levels, known & ~silent, peaks, sensors)
     factors = np.array([_SCALES[i][0] for i in scale])
     feels = known & _in_every_drop(np.abs(np.abs(levels * factors) - 1) < _NEAR, levels)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sprung.errors import Fault
 from sprung.prepare.alignment import align, lively
 from sprung.prepare.clipping import clipped_samples, with_full_scale
-from sprung.prepare.coupling import direct_coupled
+from sprung.prepare.coupling import direct_coupled, velocities
 from sprung.prepare.decay import Decay
 from sprung.prepare.drift import steady
 from sprung.prepare.events import Events, Seen, filled_in, marked
@@ -113,9 +113,10 @@ def prepare(campaign: Campaign) -> Prepared:
             rest=no_rest(len(recording.channels)) if release is None else release.rest,
             marks=(*marked("clipped", over), *marked("spike", off)),
             fell=told,
+            wheels=drop.wheels,
         )
-        for recording, release, over, off, told in zip(
-            campaign.recordings, releases, clipped, spiked, fell, strict=True
+        for drop, recording, release, over, off, told in zip(
+            campaign.drops, campaign.recordings, releases, clipped, spiked, fell, strict=True
         )
     ]
     return Prepared(tuple(decays), tuple(left_out), tuple(seen))
@@ -207,6 +208,7 @@ def _decay(
             f"{max(length, 0.0):.2f} s of free vibration, at least {SHORTEST} s are needed; the drop is left out",
             "Record for at least three seconds after the release.",
         )
+    undone = tuple((release and sensor.high_pass) or 0.0 for sensor in campaign.sensors)
     return Decay(
         name=name,
         file=recording.name,
@@ -219,7 +221,8 @@ def _decay(
         faults=tuple(faults),
         clocks=recording.clocks,
         shares=recording.shares,
-        undone=tuple((release and sensor.high_pass) or 0.0 for sensor in campaign.sensors),
+        undone=undone,
+        velocity=velocities(recording, release, undone, landing.possible),
         events=_events(recording, release, landing, why_end),
     )
 

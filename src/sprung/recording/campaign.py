@@ -47,7 +47,7 @@ class Drop(BaseModel):
     files: tuple[str, ...] = Field(default=(), max_length=64)
     """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
     window: tuple[Finite, Finite] | None = None
-    """s on the file's clock: the part of the recording that holds this drop, where it holds more than one."""
+    """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
     """Name of the load on the vehicle."""
     wheels: tuple[Wheel, ...] = Field(default=("fl", "fr", "rl", "rr"), min_length=1)
@@ -55,9 +55,9 @@ class Drop(BaseModel):
     height: Positive | None = None
     """Of the blocks, m."""
     start: Finite | None = None
-    """s on the file's clock: the decay is used from here, as given."""
+    """s on the file's clock, of several files the first one's: the decay is used from here, as given."""
     end: Finite | None = None
-    """s on the file's clock: the decay is used up to here, as given."""
+    """s on the file's clock, of several files the first one's: the decay is used up to here, as given."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Drop:
@@ -71,10 +71,6 @@ class Drop(BaseModel):
             raise ValueError("name each file once")
         if self.window is not None and self.window[1] <= self.window[0]:
             raise ValueError(f"the window must end after {self.window[0]:g} s, where it begins")
-        if self.window is not None and self.files:
-            raise ValueError(
-                "the clocks of several files have no window in common: cut each file to the one drop, and leave the window out"
-            )
         return self
 
     @property
@@ -85,13 +81,11 @@ class Drop(BaseModel):
     @property
     def recording(self) -> str | None:
         """What to call its recording: the file, with the beginning of its window, or what its files have in common."""
-        if self.window is not None:
-            return f"{self.file} from {self.window[0]:g} s"
-        if len(self.files) < 2:
-            return self.file or next(iter(self.files), None)
-        shared = self._shared
-        own = len(shared) - 1 - len(PurePath(self.files[0]).suffix)
-        return shared if own > 0 else f"{self.files[0]} and {len(self.files) - 1} more"
+        shared = self.file or next(iter(self.files), None)
+        if len(self.files) > 1:
+            own = len(self._shared) - 1 - len(PurePath(self.files[0]).suffix)
+            shared = self._shared if own > 0 else f"{self.files[0]} and {len(self.files) - 1} more"
+        return shared if shared is None or self.window is None else f"{shared} from {self.window[0]:g} s"
 
     @property
     def name(self) -> str:
@@ -99,7 +93,7 @@ class Drop(BaseModel):
         if self.file is not None:
             return PurePath(self.file).stem + self._from
         shared = PurePath(self._shared).stem.replace("*", "").strip("_-. ") if self.files else ""
-        return shared or f"{self.load}_{self.kind.replace(' ', '_')}"
+        return (shared or f"{self.load}_{self.kind.replace(' ', '_')}") + self._from
 
     @property
     def _shared(self) -> str:

@@ -55,7 +55,10 @@ def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
         "sensor": [("channel", sensor.channel, sensor.logger) for sensor in file.sensor],
         "load": [("name", load.name, None) for load in file.load],
         # "./a.csv" is "a.csv"; one file may hold several drops, each in its window.
-        "drop": [("file", "" if drop.file is None else str(PurePath(drop.file)), drop.window) for drop in file.drop],
+        "drop": [
+            ("files" if drop.files else "file", ", ".join(str(PurePath(one)) for one in drop.recordings), drop.window)
+            for drop in file.drop
+        ],
     }
     remedies = {"drop": "Each drop has its own recording, or its own window of one."}
     for section, entries in named.items():

@@ -17,6 +17,7 @@ from sprung.recording.formats import Table
 from sprung.recording.merging import merged
 from sprung.recording.recording import Recording
 from sprung.recording.signals import column_of, recording_of
+from sprung.recording.windows import within
 from sprung.vehicle import Sensor
 
 
@@ -89,7 +90,12 @@ def recording_of_drop(tables: Mapping[str, Table], sensors: Sequence[Wanted], dr
             if own:
                 part = recording_of(tables[of], [sensor.written for sensor in own], of)
                 parts.append(replace(part, channels=tuple(sensor.named.channel for sensor in own)))
+    if drop.window is not None and not of_file[drop.files[0]]:
+        where, found = f"{name}: window", f"no sensor of the campaign in {drop.files[0]}, on whose clock it is"
+        problems.add(where, found, "a window on the clock of a file that is used", "Name another file first in files.")
     problems.raise_if_any()
+    if drop.window is not None:
+        parts = list(within(parts, drop.window))
     channels = tuple(sensor.named.channel for sensor in sensors)
     faults += [fault for part in parts for fault in part.faults]
     nothing = np.full((len(channels), 0), np.nan)

@@ -10,6 +10,15 @@ from sprung.pipeline.diagnosis.bench import Bench, without_looking_at_wheels
 from sprung.pipeline.diagnosis.competition import diagnose
 from sprung.pipeline.diagnosis.hypotheses import Hypothesis
 from sprung.pipeline.diagnosis.slowly import walking_slowly
-from sprung.pipeline.diagnosis.suspicion import Suspicion, suspicious
+from sprung.pipeline.diagnosis.suspicion import Suspicion, scores, suspicious
 
-__all__ = ["Bench", "Hypothesis", "Suspicion", "diagnose", "suspicious", "walking_slowly", "without_looking_at_wheels"]
+__all__ = [
+    "Bench",
+    "Hypothesis",
+    "Suspicion",
+    "diagnose",
+    "scores",
+    "suspicious",
+    "walking_slowly",
+    "without_looking_at_wheels",
+]

@@ -163,18 +163,21 @@ class Bench:
         sensors, known = campaign.sensors, choice.known
         starts, enough = (1, np.inf) if roughly else (_STARTS, NEAR)
         summit = ascend(decays, choice.models, sensors, known, start=start, starts=starts, enough=enough)
-        as_recorded = campaign.recordings is self.campaign.recordings and "base" in self.__dict__
-        noise = self.base.noise if as_recorded else noise_of(decays, summit)
+        noise = self.base.noise if self._as_recorded(campaign) and "base" in self.__dict__ else noise_of(decays, summit)
         return Trial(campaign, decays, choice.models, summit, tally_of(self.files, decays, summit), noise)
 
     def after(self, trial: Trial) -> Bench:
         """Give the bench on which what was tried is the campaign."""
         return replace(self, campaign=trial.campaign, decays=trial.decays)
 
+    def _as_recorded(self, campaign: Campaign) -> bool:
+        """Say whether a campaign's samples are what they were."""
+        before, after = ([one.high_pass for one in each.sensors] for each in (self.campaign, campaign))
+        return campaign.recordings is self.campaign.recordings and before == after
+
     def _decays(self, campaign: Campaign) -> tuple[Decay, ...]:
         """Give the decays of a campaign that was changed: the same samples, as long as nobody has touched them."""
-        before = [sensor.high_pass for sensor in self.campaign.sensors]
-        if campaign.recordings is not self.campaign.recordings or before != [one.high_pass for one in campaign.sensors]:
+        if not self._as_recorded(campaign):
             return prepare(campaign).decays
         named = zip(campaign.drops, campaign.recordings, strict=True)
         loads = {recording.name: drop.load for drop, recording in named}

@@ -9,6 +9,7 @@ import numpy as np
 
 from sprung.pipeline.diagnosis.bench import Bench
 from sprung.pipeline.diagnosis.changes import nothing
+from sprung.pipeline.diagnosis.coupled import coupled_otherwise
 from sprung.pipeline.diagnosis.hypotheses import Hypothesis
 from sprung.pipeline.diagnosis.of_all import exchanged_loads, misplaced_loads, twist
 from sprung.pipeline.diagnosis.of_channels import WithoutChannel, exchanges, scores
@@ -71,7 +72,7 @@ def compete(bench: Bench) -> Hypothesis | None:
         The best one, if it explains much; where another one does so about as well, it is only named, and that one with it.
     """
     base = bench.base
-    pool = [*_of_parts(bench), *misplaced_loads(bench)]
+    pool = [*_of_parts(bench), *misplaced_loads(bench), *coupled_otherwise(bench)]
     for more in (exchanged_loads, exchanges):
         if not any(one.tally.explained(bench.noise) or (one.trial.explained and not one.specific) for one in pool):
             pool += more(bench)
@@ -83,7 +84,7 @@ def compete(bench: Bench) -> Hypothesis | None:
     rivals = [
         one
         for one in pool
-        if one.fault.where != best.fault.where
+        if not _of_one_thing(one, best)
         and one.score(inflation) < best.score(inflation) + SURE
         and one.trial.unexplained <= most
     ]
@@ -93,6 +94,14 @@ def compete(bench: Bench) -> Hypothesis | None:
     what = f"{best.fault.what}; or {rival.fault.where}: {rival.fault.what}"
     fault = replace(best.fault, what=what)
     return replace(best, fault=fault, remedy="named", change=nothing, drop=None, specific=False)
+
+
+def _of_one_thing(one: Hypothesis, other: Hypothesis) -> bool:
+    """Say whether two hypotheses are about the same thing, or one has it among several of which it says the same."""
+    if one.fault.where == other.fault.where:
+        return True
+    named, by_other = (set(each.fault.where.split(", ")) for each in (one, other))
+    return one.fault.code == other.fault.code and (named <= by_other or by_other <= named)
 
 
 def _convincing(bench: Bench, pool: Sequence[Hypothesis]) -> Hypothesis | None:

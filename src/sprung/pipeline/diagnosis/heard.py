@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
 from sprung.pipeline.diagnosis.bench import Trial
@@ -22,6 +23,9 @@ _LATEST = 0.05
 
 _STEPS = 4
 """Steps in which a delay settles."""
+
+_CORNERS = np.concatenate([[0.0], np.geomspace(0.01, 5.0, 40)])
+"""Corners of a high-pass that are tried, Hz."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +129,31 @@ class Heard:
             step = float((self.record - row @ motion) @ slope) / max(float(slope @ slope), np.finfo(float).tiny)
             late = float(np.clip(late + np.clip(step, -2 / rate, 2 / rate), -2 * _LATEST, 2 * _LATEST))
         return late
+
+    def through(self, corner: float) -> Real:
+        """Give what the channel reads if it feels the row that is stated, through a high-pass with this corner, Hz, in all.
+
+        What the high-pass remembers of the time before each decay goes as its exponential does, and is fitted.
+        """
+        row, record, fitted = self.row(self.sensor), iter(np.split(self.record, self._first[1:])), []
+        omega = 2 * np.pi * corner
+        undone = 2 * np.pi * (self.sensor.high_pass or 0.0)
+        for decay, (poles, amplitudes, waves) in zip(self.decays, self._waves, strict=True):
+            motion = _centred(((row @ amplitudes) * (poles + undone) / (poles + omega) @ waves).real)
+            fading = _centred(np.exp(-omega * np.arange(decay.samples) / decay.rate))
+            rest = float((next(record) - motion) @ fading) / max(float(fading @ fading), np.finfo(float).tiny)
+            fitted.append(motion + rest * fading)
+        return np.concatenate(fitted)
+
+    def corner(self) -> float:
+        """Give the corner of the high-pass, Hz, through which the channel feels the row that is stated; 0 without any."""
+
+        def cost(corner: float) -> float:
+            return float(self.left(self.through(corner)).sum())
+
+        best = int(np.argmin([cost(one) for one in _CORNERS.tolist()]))
+        between = _CORNERS[[max(best - 1, 0), min(best + 1, len(_CORNERS) - 1)]]
+        return float(minimize_scalar(cost, bounds=between.tolist(), method="bounded", options={"xatol": 1e-5}).x)
 
 
 def _centred(values: Real) -> Real:

@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from sprung.errors import Fault
 from sprung.pipeline.diagnosis.changes import Change, advanced, described, scaled
+from sprung.pipeline.diagnosis.coupled import of_corners, with_corner
 from sprung.pipeline.diagnosis.heard import Heard
 from sprung.pipeline.diagnosis.suspicion import SURE
+from sprung.prepare import coupled
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS
 
@@ -47,7 +49,7 @@ class Meaning:
     code
         Of the fault.
     say
-        Names the fault, given the numbers, without saying what is done about it.
+        Names the fault, given the numbers and their standard uncertainties, without saying what is done about it.
     residual
         What it leaves of the channel, sum of squares of each decay, shape (decay,).
     put_right
@@ -55,7 +57,7 @@ class Meaning:
     done
         What that is called.
     numbers
-        What it takes from the records: a part, s or m.
+        What it takes from the records: a part, s, m or Hz.
     stated
         What the campaign file says of the numbers, where it says anything.
     size
@@ -65,7 +67,7 @@ class Meaning:
     """
 
     code: str
-    say: Callable[[Numbers], Fault]
+    say: Callable[[Numbers, Numbers], Fault]
     residual: Real
     put_right: Callable[[Numbers], Change] | None = None
     done: str = "it is left out"
@@ -96,6 +98,8 @@ def meanings(heard: Heard, noise: float, walks: Real | None = None) -> Iterator[
         return
     yield from _turned_or_scaled(heard)
     yield _late(heard)
+    if all(coupled(decay)[heard.channel] for decay in heard.decays):
+        yield _coupled_otherwise(heard)
     yield from _other_wheels(heard)
     yield _other_place(heard)
     yield from _left_over(heard, walks)
@@ -107,7 +111,7 @@ def _turned_or_scaled(heard: Heard) -> Iterator[Meaning]:
     gain = float(heard.record @ stated) / max(float(stated @ stated), np.finfo(float).tiny)
     do = "Describe the sensor the other way up in the campaign file, or turn it over."
     over = Fault("sign", name, "it reads upside down, as the other channels show", do)
-    yield Meaning("sign", lambda _: over, heard.left(-stated), lambda _: scaled(channel, -1.0), "it was turned over")
+    yield Meaning("sign", lambda *_: over, heard.left(-stated), lambda _: scaled(channel, -1.0), "it was turned over")
     if not gain > 0:
         return
     for factor, told in _factors():
@@ -115,7 +119,7 @@ def _turned_or_scaled(heard: Heard) -> Iterator[Meaning]:
             what = f"it reads {told}, as the other channels show"
             yield _of_unit(Fault("unit", name, what, "Correct its unit in the campaign file."), heard, stated, factor)
 
-    def too_much(numbers: Numbers) -> Fault:
+    def too_much(numbers: Numbers, _: Numbers) -> Fault:
         size, way = _figures(100 * abs(numbers[0] - 1)), "much" if numbers[0] > 1 else "little"
         what = f"it reads {size} % too {way}, as the other channels show"
         return Fault("gain", name, what, "Check its calibration, that it stands upright, and its unit.")
@@ -136,7 +140,7 @@ def _turned_or_scaled(heard: Heard) -> Iterator[Meaning]:
 def _of_unit(fault: Fault, heard: Heard, stated: Real, factor: float) -> Meaning:
     return Meaning(
         "unit",
-        lambda _: fault,
+        lambda *_: fault,
         heard.left(factor * stated),
         lambda _: scaled(heard.channel, 1 / factor),
         "that was put right",
@@ -147,7 +151,7 @@ def _of_unit(fault: Fault, heard: Heard, stated: Real, factor: float) -> Meaning
 def _late(heard: Heard) -> Meaning:
     row = heard.row(heard.sensor)
 
-    def is_late(numbers: Numbers) -> Fault:
+    def is_late(numbers: Numbers, _: Numbers) -> Fault:
         size, way = _figures(1000 * abs(numbers[0])), "late" if numbers[0] > 0 else "early"
         what = f"it is {size} ms {way}, as the other channels show"
         do = "Check the delays of the logger and its filters, channel by channel."
@@ -158,6 +162,20 @@ def _late(heard: Heard) -> Meaning:
     return Meaning(
         "late", is_late, left, lambda numbers: advanced(heard.channel, numbers[0]), "it was moved", (late,), (0.0,)
     )
+
+
+def _coupled_otherwise(heard: Heard) -> Meaning:
+    """Find the corner of the high-pass through which a channel feels what is stated."""
+    corner, stated = heard.corner(), heard.sensor.high_pass or 0.0
+
+    def goes_through(numbers: Numbers, stds: Numbers) -> Fault:
+        return of_corners([heard.sensor], numbers, stds)
+
+    def put(numbers: Numbers) -> Change:
+        return described(heard.channel, with_corner(heard.sensor, numbers[0]))
+
+    left = heard.left(heard.through(corner))
+    return Meaning("corner", goes_through, left, put, "that was undone", (corner,), (stated,))
 
 
 def _other_wheels(heard: Heard) -> Iterator[Meaning]:
@@ -173,7 +191,7 @@ def _other_wheels(heard: Heard) -> Iterator[Meaning]:
 
 
 def _of_wheel(fault: Fault, residual: Real, put: Change) -> Meaning:
-    return Meaning("wrong-wheel", lambda _: fault, residual, lambda _: put, "it was taken to be there")
+    return Meaning("wrong-wheel", lambda *_: fault, residual, lambda _: put, "it was taken to be there")
 
 
 def _other_place(heard: Heard) -> Meaning:
@@ -186,7 +204,7 @@ def _other_place(heard: Heard) -> Meaning:
     tilt = np.stack([-heard.motion[1], heard.motion[2]])
     place = np.linalg.lstsq(tilt.T, heard.record - level, rcond=None)[0]
 
-    def sits(numbers: Numbers) -> Fault:
+    def sits(numbers: Numbers, _: Numbers) -> Fault:
         x, y = numbers
         what = f"it shows what the body does at x = {x:.2f} m, y = {y:.2f} m, not {_stated(heard)}"
         if sensor.position is not None and np.hypot(x - here[0], y + here[1]) < _MIRRORED * abs(here[1]):
@@ -218,7 +236,7 @@ def _left_over(heard: Heard, walks: Real | None) -> Iterator[Meaning]:
             "its level walks, as the other channels show",
             "Let the sensor and the logger warm up before the test, and see that nothing strains the sensor's base.",
         )
-        yield Meaning("drift", lambda _: fault, walks)
+        yield Meaning("drift", lambda *_: fault, walks)
         return
     what = "it shows something else where the other channels show motion"
     yield _unknown(heard, "unlike-others", what, 0.0 * heard.record)
@@ -229,7 +247,7 @@ def _left_over(heard: Heard, walks: Real | None) -> Iterator[Meaning]:
 
 def _unknown(heard: Heard, code: str, what: str, fitted: Real, free: int = 0) -> Meaning:
     fault = Fault(code, heard.sensor.channel, what, "Check the sensor, its cable and how it is fastened.")
-    return Meaning(code, lambda _: fault, heard.left(fitted), free=free)
+    return Meaning(code, lambda *_: fault, heard.left(fitted), free=free)
 
 
 def _stated(heard: Heard) -> str:

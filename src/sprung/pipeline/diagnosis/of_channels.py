@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.identification import Suspect, suspects
+from sprung.identification import Suspect
 from sprung.pipeline.diagnosis.bench import Bench, Trial
 from sprung.pipeline.diagnosis.changes import Change, exchanged, silenced
 from sprung.pipeline.diagnosis.heard import Heard
 from sprung.pipeline.diagnosis.hypotheses import Hypothesis
 from sprung.pipeline.diagnosis.measured import Meaning, Numbers, meanings
 from sprung.pipeline.diagnosis.suspicion import MATTERS
+from sprung.pipeline.diagnosis.suspicion import scores as scores_of
 from sprung.pipeline.diagnosis.tally import Tally
 from sprung.prepare import Decay
 
@@ -25,11 +26,14 @@ Real = NDArray[np.float64]
 _ROUNDS = 4
 """Fits in which the numbers of a meaning settle."""
 
+_SETTLED = 0.1
+"""Gain in twice the log-likelihood below which they have settled."""
+
 _PULLS = 1.0
 """Standard uncertainties by which a number may move a parameter with one of its own, for it to be taken from the records."""
 
-_FARTHEST = {"gain": 0.5, "late": 0.01, "position": 1.0}
-"""By how much a number changes at once: a part, s and m."""
+_FARTHEST = {"gain": 0.5, "late": 0.01, "position": 1.0, "corner": 1.0}
+"""By how much a number changes at once: a part, s, m and Hz."""
 
 _TRIED = 3
 """Pairs of channels of which it is seen to the end whether they were exchanged."""
@@ -77,7 +81,7 @@ class WithoutChannel:
         for one in meanings(self.heard, float(bench.noise.level[self.channel]), walks):
             if one.put_right is None:
                 tally = self._tally(bench, one.residual)
-                fault = _done(one.say(()), one.done)
+                fault = _done(one.say((), ()), one.done)
                 yield Hypothesis(fault, "left out", out, tally, self.trial, one.free, specific=one.code == "flat")
             elif one.residual.sum() < _PART * self.heard.energy:
                 yield from self._with(bench, one, one.put_right)
@@ -92,12 +96,11 @@ class WithoutChannel:
         """Fit the vehicle with the channel as what it may be, and its numbers along with it."""
         numbers, name = meaning.numbers, self.heard.sensor.channel
         trial = bench.fit(put_right(numbers)(bench.campaign), self.trial.summit.parameters)
-        pulls: list[float] = []
+        mine: list[Suspect] = []
         for _ in range(_ROUNDS if numbers else 0):
             listed = scores(trial)
             mine = [one for one in listed if (one.kind, one.where) == (meaning.code, name)]
-            pulls = [one.pull for one in mine]
-            if all(one.gain < 1 for one in mine):
+            if all(one.gain < _SETTLED for one in mine):
                 break
             numbers = moved(meaning.code, name, numbers, listed)
             trial = bench.fit(put_right(numbers)(bench.campaign), trial.summit.parameters)
@@ -107,15 +110,15 @@ class WithoutChannel:
         rows, counts = range(len(bench.files)), trial.tally.counts[:, [self.channel]]
         residual = meaning.size(numbers) ** 2 * trial.tally.residual[:, [self.channel]]
         tally = trial.tally.of(rows, [self.channel], residual, counts)
-        if max(pulls, default=0.0) < _PULLS:
-            yield _repaired(meaning, put_right, numbers, name, tally, trial)
+        if max((one.pull for one in mine), default=0.0) < _PULLS:
+            yield _repaired(meaning, put_right, numbers, mine, name, tally, trial)
         else:
-            out, gone = silenced(self.channel), _done(meaning.say(numbers), "it is left out")
+            out, gone = silenced(self.channel), _done(meaning.say(numbers, _stds(mine)), "it is left out")
             yield Hypothesis(gone, "left out", out, tally, self.trial, len(numbers))
 
 
 def moved(code: str, channel: str, numbers: Numbers, listed: Sequence[Suspect]) -> Numbers:
-    """Move a gain, a delay or a place to where its scores would have it."""
+    """Move a gain, a delay, a place or a corner to where its scores would have it."""
     steps = {one.axis: one.value for one in listed if (one.kind, one.where) == (code, channel)}
     unit = numbers[0] if code == "gain" else 1.0  # scores are of what is left of it
     most = _FARTHEST.get(code, 0.0)
@@ -124,13 +127,25 @@ def moved(code: str, channel: str, numbers: Numbers, listed: Sequence[Suspect]) 
     )
 
 
+def _stds(listed: Sequence[Suspect]) -> Numbers:
+    return tuple(one.std for one in sorted(listed, key=lambda one: one.axis))
+
+
 def _repaired(
-    meaning: Meaning, put_right: Callable[[Numbers], Change], numbers: Numbers, name: str, tally: Tally, trial: Trial
+    meaning: Meaning,
+    put_right: Callable[[Numbers], Change],
+    numbers: Numbers,
+    mine: Sequence[Suspect],
+    name: str,
+    tally: Tally,
+    trial: Trial,
 ) -> Hypothesis:
     def settle(listed: Sequence[Suspect]) -> Hypothesis:
-        return _repaired(meaning, put_right, moved(meaning.code, name, numbers, listed), name, tally, trial)
+        of_it = [one for one in listed if (one.kind, one.where) == (meaning.code, name)]
+        there = moved(meaning.code, name, numbers, listed)
+        return _repaired(meaning, put_right, there, of_it or mine, name, tally, trial)
 
-    fault, free = _done(meaning.say(numbers), meaning.done), len(numbers)
+    fault, free = _done(meaning.say(numbers, _stds(mine)), meaning.done), len(numbers)
     again = settle if numbers else None
     return Hypothesis(fault, "repaired", put_right(numbers), tally, trial, free, settle=again)
 
@@ -153,9 +168,8 @@ def exchanges(bench: Bench) -> Iterator[Hypothesis]:
 
 
 def scores(trial: Trial) -> tuple[Suspect, ...]:
-    """List everything that may be a little otherwise, what would gain most first."""
-    loads = {load.name: load for load in trial.campaign.loads}
-    return suspects(trial.summit, trial.campaign.sensors, loads, trial.campaign.heights)
+    """List everything that may be a little otherwise where a trial ended, what would gain most first."""
+    return scores_of(trial.campaign, trial.decays, trial.summit)
 
 
 def without(decay: Decay, channel: int) -> Decay:

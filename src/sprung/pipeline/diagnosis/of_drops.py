@@ -134,7 +134,7 @@ class WithoutDrop:
                 continue
             heard = Heard(self.trial, channel, [self.decay], state[None])
             for one in meanings(heard, float(bench.noise.level[channel])):
-                fault = one.say(one.numbers)
+                fault = one.say(one.numbers, ())
                 whole = tally.of([self.drop], [channel], one.residual[:, None], counts[[channel]][None])
                 fault = replace(
                     fault, where=f"{file}: {fault.where}", what=f"{fault.what}; it is left out of this drop"

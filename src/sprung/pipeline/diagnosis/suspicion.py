@@ -7,8 +7,10 @@ from typing import Literal
 
 import numpy as np
 
-from sprung.identification import Summit, corrections, suspects
+from sprung.identification import Summit, Suspect, corrections, suspects
 from sprung.pipeline.diagnosis.bench import colour_left
+from sprung.pipeline.diagnosis.corners import MATTERS as CORNER_MATTERS
+from sprung.pipeline.diagnosis.corners import Corners, corners
 from sprung.pipeline.diagnosis.tally import noise_of, tally_of
 from sprung.prepare import Decay
 from sprung.recording import Campaign
@@ -22,8 +24,8 @@ SURE = 25.0
 MOST_OF_IT = 0.5
 """Part of what is unexplained that has to be explained."""
 
-MATTERS = {"gain": 0.003, "late": 0.0003, "position": 0.01, "load-position": 0.02}
-"""Below this nobody needs to be told: a part, s, m and m."""
+MATTERS = {"gain": 0.003, "late": 0.0003, "position": 0.01, "load-position": 0.02, "corner": CORNER_MATTERS}
+"""Below this nobody needs to be told: a part, s, m, m and Hz."""
 
 _DISAGREEMENT = 1.3
 """Birge's ratio, squared, from which drops contradict each other."""
@@ -50,15 +52,36 @@ def suspicious(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> S
     noise, tally = noise_of(decays, summit), tally_of([decay.file for decay in decays], decays, summit)
     if not tally.explained(noise):
         return "senseless"
-    loads = {load.name: load for load in campaign.loads}
-    listed = suspects(summit, campaign.sensors, loads, campaign.heights)
+    listed, found = _listed(campaign, decays, summit)
     gain = max((one.gain for one in listed if abs(one.value) > MATTERS[one.kind]), default=0.0)
-    serious = gain > max(SURE, MOST_OF_IT * tally.unexplained(noise))
-    colour = max(colour_left(decays, summit), 1.0)
-    if serious and gain > SURE * colour:
+    colour, enough = max(colour_left(decays, summit), 1.0), max(SURE, MOST_OF_IT * tally.unexplained(noise))
+    # That drops differ has been allowed for in what all corners gain together.
+    together = found is not None and found.matter and found.gain > SURE and found.worth > enough
+    if (gain > enough and gain > SURE * colour) or together:
         return "contradicted"
     stands_out = summit.disagreement > _DISAGREEMENT and _stands_out(summit, colour)
     return "contradicted" if stands_out else "none"
+
+
+def scores(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> tuple[Suspect, ...]:
+    """List everything that may be a little otherwise, what would gain most first.
+
+    Parameters
+    ----------
+    campaign, decays, summit
+        As for `suspicious`.
+    """
+    return tuple(sorted(_listed(campaign, decays, summit)[0], key=lambda one: one.gain, reverse=True))
+
+
+def _listed(campaign: Campaign, decays: Sequence[Decay], summit: Summit) -> tuple[tuple[Suspect, ...], Corners | None]:
+    """List the same, and give the corners of all channels together."""
+    loads = {load.name: load for load in campaign.loads}
+    listed, found = (
+        suspects(summit, campaign.sensors, loads, campaign.heights),
+        corners(decays, summit, campaign.sensors),
+    )
+    return (listed if found is None else (*listed, *found.each())), found
 
 
 def _stands_out(summit: Summit, colour: float) -> bool:

@@ -11,11 +11,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.pipeline.drafting.channel import Channel
 from sprung.pipeline.drafting.loggers import called, together
 from sprung.pipeline.drafting.look import Look
 from sprung.pipeline.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.pipeline.drafting.records import DraftDrop, DraftSensor
-from sprung.pipeline.drafting.survey import Channel
 from sprung.prepare import FoundDrop, Place, tell_wheels, wheel_score
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel

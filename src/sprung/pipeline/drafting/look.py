@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from sprung.errors import InputError, Problem
+from sprung.pipeline.drafting.channel import Channel
 from sprung.pipeline.drafting.records import DraftFile
-from sprung.pipeline.drafting.survey import Channel, Survey, full_scales, largest, pieces, survey
+from sprung.pipeline.drafting.survey import Survey, full_scales, largest, pieces, survey
 from sprung.prepare import Found, FoundDrop, find_drops, on_wheels
 from sprung.recording import SLOWEST, Table, read_table
 from sprung.units import acceleration_factor

@@ -10,9 +10,9 @@ from pathlib import Path, PurePath
 
 import numpy as np
 
+from sprung.pipeline.drafting.channel import Channel
 from sprung.pipeline.drafting.look import Look
 from sprung.pipeline.drafting.names import load_named, wheels_named
-from sprung.pipeline.drafting.survey import Channel
 from sprung.prepare import align, find_drops
 from sprung.recording import Recording, files_named_after, read_table
 

@@ -23,7 +23,7 @@ _MASS = gap("kg, whole vehicle, empty, on the scales: a number or { value = ...,
 _POSITION = gap("[x, y, z], m: forward of the front axle, left of the centreline, above the ground")
 _STATION = gap("fl, fr, rl or rr: the wheel it sits on")
 _UNIT = gap("g or m/s^2: its unit, which neither the file nor gravity tells")
-_HIGH_PASS = gap("Hz, lower limit of the sensor or its amplifier; remove the line if it has none but was set to zero")
+_HIGH_PASS = gap("Hz, lower limit of the sensor or its amplifier; remove the line if it has none, or nobody knows it")
 _ITEMS = gap("[ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece of this load")
 _LOAD = gap("empty, or the name of the [[load]] that was on the vehicle")
 _WHEELS = gap("[fl, fr, rl, rr] each in quotes: those that were dropped")

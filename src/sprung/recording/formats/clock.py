@@ -1,4 +1,4 @@
-"""The clock of a text table: a column of times, of clock times, or a rate written above the samples."""
+"""The clock of a text table: a column of times, or of clock times, or the rate written above the samples."""
 
 from __future__ import annotations
 
@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem, did_you_mean
+from sprung.recording.formats.rates import TIME_UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import NDArray
+
+    from sprung.recording.formats.rates import Rate
 
 TIME_NAMES = frozenset(
     (
@@ -21,12 +24,6 @@ TIME_NAMES = frozenset(
         *("uhrzeit", "zeitstempel", "messzeit", "datetime", "heure", "hora", "ora", "sekunden"),
     )
 )
-TIME_UNITS = {
-    **dict.fromkeys(("s", "sec", "sec.", "seconds", "second", "sekunden", "sek"), 1.0),
-    **dict.fromkeys(("ms", "msec", "milliseconds", "millisekunden"), 1e-3),
-    **dict.fromkeys(("us", "µs", "μs", "usec", "microseconds", "mikrosekunden"), 1e-6),
-    **dict.fromkeys(("ns", "nsec", "nanoseconds"), 1e-9),
-}
 CLOCK = re.compile(
     r"(?:\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T_ ,]{1,2})?(?:(?P<h>\d{1,2}):(?P<m>\d{2}):(?P<s>\d{2}(?:[.,:_]\d{1,12})?)"
     r"|(?P<minute>\d{1,3}):(?P<second>\d{2}[.,]\d{1,12}))(?: ?(?P<noon>[AaPp])\.?[Mm]\.?)?"
@@ -41,39 +38,6 @@ _DAY = 86400.0
 _OWN_UNIT = {"sampletimefine": 1e-6}  # names that say their unit without naming it: Movella's sensors count µs
 _WITH_UNIT = re.compile(r"(.{0,200}?)\s{0,20}[\[(](.{0,200})[\])]", re.DOTALL)
 _LOOSE_UNIT = re.compile(r"(?i)(.{1,200}?)(?:[_/,]|\s{1,20}|\s?in\s)\s?(s|sec|ms|msec|us|µs|μs|usec|ns)")
-_SAMPLING = r"(?:sampl\w{0,4}|abtast|mess|scan|d?['’ ]?[eé]chantillon\w{0,4}|muestr\w{0,3}|campionamento|amostragem)"
-_FREQUENCY = r"(?:rate|fr[eéè][qc]\w{0,8}|tasa)"
-_INTERVAL = r"(?:interval\w{0,3}|p[eé]r[ií]od\w{0,2}|time|zeit|step|schritt)"
-_OF = r"[ _-]{0,2}(?:d[eia]{0,2}\s)?"
-_RATE_WORDS = re.compile(
-    rf"(?i)\bf_?s\b|@|{_SAMPLING}{_OF}{_FREQUENCY}|{_FREQUENCY}{_OF}{_SAMPLING}"
-    rf"|(?P<step>\b(?:dt|Δt|delta[ _]?t)\b|{_SAMPLING}{_OF}{_INTERVAL}|{_INTERVAL}{_OF}{_SAMPLING}"
-    r"|time[ _-]?step|zeitschritt|schrittweite)"
-)
-_RATE_VALUE = re.compile(
-    r"(?i)(?P<between>[^\d\n+-]{0,40}?)(?P<value>\d*[.,]?\d+(?:e[+-]?\d{1,3})?)(?![\d.,:])"
-    r"[\s,;\"|]{0,4}(?P<unit>(?:[kM]?Hz|S/s|1/s|sps|m?sec|[mnuµμ]?s)\b)?"
-)
-_RATE_UNITS = {"hz": 1.0, "khz": 1e3, "mhz": 1e6, "s/s": 1.0, "1/s": 1.0, "sps": 1.0}
-
-
-@dataclass(frozen=True, slots=True)
-class Rate:
-    """A rate or a sampling interval written above the samples.
-
-    Attributes
-    ----------
-    hertz
-        Samples per second.
-    line
-        Where it stands.
-    written
-        As the file has it.
-    """
-
-    hertz: float
-    line: int
-    written: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,43 +118,6 @@ def seconds_of_day(cell: str) -> float | None:
     hour, minute, second = match["h"] or "0", match["m"] or match["minute"], match["s"] or match["second"]
     hours = int(hour) % 12 + 12 * (match["noon"] in ("p", "P")) if match["noon"] else int(hour)
     return 3600.0 * hours + 60.0 * int(minute) + float(re.sub("[,:_]", ".", second))
-
-
-def rate_of(lines: Sequence[str], decimal: str) -> Rate | None:
-    """Find a rate or a sampling interval in the lines above the samples.
-
-    Parameters
-    ----------
-    lines
-        Those lines.
-    decimal
-        The decimal mark of the samples: the other one may be a thousands separator.
-
-    Raises
-    ------
-    ValueError
-        If it may be read in two ways; says what was found.
-    """
-    for index, line in enumerate(lines):
-        words = _RATE_WORDS.search(line)
-        value = _RATE_VALUE.match(line, words.end()) if words else None
-        if words is None or value is None:
-            continue
-        unit = (value["unit"] or "").lower()
-        if not unit:
-            bracketed = re.search(r"[\[(]\s?([^\])]{1,12}?)\s?[\])]", value["between"])
-            unit = bracketed[1].lower() if bracketed else ""
-        written = f"{value['value']} {value['unit'] or unit}".strip()
-        if re.fullmatch(rf"[1-9]\d{{0,2}}[{'.' if decimal == ',' else ','}]\d{{3}}", value["value"]):
-            message = f"line {index + 1}|the rate '{written}'"
-            raise ValueError(message)
-        number = float(value["value"].replace(",", "."))
-        number *= TIME_UNITS.get(unit, 1.0) if unit in TIME_UNITS else _RATE_UNITS.get(unit, 1.0)
-        is_step = unit in TIME_UNITS or (words["step"] is not None and unit not in _RATE_UNITS)
-        hertz = (1 / number if number else 0.0) if is_step else number
-        if 0 < hertz < 1e9:
-            return Rate(hertz, index + 1, written)
-    return None
 
 
 def clock_of(columns: Columns, rate: Rate | None, file: str) -> Clock:

@@ -15,8 +15,9 @@ import numpy as np
 
 from sprung.recording.formats.blocks import Block, Encoding, blocks, encoding_of
 from sprung.recording.formats.cells import Cells
-from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS, Columns, Rate, clock_of, may_be_time, rate_of
+from sprung.recording.formats.clock import TIME_NAMES, Columns, clock_of, may_be_time
 from sprung.recording.formats.dialect import Layout, cells_of, layout_of
+from sprung.recording.formats.rates import TIME_UNITS, Rate, rate_of
 from sprung.recording.formats.refusals import reading, refuse
 from sprung.recording.formats.store import Samples, Store, holding, in_steps, joined
 from sprung.recording.formats.table import Table, split_unit

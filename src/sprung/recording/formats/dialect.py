@@ -11,7 +11,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sprung.recording.formats.clock import CLOCK, TIME_UNITS, is_time_name
+from sprung.recording.formats.clock import CLOCK, is_time_name
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.units import acceleration_factor
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ import numpy as np
 
 from sprung.errors import InputError, Problem, Problems
 from sprung.recording.formats.blocks import Encoding, blocks, encoding_of
-from sprung.recording.formats.clock import TIME_UNITS
 from sprung.recording.formats.dialect import EMPTY
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.recording.formats.store import Samples, Store, in_steps, joined, nothing
 from sprung.recording.formats.table import Table
 

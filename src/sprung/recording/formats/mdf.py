@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from contextlib import closing, contextmanager, suppress
 from io import BytesIO
 from traceback import walk_tb
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sprung.recording.formats.axes import Clock, Column, one_table, stamped
-from sprung.recording.formats.clock import TIME_UNITS
+from sprung.recording.formats.mdf_blocks import AGAIN, MAGIC, Content, refuse_damaged
 from sprung.recording.formats.optional import library
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.recording.formats.refusals import allowance, contained, cut_short, refuse, refuse_too_large
 from sprung.recording.formats.store import Samples, Store, steps
 
@@ -26,31 +25,12 @@ if TYPE_CHECKING:
     from sprung.recording.formats.table import Table
 
 _SUFFIXES = frozenset((".mdf", ".mf3", ".mf4", ".dat"))
-_MAGIC = (b"MDF     ", b"UnFinMF ")
-_HEADER = 64
 _SYNC_TIME = 1
 _INVALIDATED = 1 << 1
 _WORDS_3, _LAST_NUMBER_4 = (7, 8), 5
 """Types of data: text and bytes of version 3, the last that is a real number of version 4."""
 _AT_ONCE = 1 << 22
 """Bytes of records that are read together."""
-_AGAIN = "The file is damaged: copy or export the recording again."
-# Which links of a block lead on, by their index: to the next of its kind, to its parts, or to its data.
-_LINKS_4 = {
-    b"##HD": (0, 1, 2, 3, 4),
-    b"##DG": (0, 1, 2),
-    b"##CG": (0, 1, 4),
-    b"##CN": (0, 1, 5),
-    b"##CA": (0,),
-    b"##CH": (0, 1),
-    b"##FH": (0,),
-    b"##AT": (0,),
-    b"##EV": (0,),
-    b"##SR": (0, 1),
-    b"##HL": (0,),
-}
-_LISTS_4 = (b"##DL", b"##LD")
-_LINKS_3 = {b"HD": (0,), b"DG": (0, 1), b"CG": (0, 1), b"CN": (0,)}
 
 
 class MdfFormat:
@@ -58,7 +38,7 @@ class MdfFormat:
 
     def claims(self, path: Path, head: bytes) -> bool:
         """Claim by the ending and the mark of the format."""
-        return path.suffix.lower() in _SUFFIXES and head.startswith(_MAGIC)
+        return path.suffix.lower() in _SUFFIXES and head.startswith(MAGIC)
 
     def read(self, path: Path) -> Table:
         """Read one file.
@@ -71,7 +51,7 @@ class MdfFormat:
         file, largest = path.name, allowance(path.stat().st_size)
         library("asammdf", "mdf", path)
         with path.open("rb") as stream:
-            _refuse_damaged(_Content(stream, path.stat().st_size), file)
+            refuse_damaged(Content(stream, path.stat().st_size), file)
         with _measurement(path) as measurement:
             columns: list[Column] = []
             timeless: list[str] = []
@@ -91,7 +71,7 @@ class MdfFormat:
 def _measurement(path: Path) -> Iterator[Any]:
     """Open a file; one that was never finished is put right in memory."""
     with path.open("rb") as stream:
-        unfinished = stream.read(8) == _MAGIC[1]
+        unfinished = stream.read(8) == MAGIC[1]
         stream.seek(0)
         with contained(path.name, "MDF"), _closing_what_was_begun():
             measurement = library("asammdf", "mdf", path).MDF(BytesIO(stream.read()) if unfinished else stream)
@@ -149,7 +129,7 @@ def _refuse_misfit(group: Any, where: str) -> None:
             within = not channel.flags & _INVALIDATED or channel.pos_invalidation_bit < 8 * record.invalidation_bytes_nr
         if not within or begin + (bits + channel.bit_count + 7) // 8 > record.samples_byte_nr:
             found = f"channel '{channel.name}' at byte {begin} of records of {record.samples_byte_nr} bytes"
-            raise refuse(where, found, "channels within the records", _AGAIN)
+            raise refuse(where, found, "channels within the records", AGAIN)
 
 
 def _columns(measurement: Any, index: int, clock: Clock | None, path: Path) -> Iterator[Column]:
@@ -225,84 +205,3 @@ def _samples(measurement: Any, group: int, channel: int, records: Any) -> NDArra
     if invalid is not None:
         values[np.asarray(invalid, dtype=bool)] = np.nan
     return values
-
-
-class _Content:
-    """The bytes of a file, read where they are asked for."""
-
-    def __init__(self, stream: BinaryIO, size: int) -> None:
-        self._stream, self._size = stream, size
-
-    def __len__(self) -> int:
-        return self._size
-
-    def at(self, address: int, count: int) -> bytes:
-        """Give as many bytes from an address on, or those that there are."""
-        self._stream.seek(min(address, self._size))
-        return self._stream.read(min(count, self._size))
-
-
-def _refuse_damaged(content: _Content, file: str) -> None:
-    """Go through the blocks of a file, which the library would follow for ever where they lead back to themselves."""
-    links = _links_3 if content.at(_HEADER, 2) == b"HD" else _links_4
-    seen: set[int] = set()
-    ahead = [_HEADER]
-    while ahead:
-        address = ahead.pop()
-        where = f"{file}: byte {address}"
-        if address in seen:
-            raise refuse(where, "a block that is met twice", "blocks that do not lead back to themselves", _AGAIN)
-        seen.add(address)
-        own, shared = links(content, address, where)
-        ahead += own
-        ahead += (other for other in shared if other not in seen)
-
-
-def _links_4(content: _Content, address: int, where: str) -> tuple[list[int], list[int]]:
-    """Give the blocks that a block of a version 4 file leads to, those of its own and those that others may share."""
-    if address + 24 > len(content):
-        raise cut_short(where, f"a file of {len(content)} bytes")
-    kind, _, length, count = struct.unpack("<4sIQQ", content.at(address, 24))
-    if not kind.startswith(b"##") or (address == _HEADER) != (kind == b"##HD"):
-        raise refuse(where, "something else", "the beginning of a block", _AGAIN)
-    # Where recording was broken off, the last block of data does not know its length, which the library restores.
-    unfinished = content.at(0, 8) == _MAGIC[1]
-    if (not 24 <= length <= len(content) - address and not unfinished) or 24 + 8 * count > min(
-        max(length, 24), len(content)
-    ):
-        raise cut_short(where, f"a block of {length} bytes with {count} links in a file of {len(content)}")
-    if kind == b"##DZ":
-        _refuse_misinflated(content, address, where)
-    wanted = range(count) if kind in _LISTS_4 else [link for link in _LINKS_4.get(kind, ()) if link < count]
-    targets = [struct.unpack("<Q", content.at(address + 24 + 8 * link, 8))[0] for link in wanted]
-    if kind == b"##CN" and len(targets) == 3 and content.at(targets[2], 4) != b"##CG":
-        return [target for target in targets[:2] if target], [target for target in targets[2:] if target]
-    return [target for target in targets[: 2 if kind == b"##CN" else None] if target], []
-
-
-def _links_3(content: _Content, address: int, where: str) -> tuple[list[int], list[int]]:
-    """Give the blocks that a block of a version 3 file leads to."""
-    if address + 12 > len(content):
-        raise cut_short(where, f"a file of {len(content)} bytes")
-    kind, length, *links = struct.unpack("<2sH2I", content.at(address, 12))
-    if kind not in _LINKS_3 or (address == _HEADER) != (kind == b"HD"):
-        raise refuse(where, "something else", "the beginning of a block", _AGAIN)
-    if address + length > len(content):
-        raise cut_short(where, f"a block of {length} bytes in a file of {len(content)}")
-    return [links[link] for link in _LINKS_3[kind] if links[link]], []
-
-
-def _refuse_misinflated(content: _Content, address: int, where: str) -> None:
-    """See that a compressed block holds what it declares: the library trusts that it does."""
-    if address + 48 > len(content):
-        raise cut_short(where, f"a file of {len(content)} bytes")
-    kind, _, _, size, packed = struct.unpack("<BBIQQ", content.at(address + 26, 22))
-    if kind not in (0, 1):
-        return  # compressed in another way than by deflation
-    refuse_too_large(-(-size // 8), where, allowance(len(content)))
-    try:
-        held = len(zlib.decompressobj().decompress(content.at(address + 48, packed), size + 1))
-    except zlib.error as error:
-        raise refuse(where, f"compressed data that is no such ({error})", "sound data", _AGAIN) from error
-    if held != size:
-        raise refuse(where, f"{held} bytes or more where {size} are declared", "as many", _AGAIN)

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.recording.formats.axes import Clock, Column, even, one_table, stamped
-from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS
+from sprung.recording.formats.clock import TIME_NAMES
 from sprung.recording.formats.optional import library
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.recording.formats.refusals import allowance, contained, cut_short, refuse, refuse_too_large
 from sprung.recording.formats.store import Samples, Store, steps
 from sprung.recording.formats.table import split_unit

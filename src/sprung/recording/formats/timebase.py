@@ -10,8 +10,9 @@ import numpy as np
 
 from sprung.errors import InputError, Problem, did_you_mean
 from sprung.recording.formats.belonging import Belonging, plain
-from sprung.recording.formats.clock import TIME_NAMES, TIME_UNITS
+from sprung.recording.formats.clock import TIME_NAMES
 from sprung.recording.formats.nested import Number
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.recording.formats.table import split_unit
 
 if TYPE_CHECKING:

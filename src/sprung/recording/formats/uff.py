@@ -9,8 +9,8 @@ import numpy as np
 
 from sprung.errors import did_you_mean
 from sprung.recording.formats.axes import Clock, Column, even, one_table, stamped
-from sprung.recording.formats.clock import TIME_UNITS
 from sprung.recording.formats.optional import library
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.recording.formats.refusals import allowance, contained, cut_short, refuse
 from sprung.recording.formats.store import Samples, Store, steps
 

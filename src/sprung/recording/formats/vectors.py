@@ -10,8 +10,8 @@ import numpy as np
 
 from sprung.errors import InputError, Problem
 from sprung.recording.formats.belonging import Belonging, items
-from sprung.recording.formats.clock import TIME_UNITS
 from sprung.recording.formats.nested import Numbers, content_of
+from sprung.recording.formats.rates import TIME_UNITS
 from sprung.recording.formats.resampled import SLOWEST, Resampled, resampled
 from sprung.recording.formats.store import joined
 from sprung.recording.formats.table import Table, split_unit
