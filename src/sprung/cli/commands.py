@@ -150,16 +150,32 @@ def check(
 @app.command(epilog="Example: [bold]sprung modal campaign.toml --method svm[/bold]")
 def modal(
     campaign: CampaignFile,
-    method: Annotated[str, typer.Option(help="era, or svm: the paper's State Variable Method.")] = "era",
+    method: Annotated[
+        str,
+        typer.Option(
+            help="ml: the likeliest modes, with uncertainty. Others: era; svm, the paper's State Variable Method."
+        ),
+    ] = "ml",
+    order: Annotated[
+        Optional[int],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            min=1, help="How many poles to look for, two for each mode (default: as many as the records hold)."
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Find natural frequencies and damping ratios per load; no vehicle model."""
+    """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
     with working("reading the recordings"):
         read = sprung.read(campaign)
-        found = sprung.modes(read, method=method)
+        found = sprung.modes(read, method=method, order=order)
         faults = sprung.check(read).faults
     if as_json:
-        say_json({"modes": {load: [asdict(mode) for mode in modes] for load, modes in found.items()}})
+        say_json(
+            {
+                "modes": {load: [asdict(mode) for mode in one] for load, one in found.items()},
+                "modal": {load: one.document() for load, one in found.items()},
+            }
+        )
     else:
         say(sprung.report.text_of(sprung.report.modes_view(found, faults)))
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import Problems
 from sprung.modal.modes import Mode, modes_from
-from sprung.modal.svm import check_records
+from sprung.modal.records import as_records
 
 Real = NDArray[np.float64]
 
@@ -65,8 +65,7 @@ def eigensystem_realisation(
     J.-N. Juang and R. S. Pappa, J. Guid. Control Dyn. 8 (1985) 620; the order after M. Gavish and D. L. Donoho, IEEE
     Trans. Inf. Theory 60 (2014) 5040.
     """
-    arrays = [np.asarray(record, dtype=float) for record in records]
-    check_records(arrays, rate, "era")
+    arrays = as_records(records, rate, "era")
     channels, shortest = arrays[0].shape[0], min(record.shape[1] for record in arrays)
     step = max(1, round(lag * rate))
     shifts = min(max(2, round(window * rate / step)), shortest // (2 * step))

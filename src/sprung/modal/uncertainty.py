@@ -1,0 +1,121 @@
+"""How sure poles and shapes are that make the records likeliest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.modal.likelihood import Stand, scales
+from sprung.modal.modes import Spread
+from sprung.modal.spectrum import Spectrum
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_BANDWIDTH, _BINS = 1.5, 6.0
+"""Half the band around a mode in which residuals are looked at: times its decay rate as a frequency, and bins at the least."""
+
+_UNDETERMINED = 1e-13
+"""Information, in units of a parameter's own, that is lost in rounding."""
+
+_SIGNIFICANT = 3.0
+"""Standard errors by which an excess must be real before it counts."""
+
+
+def spreads(stand: Stand, left: Sequence[Real], disagreement: float) -> tuple[Spread, ...]:
+    """Give the covariances of all modes: the inverse of the Fisher information, enlarged where the residuals are not white.
+
+    Parameters
+    ----------
+    stand
+        At the summit of the likelihood.
+    left
+        The residuals, of shape (channel, time) each.
+    disagreement
+        Variance by which pieces of the records differ, in units of what noise alone would make them; 1 for none.
+
+    Returns
+    -------
+    tuple of Spread
+        In the order of the poles.
+    """
+    samples = float(stand.decays.samples.sum())
+    # Degrees of freedom: what all of the fit takes up, spread over the channels.
+    lost = samples / max(samples - stand.parameters / stand.decays.channels, 1.0)
+    weighted = stand.weighted(1 / (stand.variance * lost))
+    return bounds(weighted, _colour_of_modes(weighted, left) + disagreement - 1)
+
+
+def bounds(stand: Stand, excess: Real | None = None) -> tuple[Spread, ...]:
+    """Give the Cramér-Rao bound of all modes: at true poles, shapes and noise, what no unbiased estimate can better.
+
+    Parameters
+    ----------
+    stand
+        Poles, shapes and, in its weights, the noise of the channels.
+    excess
+        By which to enlarge the variances of each mode, shape (mode,); by nothing unless given.
+
+    Returns
+    -------
+    tuple of Spread
+        In the order of the poles.
+    """
+    size, count, channels = stand.shapes.shape[1], stand.poles.count, stand.decays.channels
+    free = stand.free
+    covariance = np.zeros((size * (channels + 1),) * 2, dtype=np.complex128)
+    covariance[np.ix_(free, free)] = _inverse(stand.information[np.ix_(free, free)])
+    covariance = covariance.reshape(channels + 1, size, channels + 1, size)
+    conjugate = np.arange(count)
+    conjugate[stand.poles.paired] = count + np.arange(len(stand.poles.paired))
+    factors, every = np.ones(count) if excess is None else excess, np.arange(channels + 1)
+    found = []
+    for j, other in enumerate(conjugate.tolist()):
+        own, across = covariance[every, j, every, j].real, covariance[every, j, every, other]
+        parts = _parts(own, across if other != j else own) * factors[j]
+        entries = np.sqrt(np.maximum(parts[:-1, [0, 1], [0, 1]], 0.0))
+        found.append(Spread(parts[-1] * stand.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j])))
+    return tuple(found)
+
+
+def _parts(own: Real, across: Complex) -> Real:
+    """Turn covariances of complex numbers with themselves and with their conjugates into those of their parts.
+
+    Both of shape (number,), the result of shape (number, 2, 2); that of a real number is its own with itself, twice.
+    """
+    across = np.asarray(across, dtype=np.complex128)
+    rows = [[own + across.real, across.imag], [across.imag, own - across.real]]
+    return np.asarray(np.moveaxis(np.array(rows), -1, 0) / 2, dtype=float)
+
+
+def _inverse(information: Complex) -> Complex:
+    scale = scales(np.diagonal(information).real)
+    eigenvalues, vectors = np.linalg.eigh(information * scale[:, None] * scale)
+    # What rounding leaves of a direction that nothing determines: its variance is as large as can be told.
+    roots = scale[:, None] * vectors / np.sqrt(np.maximum(eigenvalues, _UNDETERMINED))
+    return np.asarray(roots @ roots.conj().T, dtype=np.complex128)
+
+
+def _colour_of_modes(stand: Stand, left: Sequence[Real]) -> Real:
+    """Give by how much the residuals' spectrum around each mode exceeds its mean; at least 1, shape (mode,).
+
+    What a mode's pole and shape take from the noise lies in its own band. Channels count as they tell of the mode.
+    """
+    spectrum = Spectrum.of(left, stand.decays.rate)
+    power = spectrum.power.mean(axis=0)
+    relative = power / np.maximum(power[:, 1:].mean(axis=1, keepdims=True), 1e-300)
+    poles = stand.poles.exponent * stand.decays.rate / (2 * np.pi)
+    shares = np.abs(stand.poles.shapes) ** 2 * stand.weights[:, None]
+    shares /= shares.sum(axis=0)
+    bin_width = float(spectrum.frequency[1])
+    found = np.ones(len(poles))
+    for j, pole in enumerate(poles):
+        half = max(_BANDWIDTH * abs(pole.real), _BINS * bin_width)
+        inside = (np.abs(spectrum.frequency - pole.imag) <= half) & (spectrum.frequency > 0)
+        excess = float(shares[:, j] @ relative[:, inside].mean(axis=1))
+        independent = stand.decays.count * inside.sum() / float((shares[:, j] ** 2).sum())
+        if excess > 1 + _SIGNIFICANT / np.sqrt(independent):
+            found[j] = excess
+    return found

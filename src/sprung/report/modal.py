@@ -1,0 +1,71 @@
+"""What the terminal shows of modes that were found without a vehicle model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sprung.errors import Fault
+from sprung.pipeline import FoundMode, LoadModes
+from sprung.report.layout import hanging, table
+from sprung.report.terminal import fault_list, with_std
+
+
+def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> RenderableType:
+    """Show the modes of every load, beside what a Fourier transform tells, and what is wrong with the recordings.
+
+    Parameters
+    ----------
+    found
+        By load.
+    faults
+        Of the recordings.
+    """
+    parts: list[RenderableType] = []
+    for load, modes in found.items():
+        parts += [_modes(load, modes), Text(), _peaks(load, modes), Text()]
+        if modes.unresolved:
+            parts += [Text("Not resolved", style="bold"), *(hanging("  - ", said) for said in modes.unresolved), Text()]
+    if faults:
+        parts += [fault_list(faults), Text()]
+    return Group(*parts[:-1])
+
+
+def _modes(load: str, modes: LoadModes) -> RenderableType:
+    headers = ("mode", "f_n Hz", "± Hz", "f_d Hz", "damping", "±", "MPC")
+    title = f"Modes, {load} ({modes.method}, {len(modes.drops)} drop{'s' * (len(modes.drops) > 1)})"
+    return table(title, headers, [_row(mode) for mode in modes], headers[1:], ("MPC", "f_d Hz"))
+
+
+def _row(mode: FoundMode) -> tuple[str, ...]:
+    if mode.status == "unresolved":
+        return (mode.name, f"~{mode.frequency:.2g}", "-", "-", "-", "-", "-")
+    return (
+        mode.name,
+        *_told(mode.frequency, mode.frequency_std),
+        f"{mode.damped_frequency:.4f}",
+        *_told(mode.damping_ratio, mode.damping_ratio_std),
+        f"{mode.collinearity:.2f}",
+    )
+
+
+def _told(value: float, std: float | None) -> tuple[str, str]:
+    """Round by the uncertainty; a method that tells none gets four digits."""
+    return (f"{value:.4f}", "-") if std is None else with_std(value, std)
+
+
+def _peaks(load: str, modes: LoadModes) -> RenderableType:
+    """Show damped frequencies by FFT beside the identified ones, as Table 3 of the paper does."""
+    headers = ("mode", "FFT f_d Hz", "f_d Hz", "difference %")
+    rows = [
+        (
+            mode.name,
+            "-" if mode.fft_frequency is None else f"{mode.fft_frequency:.3f}",
+            "-" if mode.status == "unresolved" else f"{mode.damped_frequency:.3f}",
+            "-" if mode.fft_difference is None else f"{mode.fft_difference:+.2f}",
+        )
+        for mode in modes
+    ]
+    return table(f"Damped frequency by FFT, {load}", headers, rows, headers[1:])
