@@ -153,7 +153,8 @@ def modal(
     method: Annotated[
         str,
         typer.Option(
-            help="ml: the likeliest modes, with uncertainty. Others: era; svm, the paper's State Variable Method."
+            help="ml, the likeliest modes, with uncertainty; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
+            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd."
         ),
     ] = "ml",
     order: Annotated[

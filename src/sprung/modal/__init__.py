@@ -4,7 +4,7 @@ from sprung.modal.criteria import complexity
 from sprung.modal.era import eigensystem_realisation
 from sprung.modal.identified import Modes, Rejected
 from sprung.modal.maximum_likelihood import maximum_likelihood
-from sprung.modal.methods import DEFAULT, METHODS, Method, identify_modes
+from sprung.modal.methods import APPROXIMATE, DEFAULT, METHODS, Method, identify_modes
 from sprung.modal.modes import Mode, Spread, modes_from, similarity
 from sprung.modal.naming import MODE_NAMES, in_coordinates, modes_of, name_by_sensors, name_modes
 from sprung.modal.peaks import fft_frequencies
@@ -12,6 +12,7 @@ from sprung.modal.sums import BLOCK, blocks, correlate, gram, waves
 from sprung.modal.svm import StateVariables, state_matrix, state_variable_method
 
 __all__ = [
+    "APPROXIMATE",
     "BLOCK",
     "DEFAULT",
     "METHODS",

@@ -62,6 +62,11 @@ class Decays:
         return len(self.values)
 
     @property
+    def numbers(self) -> float:
+        """How many numbers each channel has, all records together."""
+        return float(self.samples.sum())
+
+    @property
     def seconds(self) -> Real:
         """Length of each record, s."""
         return np.asarray(self.samples / self.rate)

@@ -136,7 +136,7 @@ class Stand:
     @cached_property
     def inverse(self) -> Complex:
         """Their inverse."""
-        return _inverse(self.normal)
+        return inverse_of(self.normal)
 
     @cached_property
     def amplitudes(self) -> Complex:
@@ -176,14 +176,14 @@ class Stand:
     @cached_property
     def variance(self) -> Real:
         """σ² of each channel that makes the records likeliest, shape (channel,)."""
-        energy, count = self.decays.energy.sum(axis=0), float(self.decays.samples.sum())
+        energy, count = self.decays.energy.sum(axis=0), self.decays.numbers
         floor = np.where(energy > 0, LEAST_NOISE**2 * energy, 1.0)
         return np.asarray(np.maximum(self.residual.sum(axis=0), floor) / count)
 
     @property
     def cost(self) -> float:
         """Twice the negative logarithm of the likelihood, σ² at its best, less a constant."""
-        return float(self.decays.samples.sum() * np.log(self.variance).sum())
+        return float(self.decays.numbers * np.log(self.variance).sum())
 
     @property
     def parameters(self) -> int:
@@ -266,7 +266,7 @@ def scales(diagonal: Real) -> Real:
     return np.asarray(1 / np.sqrt(np.maximum(diagonal, least)))
 
 
-def _inverse(normal: Complex) -> Complex:
+def inverse_of(normal: Complex) -> Complex:
     """Invert normal equations of amplitudes, which may differ by orders of magnitude."""
     scale = scales(np.diagonal(normal, axis1=1, axis2=2).real)
     both = scale[:, :, None] * scale[:, None, :]

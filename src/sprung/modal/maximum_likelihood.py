@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +11,7 @@ from sprung.errors import Problems
 from sprung.modal.decays import Decays
 from sprung.modal.identified import Modes, Rejected
 from sprung.modal.modelling import agreement, model_by_data, model_of_order, residuals
-from sprung.modal.modes import Mode, modes_from
+from sprung.modal.modes import Mode, in_order
 from sprung.modal.records import as_records
 from sprung.modal.spectrum import Spectrum
 from sprung.modal.subspace import Span
@@ -79,16 +78,3 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
         else:
             found.append(Mode(complex(pole), shape, spread=own))
     return Modes(in_order(found), tuple(rejected), "ml")
-
-
-def in_order(modes: Sequence[Mode]) -> tuple[Mode, ...]:
-    """Bring modes into the order of `modes_from`, spreads and all."""
-    if not modes:
-        return ()
-    ordered = modes_from([mode.pole for mode in modes], np.stack([mode.shape for mode in modes], axis=1))
-    left = list(modes)
-    found = []
-    for mode in ordered:
-        own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
-        found.append(replace(left.pop(own), shape=mode.shape))
-    return tuple(found)

@@ -13,6 +13,7 @@ from sprung.modal.identified import Rejected
 from sprung.modal.likelihood import LEAST_NOISE, Poles, Stand, scales
 from sprung.modal.modes import UNRESOLVED
 from sprung.modal.refinement import climb
+from sprung.modal.selection import MOST_POLES
 from sprung.modal.spectrum import Spectrum
 from sprung.modal.subspace import Span
 from sprung.modal.turning import alternatives
@@ -20,9 +21,6 @@ from sprung.modal.uncertainty import spreads
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-
-MOST_POLES = 40
-"""Poles that are looked for at the most, unless somebody asks for more."""
 
 _TRIED = 3
 """Modes that are tried at a time: those that stand out most in what is left."""
@@ -159,14 +157,14 @@ def _halves(weighted: Real, record: Real) -> tuple[Real, Real]:
 
 def _gain(small: Stand, large: Stand, left: Sequence[Real]) -> tuple[float, float]:
     """Give what a larger model gains in twice the log-likelihood, and what its parameters cost."""
-    count, inflation = float(small.decays.samples.sum()), _inflation(large, left)
+    count, inflation = small.decays.numbers, _inflation(large, left)
     gain = count * float((np.log(small.variance / large.variance) / inflation).sum())
     price = float(np.log(count * len(inflation) / inflation.mean()))
     return gain, (large.parameters - small.parameters) * price
 
 
 def _criterion(stand: Stand, inflation: Real) -> float:
-    count = float(stand.decays.samples.sum())
+    count = stand.decays.numbers
     misfit = count * float((np.log(stand.variance) / inflation).sum())
     return misfit + stand.parameters * float(np.log(count * len(inflation) / inflation.mean()))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -172,6 +172,25 @@ def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
             largest = shape[np.argmax(np.abs(shape))]
             modes.append(Mode(pole, shape / (largest if largest != 0 else 1.0)))
     return tuple(mode for group in together(modes) for mode in group)
+
+
+def in_order(modes: Sequence[Mode]) -> tuple[Mode, ...]:
+    """Bring modes into the order of `modes_from`, spreads and all.
+
+    Parameters
+    ----------
+    modes
+        In any order.
+    """
+    if not modes:
+        return ()
+    ordered = modes_from([mode.pole for mode in modes], np.stack([mode.shape for mode in modes], axis=1))
+    left = list(modes)
+    found = []
+    for mode in ordered:
+        own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
+        found.append(replace(left.pop(own), shape=mode.shape))
+    return tuple(found)
 
 
 def vibrations(matrices: Matrices) -> tuple[Mode, ...]:

@@ -41,7 +41,7 @@ def spreads(stand: Stand, left: Sequence[Real], disagreement: float) -> tuple[Sp
     tuple of Spread
         In the order of the poles.
     """
-    samples = float(stand.decays.samples.sum())
+    samples = stand.decays.numbers
     # Degrees of freedom: what all of the fit takes up, spread over the channels.
     lost = samples / max(samples - stand.parameters / stand.decays.channels, 1.0)
     weighted = stand.weighted(1 / (stand.variance * lost))
