@@ -163,12 +163,18 @@ def modal(
             min=1, help="How many poles to look for, two for each mode (default: as many as the records hold)."
         ),
     ] = None,
+    amplitude: Annotated[
+        bool,
+        typer.Option(
+            "--amplitude", help="Follow each mode through the decays: frequency and damping against amplitude."
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
     with working("reading the recordings"):
         read = sprung.read(campaign)
-        found = sprung.modes(read, method=method, order=order)
+        found = sprung.modes(read, method=method, order=order, amplitude=amplitude)
         faults = sprung.check(read).faults
     if as_json:
         say_json(

@@ -1,5 +1,6 @@
 """Modes from decays: poles, shapes and names, without a vehicle model."""
 
+from sprung.modal.amplitude import ModeTrace, follow_modes
 from sprung.modal.criteria import complexity
 from sprung.modal.era import eigensystem_realisation
 from sprung.modal.identified import Modes, Rejected
@@ -19,6 +20,7 @@ __all__ = [
     "MODE_NAMES",
     "Method",
     "Mode",
+    "ModeTrace",
     "Modes",
     "Rejected",
     "Spread",
@@ -28,6 +30,7 @@ __all__ = [
     "correlate",
     "eigensystem_realisation",
     "fft_frequencies",
+    "follow_modes",
     "gram",
     "identify_modes",
     "in_coordinates",

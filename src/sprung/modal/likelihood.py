@@ -200,6 +200,12 @@ class Stand:
         kept[held, np.arange(size)] = False
         return np.flatnonzero(kept)
 
+    def pole_of(self, which: int) -> Index:
+        """Which of them is the pole of a mode, and its conjugate."""
+        first = self.decays.channels * self.shapes.shape[1]
+        twin = np.flatnonzero(self.poles.paired == which) + self.poles.count
+        return np.asarray(np.concatenate([[which], twin]) + first, dtype=np.int64)
+
     @cached_property
     def gradient(self) -> Complex:
         """Of the log-likelihood by the conjugates of shapes and poles, shape (channel + 1, pole)."""

@@ -22,7 +22,9 @@ _FIRMEST = 1e8
 """Damping of the steps at which there is nothing more to be gained."""
 
 
-def climb(decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _SETTLED) -> Stand:
+def climb(
+    decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _SETTLED, only: int | None = None
+) -> Stand:
     """Climb from given poles and shapes to the nearest summit of the likelihood.
 
     Parameters
@@ -35,6 +37,8 @@ def climb(decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _S
         How many to take at the most.
     settled
         Gain in twice the log-likelihood below which a step is not taken any more.
+    only
+        The one mode whose pole is free, everything else being as given; unless given, all poles and shapes are free.
 
     Returns
     -------
@@ -44,7 +48,7 @@ def climb(decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _S
     stand = _weighted(Stand.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
     damping = 1e-4
     for _ in range(steps):
-        free = stand.free
+        free = stand.free if only is None else stand.pole_of(only)
         information = stand.information[np.ix_(free, free)]
         gradient = stand.gradient.ravel()[free]
         scale = scales(np.diagonal(information).real)

@@ -80,6 +80,22 @@ def bounds(stand: Stand, excess: Real | None = None) -> tuple[Spread, ...]:
     return tuple(found)
 
 
+def bound_alone(stand: Stand, which: int) -> Spread:
+    """Give the bound of one mode's pole, everything but amplitudes and offsets being known.
+
+    Parameters
+    ----------
+    stand
+        Poles, shapes and, in its weights, the noise of the channels.
+    which
+        The mode, which vibrates.
+    """
+    free = stand.pole_of(which)
+    covariance = _inverse(stand.information[np.ix_(free, free)])
+    pole = _parts(covariance[:1, 0].real, covariance[:1, 1])[0] * stand.decays.rate**2
+    return Spread(pole, np.zeros(stand.decays.channels, dtype=np.complex128))
+
+
 def _parts(own: Real, across: Complex) -> Real:
     """Turn covariances of complex numbers with themselves and with their conjugates into those of their parts.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, overload
 
 import numpy as np
@@ -12,7 +12,17 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problems
 from sprung.identification import ModeEstimate
-from sprung.modal import DEFAULT, Mode, Modes, complexity, fft_frequencies, identify_modes, name_by_sensors
+from sprung.modal import (
+    DEFAULT,
+    Mode,
+    Modes,
+    ModeTrace,
+    complexity,
+    fft_frequencies,
+    follow_modes,
+    identify_modes,
+    name_by_sensors,
+)
 from sprung.prepare import Decay, prepare
 from sprung.recording import Campaign
 from sprung.vehicle import Sensor
@@ -37,6 +47,12 @@ class FoundMode(ModeEstimate):
         Modal phase collinearity of the shape: 1 where all channels move in phase or in opposition.
     status
         "resolved", or "unresolved" where the records do not determine the mode on its own.
+    amplitudes
+        Where it was asked for, the mode in windows of the records, the largest amplitude first: amplitude at the channel that
+        moves most, m/s², frequency and its standard uncertainty, Hz, damping ratio and its own.
+    frequency_trend, damping_trend
+        Change of the frequency, %, and of the damping ratio with ten times the amplitude, each with its standard uncertainty;
+        None where it was not asked for or not told.
     """
 
     damped_frequency_std: float | None = None
@@ -46,6 +62,9 @@ class FoundMode(ModeEstimate):
     shape_std: tuple[tuple[float, float], ...] | None = None
     collinearity: float = 1.0
     status: str = "resolved"
+    amplitudes: tuple[tuple[float, ...], ...] = ()
+    frequency_trend: tuple[float, float] | None = None
+    damping_trend: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +121,9 @@ class LoadModes(Sequence[FoundMode]):
         }
 
 
-def modes(campaign: Campaign, method: str = DEFAULT, order: int | None = None) -> dict[str, LoadModes]:
+def modes(
+    campaign: Campaign, method: str = DEFAULT, order: int | None = None, *, amplitude: bool = False
+) -> dict[str, LoadModes]:
     """Find the modes of every load; no vehicle model is needed.
 
     Parameters
@@ -114,6 +135,8 @@ def modes(campaign: Campaign, method: str = DEFAULT, order: int | None = None) -
         every number its uncertainty.
     order
         Number of poles to look for; the method chooses unless it is given.
+    amplitude
+        Whether to follow each mode through the decays, for frequency and damping against amplitude.
 
     Returns
     -------
@@ -134,11 +157,11 @@ def modes(campaign: Campaign, method: str = DEFAULT, order: int | None = None) -
     for load in campaign.loads:
         of_load = [decay for decay in decays if decay.load == load.name]
         if of_load:
-            found[load.name] = _modes_of(of_load, campaign, method, order)
+            found[load.name] = _modes_of(of_load, campaign, method, order, amplitude)
     return found
 
 
-def _modes_of(decays: list[Decay], campaign: Campaign, method: str, order: int | None) -> LoadModes:
+def _modes_of(decays: list[Decay], campaign: Campaign, method: str, order: int | None, amplitude: bool) -> LoadModes:
     # Records of another rate, or channels that one drop lacks, cannot stand in the same matrix.
     rate = Counter(decay.rate for decay in decays).most_common(1)[0][0]
     same = [decay for decay in decays if decay.rate == rate]
@@ -150,7 +173,11 @@ def _modes_of(decays: list[Decay], campaign: Campaign, method: str, order: int |
     named = name_by_sensors(found, sensors, a.value if a is not None else None)
     names = {id(mode): name for mode, name in zip(found, _names(found, named), strict=True)}
     peaks = fft_frequencies(records, rate, found)
-    estimates = tuple(_estimate(mode, names[id(mode)], peak) for mode, peak in zip(found, peaks, strict=True))
+    traces = {id(trace.mode): trace for trace in follow_modes(records, rate, found)} if amplitude else {}
+    estimates = tuple(
+        _followed(_estimate(mode, names[id(mode)], peak), traces.get(id(mode)))
+        for mode, peak in zip(found, peaks, strict=True)
+    )
     return LoadModes(
         estimates,
         method,
@@ -216,6 +243,19 @@ def _estimate(mode: Mode, name: str, peak: float | None) -> FoundMode:
         shape_std=_pairs(spread.shape) if spread is not None and told else None,
         collinearity=float(complexity(mode.shape)),
         status="resolved" if told else "unresolved",
+    )
+
+
+def _followed(mode: FoundMode, trace: ModeTrace | None) -> FoundMode:
+    if trace is None:
+        return mode
+    columns = trace.amplitude, trace.frequency, trace.frequency_std, trace.damping_ratio, trace.damping_ratio_std
+    shift = trace.frequency_trend
+    return replace(
+        mode,
+        amplitudes=tuple(tuple(row) for row in np.column_stack(columns).tolist()),
+        frequency_trend=None if shift is None else (100 * shift[0], 100 * shift[1]),
+        damping_trend=trace.damping_trend,
     )
 
 

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.pipeline import FoundMode, LoadModes
-from sprung.report.layout import hanging, table
+from sprung.report.layout import figures, hanging, table
 from sprung.report.terminal import fault_list, with_std
 
 
@@ -26,6 +26,8 @@ def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> 
     parts: list[RenderableType] = []
     for load, modes in found.items():
         parts += [_modes(load, modes), Text(), _peaks(load, modes), Text()]
+        if any(mode.amplitudes for mode in modes):
+            parts += [_amplitudes(load, modes), Text()]
         if modes.unresolved:
             parts += [Text("Not resolved", style="bold"), *(hanging("  - ", said) for said in modes.unresolved), Text()]
     if faults:
@@ -69,3 +71,20 @@ def _peaks(load: str, modes: LoadModes) -> RenderableType:
         for mode in modes
     ]
     return table(f"Damped frequency by FFT, {load}", headers, rows, headers[1:])
+
+
+def _amplitudes(load: str, modes: LoadModes) -> RenderableType:
+    """Show frequency and damping at the largest and the smallest amplitude that tell them, and how they change between."""
+    headers = ("mode", "m/s²", "f_n Hz", "damping", "%/decade", "±")
+    rows = []
+    for mode in modes:
+        if not mode.amplitudes:
+            continue
+        shift = ("-", "-") if mode.frequency_trend is None else with_std(*mode.frequency_trend)
+        for (amplitude, frequency, unsure, ratio, ratio_unsure), change in zip(
+            (mode.amplitudes[0], mode.amplitudes[-1]), (shift, ("", "")), strict=True
+        ):
+            name = mode.name if change is shift else ""
+            told = with_std(frequency, unsure)[0], with_std(ratio, ratio_unsure)[0]
+            rows.append((name, figures(amplitude, 2), *told, *change))
+    return table(f"Against amplitude, {load}: at the largest, at the smallest", headers, rows, headers[1:], ("±",))
