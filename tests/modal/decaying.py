@@ -8,13 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal import Mode, modes_from, modes_of
-from sprung.vehicle import TABLE_1_CAR, Vehicle, Wheel, free_decay, half_sine_bump, tyre_rates
+from sprung.modal import Mode, modes_from
 
 Array = NDArray[np.float64]
-
-BUMPS: tuple[tuple[Wheel, ...], ...] = (("fl", "rl"), ("fl", "fr", "rl", "rr"), ("fl", "fr"), ("fl", "rr"))
-"""The wheels that run over the paper's bump: left, all, front, diagonal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,24 +68,3 @@ SYSTEMS = {"complex": COMPLEX, "real": REAL, "repeated": REPEATED}
 def poles(modes: Sequence[Mode]) -> NDArray[np.complex128]:
     """Give the poles of modes in an order of their own."""
     return np.sort_complex(np.array([mode.pole for mode in modes]))
-
-
-def bumps(vehicle: Vehicle = TABLE_1_CAR, rate: float = 1000.0, seconds: float = 4.0) -> list[Array]:
-    """Give accelerations of the seven coordinates after the paper's bump of 0.09 m and 0.2 s, from its end on."""
-    matrices = vehicle.matrices()
-    found = []
-    for wheels in BUMPS:
-        _, state = half_sine_bump(matrices, tyre_rates(vehicle), wheels, 0.09, 0.2, 1 / rate, 1)
-        found.append(free_decay(matrices, state, 1 / rate, round(seconds * rate)).acceleration)
-    return found
-
-
-def noisy(records: list[Array], decibels: float, seed: int) -> list[Array]:
-    """Add white noise so far below the root-mean-square of each channel in the first record."""
-    random = np.random.default_rng(seed)
-    size = np.sqrt((records[0] ** 2).mean(axis=1, keepdims=True)) * 10 ** (-decibels / 20)
-    return [record + size * random.standard_normal(record.shape) for record in records]
-
-
-CAR = modes_of(TABLE_1_CAR.matrices())
-"""Modes of the Table 1 car."""

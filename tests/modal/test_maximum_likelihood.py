@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from modal_records import CAR, bound, bumps, noisy
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from modal.decaying import CAR, SYSTEMS, System, bumps, noisy, poles
+from modal.decaying import SYSTEMS, System, poles
 from sprung.errors import InputError
 from sprung.modal import Mode, Modes, identify_modes, maximum_likelihood, modes_of, similarity
-from sprung.modal.decays import Decays
-from sprung.modal.likelihood import Poles, Stand
-from sprung.modal.uncertainty import bounds
 from sprung.vehicle import Vehicle, free_decay
 from strategies import vehicles
 
@@ -44,14 +42,6 @@ def test_any_vehicle_without_noise(vehicle: Vehicle, seed: int) -> None:
     expected = poles(modes_of(vehicle.matrices()))
     distance = np.abs(poles(found)[:, None] - expected).min(axis=0)
     assert np.all(distance < 1e-8 * np.abs(expected))
-
-
-def bound(records: list[Array], decibels: float) -> tuple[Mode, ...]:
-    """Give the true modes of the car with the Cramér-Rao bound as their spread."""
-    variance = (records[0] ** 2).mean(axis=1) * 10 ** (-decibels / 10)
-    true = Poles.of(np.array([mode.pole / 1000.0 for mode in CAR]), np.stack([mode.shape for mode in CAR], axis=1))
-    own = bounds(Stand.at(Decays.of(records, 1000.0), true, 1 / variance))
-    return tuple(Mode(mode.pole, mode.shape, spread=spread) for mode, spread in zip(CAR, own, strict=True))
 
 
 def matched(found: Modes) -> list[Mode]:

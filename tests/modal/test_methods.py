@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from modal_records import CAR, bumps, noisy
 from numpy.testing import assert_allclose
 
-from modal.decaying import CAR, SYSTEMS, System, bumps, noisy, poles
+from modal.decaying import SYSTEMS, System, poles
 from sprung.errors import InputError
 from sprung.modal import APPROXIMATE, METHODS, identify_modes
 

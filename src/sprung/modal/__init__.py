@@ -4,7 +4,7 @@ from sprung.modal.amplitude import ModeTrace, follow_modes
 from sprung.modal.criteria import complexity
 from sprung.modal.era import eigensystem_realisation
 from sprung.modal.identified import Modes, Rejected
-from sprung.modal.maximum_likelihood import maximum_likelihood
+from sprung.modal.maximum_likelihood import cramer_rao_bound, maximum_likelihood
 from sprung.modal.methods import APPROXIMATE, DEFAULT, METHODS, Method, identify_modes
 from sprung.modal.modes import Mode, Spread, modes_from, similarity
 from sprung.modal.naming import MODE_NAMES, in_coordinates, modes_of, name_by_sensors, name_modes
@@ -28,6 +28,7 @@ __all__ = [
     "blocks",
     "complexity",
     "correlate",
+    "cramer_rao_bound",
     "eigensystem_realisation",
     "fft_frequencies",
     "follow_modes",

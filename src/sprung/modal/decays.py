@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.modal.spectrum import Spectrum
 from sprung.modal.sums import BLOCK, blocks, correlate, gram, waves
 
 Real = NDArray[np.float64]
@@ -50,6 +52,11 @@ class Decays:
             energy=np.array([np.einsum("ct,ct->c", record, record) for record in values]),
             blocked=np.concatenate([blocks(record) for record in records]),
         )
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        """Of the records."""
+        return Spectrum.of(self.values, self.rate)
 
     @property
     def channels(self) -> int:

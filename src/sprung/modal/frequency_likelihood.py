@@ -14,7 +14,6 @@ from sprung.modal.identified import Modes
 from sprung.modal.modes import Mode, in_order
 from sprung.modal.refinement import climb
 from sprung.modal.selection import Task
-from sprung.modal.spectrum import Spectrum
 from sprung.modal.sums import moments
 from sprung.modal.uncertainty import bounds
 
@@ -52,7 +51,7 @@ def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | 
     P. Guillaume, P. Verboven and S. Vanlanduit, Proc. ISMA 23 (1998) 359, here for the transform of free decays.
     """
     task = Task.of(records, rate, order, "ml-frequency")
-    high = Spectrum.of(task.decays.values, rate).band[1]
+    high = task.decays.spectrum.band[1]
     lines = Lines.up_to(task.decays, _WIDER * high)
     stand = climb(lines, task.span.poles(task.order))
     lost = lines.numbers / max(lines.numbers - stand.parameters / lines.channels, 1.0)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
+from sprung.modal.spectrum import Spectrum
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -172,6 +173,16 @@ class Stand:
         own = np.diagonal(self.gram[:, :size, :size], axis1=1, axis2=2).real[:, None, :count]
         energy = (np.abs(self.coefficients[:, :, :count]) ** 2 * own).sum(axis=0) * twice
         return np.asarray(energy / np.maximum(self.decays.energy.sum(axis=0), 1e-300)[:, None])
+
+    @cached_property
+    def left(self) -> tuple[Real, ...]:
+        """What the model leaves of the records, each of shape (channel, time)."""
+        return self.decays.less(self.poles.both(self.poles.exponent), self.coefficients)
+
+    @cached_property
+    def left_spectrum(self) -> Spectrum:
+        """Spectrum of that."""
+        return Spectrum.of(self.left, self.decays.rate)
 
     @cached_property
     def variance(self) -> Real:

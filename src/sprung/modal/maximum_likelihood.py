@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,12 +11,12 @@ from numpy.typing import ArrayLike
 from sprung.errors import Problems
 from sprung.modal.decays import Decays
 from sprung.modal.identified import Modes, Rejected
-from sprung.modal.modelling import agreement, model_by_data, model_of_order, residuals
+from sprung.modal.likelihood import Poles, Stand
+from sprung.modal.modelling import agreement, model_by_data, model_of_order
 from sprung.modal.modes import Mode, in_order
 from sprung.modal.records import as_records
-from sprung.modal.spectrum import Spectrum
 from sprung.modal.subspace import Span
-from sprung.modal.uncertainty import spreads
+from sprung.modal.uncertainty import bounds, spreads
 
 _GROWS = 2.0
 """Standard uncertainties by which a motion must grow for it to be none of a free decay."""
@@ -57,7 +58,7 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
     """
     arrays = as_records(records, rate, "ml")
     decays = Decays.of(arrays, rate)
-    span = Span.of(arrays, Spectrum.of(arrays, rate))
+    span = Span.of(arrays, decays.spectrum)
     problems = Problems()
     if not span.standing_out:
         problems.add("ml: records", "nothing that stands out from noise", "a free decay", "Look at the recordings.")
@@ -67,10 +68,9 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
     problems.raise_if_any()
     model = model_by_data(decays, span) if order is None else model_of_order(decays, span, order)
     stand = model.stand
-    left = residuals(stand)
     found, rejected = [], list(model.rejected)
     shapes = stand.poles.shapes.T
-    spread = spreads(stand, left, agreement(stand, left))
+    spread = spreads(stand, agreement(stand))
     for pole, shape, own in zip(stand.poles.exponent * rate, shapes, spread, strict=True):
         growth, unsure = float(pole.real), float(np.sqrt(own.pole[0, 0]))
         if growth > _GROWS * unsure:
@@ -78,3 +78,31 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
         else:
             found.append(Mode(complex(pole), shape, spread=own))
     return Modes(in_order(found), tuple(rejected), "ml")
+
+
+def cramer_rao_bound(
+    records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode], noise: ArrayLike
+) -> tuple[Mode, ...]:
+    """Give known modes the uncertainty that no unbiased estimate from such records can better.
+
+    Parameters
+    ----------
+    records
+        Without noise, shape (channel, time) each.
+    rate
+        Samples per second.
+    modes
+        All modes that the records hold, with shapes at the channels.
+    noise
+        Standard deviation of white noise in each channel, shape (channel,).
+
+    Returns
+    -------
+    tuple of Mode
+        The same, with the bound as their spread; amplitudes and offsets of every record are unknown.
+    """
+    arrays = as_records(records, rate, "bound")
+    exponent = np.array([mode.pole / rate for mode in modes], dtype=complex)
+    poles = Poles.of(exponent, np.stack([mode.shape for mode in modes], axis=1))
+    stand = Stand.at(Decays.of(arrays, rate), poles, 1 / np.asarray(noise, dtype=float) ** 2)
+    return tuple(replace(mode, spread=spread) for mode, spread in zip(modes, bounds(stand), strict=True))

@@ -14,7 +14,6 @@ from sprung.modal.likelihood import LEAST_NOISE, Poles, Stand, scales
 from sprung.modal.modes import UNRESOLVED
 from sprung.modal.refinement import climb
 from sprung.modal.selection import MOST_POLES
-from sprung.modal.spectrum import Spectrum
 from sprung.modal.subspace import Span
 from sprung.modal.turning import alternatives
 from sprung.modal.uncertainty import spreads
@@ -92,7 +91,7 @@ def model_by_data(decays: Decays, span: Span, most: int = MOST_POLES) -> Model:
     order = min(max(span.standing_out, 2), first, most, span.most)
     stand = climb(decays, span.poles(order))
     rejected: list[Rejected] = []
-    inflation = _inflation(stand, residuals(stand))
+    inflation = _inflation(stand)
     if inflation.max() > _COLOURED:
         # No number of modes leaves white noise, and a large one may have lost its way: all smaller ones are tried.
         smaller = [climb(decays, span.poles(n), _FIRST_STEPS, _FAR) for n in range(2, order)]
@@ -102,26 +101,17 @@ def model_by_data(decays: Decays, span: Span, most: int = MOST_POLES) -> Model:
     return Model(stand, tuple(rejected))
 
 
-def residuals(stand: Stand) -> tuple[Real, ...]:
-    """Give what a model leaves of the records, each of shape (channel, time)."""
-    return stand.decays.less(stand.poles.both(stand.poles.exponent), stand.coefficients)
-
-
-def colour(stand: Stand, left: Sequence[Real]) -> Real:
+def colour(stand: Stand) -> Real:
     """Give by how much the residuals' spectrum exceeds its mean where the motion is; at least 1, shape (channel,)."""
-    rate = stand.decays.rate
-    spectrum, motion = (
-        Spectrum.of(left, rate).power.mean(axis=0),
-        Spectrum.of(stand.decays.values, rate).power.mean(axis=0),
-    )
+    power, motion = stand.left_spectrum.power.mean(axis=0), stand.decays.spectrum.power.mean(axis=0)
     weight = motion / np.maximum(motion.sum(axis=1, keepdims=True), 1e-300)
-    mean = np.maximum(spectrum[:, 1:].mean(axis=1), 1e-300)
-    return np.asarray(np.maximum((weight * spectrum).sum(axis=1) / mean, 1.0))
+    mean = np.maximum(power[:, 1:].mean(axis=1), 1e-300)
+    return np.asarray(np.maximum((weight * power).sum(axis=1) / mean, 1.0))
 
 
-def agreement(stand: Stand, left: Sequence[Real]) -> float:
+def agreement(stand: Stand) -> float:
     """Give `disagreement`, where the residuals are coloured enough for it to matter; 1 otherwise."""
-    return disagreement(stand) if colour(stand, left).max() > _COLOURED else 1.0
+    return disagreement(stand) if colour(stand).max() > _COLOURED else 1.0
 
 
 def disagreement(stand: Stand) -> float:
@@ -155,9 +145,9 @@ def _halves(weighted: Real, record: Real) -> tuple[Real, Real]:
     return record[:, :middle], record[:, middle:]
 
 
-def _gain(small: Stand, large: Stand, left: Sequence[Real]) -> tuple[float, float]:
+def _gain(small: Stand, large: Stand) -> tuple[float, float]:
     """Give what a larger model gains in twice the log-likelihood, and what its parameters cost."""
-    count, inflation = small.decays.numbers, _inflation(large, left)
+    count, inflation = small.decays.numbers, _inflation(large)
     gain = count * float((np.log(small.variance / large.variance) / inflation).sum())
     price = float(np.log(count * len(inflation) / inflation.mean()))
     return gain, (large.parameters - small.parameters) * price
@@ -169,35 +159,32 @@ def _criterion(stand: Stand, inflation: Real) -> float:
     return misfit + stand.parameters * float(np.log(count * len(inflation) / inflation.mean()))
 
 
-def _inflation(stand: Stand, left: Sequence[Real]) -> Real:
+def _inflation(stand: Stand) -> Real:
     """Give by how much less each channel tells than white noise around the right model would let it; shape (channel,)."""
-    return colour(stand, left) + agreement(stand, left) - 1
+    return colour(stand) + agreement(stand) - 1
 
 
 def _grown(stand: Stand, most: int, rejected: list[Rejected]) -> Stand:
-    left = residuals(stand)
     while len(stand.poles.both(stand.poles.exponent)) < most:
-        spectrum = Spectrum.of(left, stand.decays.rate)
-        if not spectrum.standing_out.any() or _is_rounding(left, stand.decays):
+        if not stand.left_spectrum.standing_out.any() or _is_rounding(stand.left, stand.decays):
             break
-        span = Span.of(left, spectrum)
+        span = Span.of(stand.left, stand.left_spectrum)
         standing = span.standing_out
         if not standing:
             break
         new = span.poles(min(standing, span.most))
         if not new.count:
             break
-        more = _strongest(Stand.at(Decays.of(left, stand.decays.rate), new, stand.weights))
+        more = _strongest(Stand.at(Decays.of(stand.left, stand.decays.rate), new, stand.weights))
         larger = climb(stand.decays, stand.poles.beside(more), _FIRST_STEPS, _FAR)
-        left_then = residuals(larger)
-        gain, cost = _gain(stand, larger, left_then)
-        if colour(larger, left_then).max() > _COLOURED:
+        gain, cost = _gain(stand, larger)
+        if colour(larger).max() > _COLOURED:
             cost *= _DEARER
         if gain < cost:
             said = f"adding it gains {gain:.3g} in twice the log-likelihood, its parameters cost {cost:.3g}"
             rejected.extend(Rejected(complex(pole) * stand.decays.rate, said) for pole in more.exponent)
             break
-        stand, left = larger, left_then
+        stand = larger
     return climb(stand.decays, stand.poles)
 
 
@@ -221,7 +208,7 @@ def _turned(stand: Stand) -> Stand:
 def _is_worth(stand: Stand, other: Stand) -> bool:
     if other.parameters == stand.parameters:
         return stand.cost - other.cost > _FAR
-    gain, cost = _gain(stand, other, residuals(other))
+    gain, cost = _gain(stand, other)
     return gain > cost
 
 
@@ -241,23 +228,23 @@ def _pruned(stand: Stand, rejected: list[Rejected]) -> Stand:
     """Take away modes that are not worth their parameters, those first that the records do not determine."""
     asked: set[complex] = set()
     while stand.poles.count > 1:
-        left, exponents = residuals(stand), stand.poles.exponent.tolist()
+        exponents = stand.poles.exponent.tolist()
         weak = [
             float(np.trace(spread.pole)) > (UNRESOLVED * abs(pole) * stand.decays.rate) ** 2
-            for pole, spread in zip(exponents, spreads(stand, left, 1.0), strict=True)
+            for pole, spread in zip(exponents, spreads(stand, 1.0), strict=True)
         ]
         losses = [Stand.at(stand.decays, stand.poles.without(i), stand.weights).cost for i in range(len(exponents))]
         for i in sorted(range(len(exponents)), key=lambda j: (not weak[j], losses[j])):
             if exponents[i] in asked:
                 continue
             small = Stand.at(stand.decays, stand.poles.without(i), stand.weights)
-            gain, cost = _gain(small, stand, left)
+            gain, cost = _gain(small, stand)
             if gain > cost:
                 # What the others would make up for is worth a look only where it may change the answer.
                 if gain > _HOPELESS * cost and not weak[i]:
                     return stand
                 small = climb(stand.decays, small.poles, (_STEPS if weak[i] else _FIRST_STEPS), _FAR)
-                gain, cost = _gain(small, stand, left)
+                gain, cost = _gain(small, stand)
             if gain < cost:
                 said = f"it gains {gain:.3g} in twice the log-likelihood, its parameters cost {cost:.3g}"
                 rejected.append(Rejected(exponents[i] * stand.decays.rate, said))

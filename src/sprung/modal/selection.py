@@ -14,7 +14,6 @@ from sprung.modal.identified import Modes, Rejected
 from sprung.modal.likelihood import Poles, Stand
 from sprung.modal.modes import modes_from
 from sprung.modal.records import as_records
-from sprung.modal.spectrum import Spectrum
 from sprung.modal.subspace import Span
 from sprung.modal.thinning import Thinned
 
@@ -65,9 +64,10 @@ class Task:
             If the records cannot be used.
         """
         arrays = as_records(records, rate, method)
-        span = Span.of(arrays, Spectrum.of(arrays, rate))
+        decays = Decays.of(arrays, rate)
+        span = Span.of(arrays, decays.spectrum)
         wanted = min(span.standing_out, MOST_POLES) if order is None else order
-        task = cls(Decays.of(arrays, rate), span, wanted)
+        task = cls(decays, span, wanted)
         task.allow(span.most, method, given=order is not None)
         return task
 

@@ -59,8 +59,10 @@ class Spectrum:
         while width <= bins:
             # Periodograms of white noise are exponentially distributed, sums of them by a gamma distribution.
             limit = float(gammainccinv(width * records * channels, _CHANCE / bins))
-            for begin in np.flatnonzero(sums[width:] - sums[:-width] > limit).tolist():
-                found[begin : begin + width] = True
+            beyond = (sums[width:] - sums[:-width] > limit).astype(np.int64)
+            edges = np.concatenate([beyond, np.zeros(width, dtype=np.int64)])
+            edges[width:] -= beyond
+            found |= np.cumsum(edges)[:bins] > 0
             width *= 4
         return found
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.likelihood import Stand, scales
 from sprung.modal.modes import Spread
-from sprung.modal.spectrum import Spectrum
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -24,15 +21,13 @@ _SIGNIFICANT = 3.0
 """Standard errors by which an excess must be real before it counts."""
 
 
-def spreads(stand: Stand, left: Sequence[Real], disagreement: float) -> tuple[Spread, ...]:
+def spreads(stand: Stand, disagreement: float) -> tuple[Spread, ...]:
     """Give the covariances of all modes: the inverse of the Fisher information, enlarged where the residuals are not white.
 
     Parameters
     ----------
     stand
         At the summit of the likelihood.
-    left
-        The residuals, of shape (channel, time) each.
     disagreement
         Variance by which pieces of the records differ, in units of what noise alone would make them; 1 for none.
 
@@ -45,7 +40,7 @@ def spreads(stand: Stand, left: Sequence[Real], disagreement: float) -> tuple[Sp
     # Degrees of freedom: what all of the fit takes up, spread over the channels.
     lost = samples / max(samples - stand.parameters / stand.decays.channels, 1.0)
     weighted = stand.weighted(1 / (stand.variance * lost))
-    return bounds(weighted, _colour_of_modes(weighted, left) + disagreement - 1)
+    return bounds(weighted, _colour_of_modes(stand) + disagreement - 1)
 
 
 def bounds(stand: Stand, excess: Real | None = None) -> tuple[Spread, ...]:
@@ -114,12 +109,12 @@ def _inverse(information: Complex) -> Complex:
     return np.asarray(roots @ roots.conj().T, dtype=np.complex128)
 
 
-def _colour_of_modes(stand: Stand, left: Sequence[Real]) -> Real:
+def _colour_of_modes(stand: Stand) -> Real:
     """Give by how much the residuals' spectrum around each mode exceeds its mean; at least 1, shape (mode,).
 
     What a mode's pole and shape take from the noise lies in its own band. Channels count as they tell of the mode.
     """
-    spectrum = Spectrum.of(left, stand.decays.rate)
+    spectrum = stand.left_spectrum
     power = spectrum.power.mean(axis=0)
     relative = power / np.maximum(power[:, 1:].mean(axis=1, keepdims=True), 1e-300)
     poles = stand.poles.exponent * stand.decays.rate / (2 * np.pi)
