@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
-from modal.decaying import SYSTEMS
+from decaying import SYSTEMS
 from sprung.modal import follow_modes, identify_modes
 
 

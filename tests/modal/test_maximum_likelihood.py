@@ -10,7 +10,7 @@ from modal_records import CAR, bound, bumps, noisy
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from modal.decaying import SYSTEMS, System, poles
+from decaying import SYSTEMS, System, poles
 from sprung.errors import InputError
 from sprung.modal import Mode, Modes, identify_modes, maximum_likelihood, modes_of, similarity
 from sprung.vehicle import Vehicle, free_decay
@@ -33,7 +33,7 @@ def test_poles_and_shapes_are_exact_without_noise(system: System, rate: float) -
 
 
 @given(vehicles, st.integers(0, 5))
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=6, deadline=None)
 def test_any_vehicle_without_noise(vehicle: Vehicle, seed: int) -> None:
     random = np.random.default_rng(seed)
     states = random.standard_normal((5, 14)) * np.repeat([0.01, 0.3], 7)

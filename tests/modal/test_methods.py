@@ -7,7 +7,7 @@ import pytest
 from modal_records import CAR, bumps, noisy
 from numpy.testing import assert_allclose
 
-from modal.decaying import SYSTEMS, System, poles
+from decaying import SYSTEMS, System, poles
 from sprung.errors import InputError
 from sprung.modal import APPROXIMATE, METHODS, identify_modes
 

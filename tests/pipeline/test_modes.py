@@ -70,3 +70,20 @@ def test_check_names_every_drop_and_its_limits() -> None:
         assert drop.end is not None
         assert 0.4 < drop.start < 0.8
         assert drop.end == pytest.approx(3.6, abs=0.01)
+
+
+def test_diagram_and_amplitudes_come_where_they_are_asked_for() -> None:
+    campaign = sprung.simulate(TABLE_1_CAR, noise=0.005, seed=1)
+    plain = sprung.modes(campaign)["empty"]
+    assert plain.diagram is None
+    assert not any(mode.amplitudes for mode in plain)
+    whole = sprung.modes(campaign, amplitude=True, diagram=True)["empty"]
+    assert whole.diagram is not None
+    # All seven, or six where two of one chain's wheel hops took turns: 0.003 Hz apart they count as one pole.
+    assert len(whole.diagram.chosen) >= 6
+    assert whole.document()["diagram"]["criteria"]["frequency"] == 0.02
+    bounce = whole[0]
+    assert len(bounce.amplitudes) > 2
+    # A linear car: no trend beyond four standard errors.
+    assert bounce.frequency_trend is not None
+    assert abs(bounce.frequency_trend[0]) < 4 * bounce.frequency_trend[1]

@@ -169,12 +169,13 @@ def modal(
             "--amplitude", help="Follow each mode through the decays: frequency and damping against amplitude."
         ),
     ] = False,
+    diagram: Annotated[bool, typer.Option("--diagram", help="Draw a stabilisation diagram beside it.")] = False,
     as_json: Json = False,
 ) -> None:
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
     with working("reading the recordings"):
         read = sprung.read(campaign)
-        found = sprung.modes(read, method=method, order=order, amplitude=amplitude)
+        found = sprung.modes(read, method=method, order=order, amplitude=amplitude, diagram=diagram)
         faults = sprung.check(read).faults
     if as_json:
         say_json(

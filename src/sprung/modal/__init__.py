@@ -9,6 +9,7 @@ from sprung.modal.methods import APPROXIMATE, DEFAULT, METHODS, Method, identify
 from sprung.modal.modes import Mode, Spread, modes_from, similarity
 from sprung.modal.naming import MODE_NAMES, in_coordinates, modes_of, name_by_sensors, name_modes
 from sprung.modal.peaks import fft_frequencies
+from sprung.modal.stabilisation import Criteria, Diagram, stabilisation_diagram
 from sprung.modal.sums import BLOCK, blocks, correlate, gram, waves
 from sprung.modal.svm import StateVariables, state_matrix, state_variable_method
 
@@ -18,6 +19,8 @@ __all__ = [
     "DEFAULT",
     "METHODS",
     "MODE_NAMES",
+    "Criteria",
+    "Diagram",
     "Method",
     "Mode",
     "ModeTrace",
@@ -41,6 +44,7 @@ __all__ = [
     "name_by_sensors",
     "name_modes",
     "similarity",
+    "stabilisation_diagram",
     "state_matrix",
     "state_variable_method",
     "waves",

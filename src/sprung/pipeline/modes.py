@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any, overload
 
 import numpy as np
@@ -14,6 +14,7 @@ from sprung.errors import Problems
 from sprung.identification import ModeEstimate
 from sprung.modal import (
     DEFAULT,
+    Diagram,
     Mode,
     Modes,
     ModeTrace,
@@ -22,6 +23,7 @@ from sprung.modal import (
     follow_modes,
     identify_modes,
     name_by_sensors,
+    stabilisation_diagram,
 )
 from sprung.prepare import Decay, prepare
 from sprung.recording import Campaign
@@ -85,6 +87,8 @@ class LoadModes(Sequence[FoundMode]):
         What was met and is no mode: pole, 1/s, and why not.
     unresolved
         What the records cannot tell apart, one sentence each.
+    diagram
+        Poles over the order of a model, where it was asked for.
     """
 
     modes: tuple[FoundMode, ...]
@@ -93,6 +97,7 @@ class LoadModes(Sequence[FoundMode]):
     drops: tuple[str, ...]
     rejected: tuple[tuple[complex, str], ...] = ()
     unresolved: tuple[str, ...] = ()
+    diagram: Diagram | None = None
 
     @overload
     def __getitem__(self, index: int) -> FoundMode: ...
@@ -118,11 +123,17 @@ class LoadModes(Sequence[FoundMode]):
             "drops": list(self.drops),
             "rejected": [{"pole": [pole.real, pole.imag], "reason": reason} for pole, reason in self.rejected],
             "unresolved": list(self.unresolved),
+            "diagram": None if self.diagram is None else _diagram_document(self.diagram),
         }
 
 
 def modes(
-    campaign: Campaign, method: str = DEFAULT, order: int | None = None, *, amplitude: bool = False
+    campaign: Campaign,
+    method: str = DEFAULT,
+    order: int | None = None,
+    *,
+    amplitude: bool = False,
+    diagram: bool = False,
 ) -> dict[str, LoadModes]:
     """Find the modes of every load; no vehicle model is needed.
 
@@ -137,6 +148,8 @@ def modes(
         Number of poles to look for; the method chooses unless it is given.
     amplitude
         Whether to follow each mode through the decays, for frequency and damping against amplitude.
+    diagram
+        Whether to draw up a stabilisation diagram beside it.
 
     Returns
     -------
@@ -157,11 +170,13 @@ def modes(
     for load in campaign.loads:
         of_load = [decay for decay in decays if decay.load == load.name]
         if of_load:
-            found[load.name] = _modes_of(of_load, campaign, method, order, amplitude)
+            found[load.name] = _modes_of(of_load, campaign, method, order, amplitude, diagram)
     return found
 
 
-def _modes_of(decays: list[Decay], campaign: Campaign, method: str, order: int | None, amplitude: bool) -> LoadModes:
+def _modes_of(
+    decays: list[Decay], campaign: Campaign, method: str, order: int | None, amplitude: bool, diagram: bool
+) -> LoadModes:
     # Records of another rate, or channels that one drop lacks, cannot stand in the same matrix.
     rate = Counter(decay.rate for decay in decays).most_common(1)[0][0]
     same = [decay for decay in decays if decay.rate == rate]
@@ -185,7 +200,30 @@ def _modes_of(decays: list[Decay], campaign: Campaign, method: str, order: int |
         tuple(decay.name for decay in same),
         tuple((one.pole, one.reason) for one in found.rejected),
         _unresolved(estimates, sensors, len(same)),
+        stabilisation_diagram(records, rate) if diagram else None,
     )
+
+
+def _diagram_document(diagram: Diagram) -> dict[str, Any]:
+    return {
+        "criteria": asdict(diagram.criteria),
+        "orders": list(diagram.orders),
+        "poles": [
+            {
+                "order": one.order,
+                "pole": [one.pole.real, one.pole.imag],
+                "stable": one.stable,
+                "coherence": one.coherence,
+                "collinearity": one.collinearity,
+            }
+            for one in diagram.poles
+        ],
+        "chosen": [
+            {"pole": [one.pole.real, one.pole.imag], "scatter": one.scatter, "first": one.first, "count": one.count}
+            for one in diagram.chosen
+        ],
+        "rejected": [{"pole": [one.pole.real, one.pole.imag], "reason": one.reason} for one in diagram.rejected],
+    }
 
 
 def _names(found: Modes, named: Sequence[Mode]) -> list[str]:

@@ -3,14 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from rich.console import Group, RenderableType
+import numpy as np
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.text import Text
 
 from sprung.errors import Fault
+from sprung.modal import Diagram
 from sprung.pipeline import FoundMode, LoadModes
 from sprung.report.layout import figures, hanging, table
 from sprung.report.terminal import fault_list, with_std
+
+_MARGIN = 5
+"""Columns for the order beside the chart."""
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A stabilisation diagram as wide as the terminal."""
+
+    diagram: Diagram
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Render it for a terminal: frequency to the right, on a logarithmic scale, the order upwards."""
+        vibrating = [one for one in self.diagram.poles if one.pole.imag > 0]
+        if not vibrating:
+            return
+        frequencies = np.array([abs(one.pole) for one in vibrating]) / (2 * np.pi)
+        low, high = float(frequencies.min()) / 1.05, float(frequencies.max()) * 1.05
+        width = max(min(options.max_width, 100) - _MARGIN, 20)
+        columns = (width * np.log(frequencies / low) / np.log(high / low)).astype(int)
+        yield Text("Stabilisation: * there at the order before too, . not", style="bold")
+        for order in reversed(self.diagram.orders):
+            line = [" "] * width
+            for one, column in zip(vibrating, columns.tolist(), strict=True):
+                if one.order == order and line[column] != "*":
+                    line[column] = "*" if one.stable else "."
+            yield Text(f"{order:>3}  {''.join(line)}".rstrip())
+        left, right = f"{low:.3g} Hz", f"{high:.3g} Hz"
+        yield Text(" " * _MARGIN + left + " " * (width - len(left) - len(right)) + right)
+        chosen = ", ".join(f"{abs(one.pole) / (2 * np.pi):.4g}" for one in self.diagram.chosen)
+        yield Text(f"Stays: {chosen} Hz" if chosen else "Nothing stays.")
 
 
 def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> RenderableType:
@@ -28,6 +62,8 @@ def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> 
         parts += [_modes(load, modes), Text(), _peaks(load, modes), Text()]
         if any(mode.amplitudes for mode in modes):
             parts += [_amplitudes(load, modes), Text()]
+        if modes.diagram is not None:
+            parts += [Chart(modes.diagram), Text()]
         if modes.unresolved:
             parts += [Text("Not resolved", style="bold"), *(hanging("  - ", said) for said in modes.unresolved), Text()]
     if faults:
