@@ -14,8 +14,9 @@ Real = NDArray[np.float64]
 _FINER = 8
 """Times the resolution of the longest record to which spectra are interpolated, by zeros behind the records."""
 
-_NEAR = 0.25
-"""How far from the mode's own damped frequency its peak may lie, as a part of it, where it is damped less than that."""
+_NEAR, _WIDTHS, _LINES = 0.25, 3.0, 2.0
+"""How far from a mode's damped frequency its peak may lie: that part of it, or where that is less so many times its damping
+ratio, or so many lines of the transform."""
 
 
 def fft_frequencies(records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]) -> tuple[float | None, ...]:
@@ -36,7 +37,7 @@ def fft_frequencies(records: Sequence[ArrayLike], rate: float, modes: Sequence[M
     Returns
     -------
     tuple of float or None
-        Hz; None for a mode without a peak of its own within a quarter of its damped frequency, as the paper's pitch.
+        Hz; None for a mode without a peak of its own near its damped frequency, as the paper's pitch.
     """
     arrays = [np.asarray(record, dtype=float) for record in records]
     arrays = [record - record.mean(axis=1, keepdims=True) for record in arrays]
@@ -45,11 +46,12 @@ def fft_frequencies(records: Sequence[ArrayLike], rate: float, modes: Sequence[M
     for mode in modes:
         pattern = mode.shape.real / np.linalg.norm(mode.shape)
         motion = [np.abs(np.fft.rfft(pattern @ record, length)) ** 2 for record in arrays]
-        found.append(peak_near(np.sum(motion, axis=0), rate / length, mode.damped_frequency))
+        within = max(min(_NEAR, _WIDTHS * mode.damping_ratio) * mode.damped_frequency, _LINES * _FINER * rate / length)
+        found.append(peak_near(np.sum(motion, axis=0), rate / length, mode.damped_frequency, within))
     return tuple(found)
 
 
-def peak_near(power: Real, step: float, frequency: float) -> float | None:
+def peak_near(power: Real, step: float, frequency: float, within: float) -> float | None:
     """Give the highest local maximum of a spectrum near a frequency, interpolated by a parabola; Hz.
 
     Parameters
@@ -58,12 +60,12 @@ def peak_near(power: Real, step: float, frequency: float) -> float | None:
         Shape (bin,).
     step
         From bin to bin, Hz.
-    frequency
+    frequency, within
         Hz.
     """
     inner = power[1:-1]
     tops = np.flatnonzero((inner > power[:-2]) & (inner >= power[2:])) + 1
-    near = tops[np.abs(tops * step - frequency) <= _NEAR * frequency]
+    near = tops[np.abs(tops * step - frequency) <= within]
     if not near.size or frequency == 0:
         return None
     top = int(near[np.argmax(power[near])])

@@ -98,7 +98,10 @@ def _parts(own: Real, across: Complex) -> Real:
     """
     across = np.asarray(across, dtype=np.complex128)
     rows = [[own + across.real, across.imag], [across.imag, own - across.real]]
-    return np.asarray(np.moveaxis(np.array(rows), -1, 0) / 2, dtype=float)
+    parts = np.asarray(np.moveaxis(np.array(rows), -1, 0) / 2, dtype=float)
+    # Where one direction is all but undetermined, rounding may make the other negative.
+    eigenvalues, vectors = np.linalg.eigh(parts)
+    return np.asarray((vectors * np.maximum(eigenvalues, 0.0)[:, None, :]) @ np.swapaxes(vectors, 1, 2), dtype=float)
 
 
 def _inverse(information: Complex) -> Complex:

@@ -184,22 +184,67 @@ def _modes_of(
     records = [decay.values[usable] - _level(decay)[usable, None] for decay in same]
     sensors = [sensor for sensor, used in zip(campaign.sensors, usable, strict=True) if used]
     a = campaign.known.get("a")
+    return examined(
+        records,
+        rate,
+        method,
+        order,
+        tuple(sensor.channel for sensor in sensors),
+        tuple(decay.name for decay in same),
+        sensors=sensors,
+        a=a.value if a is not None else None,
+        amplitude=amplitude,
+        diagram=diagram,
+    )
+
+
+def examined(
+    records: Sequence[Real],
+    rate: float,
+    method: str,
+    order: int | None,
+    channels: tuple[str, ...],
+    drops: tuple[str, ...],
+    *,
+    sensors: Sequence[Sensor] = (),
+    a: float | None = None,
+    amplitude: bool = False,
+    diagram: bool = False,
+) -> LoadModes:
+    """Identify the modes of some records and everything that is said of them.
+
+    Parameters
+    ----------
+    records
+        Shape (channel, time) each.
+    rate
+        Samples per second.
+    method, order, amplitude, diagram
+        As for `modes`.
+    channels, drops
+        Names of channels and records.
+    sensors
+        Where the channels are, by which modes are named; without any they are numbered.
+    a
+        Front axle to the body's centre of gravity, m, if known.
+    """
     found = identify_modes(records, rate, method, order)
-    named = name_by_sensors(found, sensors, a.value if a is not None else None)
-    names = {id(mode): name for mode, name in zip(found, _names(found, named), strict=True)}
+    names = (
+        _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
+    )
     peaks = fft_frequencies(records, rate, found)
     traces = {id(trace.mode): trace for trace in follow_modes(records, rate, found)} if amplitude else {}
     estimates = tuple(
-        _followed(_estimate(mode, names[id(mode)], peak), traces.get(id(mode)))
-        for mode, peak in zip(found, peaks, strict=True)
+        _followed(_estimate(mode, name, peak), traces.get(id(mode)))
+        for mode, name, peak in zip(found, names, peaks, strict=True)
     )
     return LoadModes(
         estimates,
         method,
-        tuple(sensor.channel for sensor in sensors),
-        tuple(decay.name for decay in same),
+        channels,
+        drops,
         tuple((one.pole, one.reason) for one in found.rejected),
-        _unresolved(estimates, sensors, len(same)),
+        _unresolved(estimates, sensors, len(drops)),
         stabilisation_diagram(records, rate) if diagram else None,
     )
 
