@@ -14,6 +14,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from textwrap import fill
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -142,7 +143,7 @@ def main() -> None:
     )
     hammer = beam(told.hammer) if told.hammer else []
     numbers = {"headline": headline(trials), "methods": rows, "one_drop": one, "beam": hammer}
-    write(told.to, "modal", page(trials, rows, one, hammer), numbers)
+    write(told.to, "modal", wrapped(page(trials, rows, one, hammer)), numbers)
 
 
 def headline(trials: Sequence[Trial]) -> list[dict[str, Any]]:
@@ -321,6 +322,12 @@ several.
     python -m pip install ".[peers]"
     python docs/studies/modal.py --campaigns {every["sets"]} --processes 2 --hammer HammerImpact.mat
 """
+
+
+def wrapped(text: str) -> str:
+    """Wrap paragraphs, and leave headings, tables and commands as they are."""
+    parts = (part if part[:1] in "#| " else fill(part, 122, break_on_hyphens=False) for part in text.split("\n\n"))
+    return "\n\n".join(parts).rstrip() + "\n"
 
 
 def _methods(rows: Sequence[dict[str, Any]]) -> str:

@@ -98,6 +98,9 @@ APPROXIMATE = frozenset({"peaks", "emd"})
 _LEAST_PERIODS, _LEAST_DECAY = 2.0, 3.0
 """Periods of a vibration, and powers of e of an overdamped motion, that a record must hold for it to be told."""
 
+_HARDLY_A_VIBRATION = 0.7
+"""Damping ratio from which on a motion is judged by its decay: its periods are hardly seen."""
+
 _LEAST_SAMPLES = 16
 """Samples without which nothing at all can be told."""
 
@@ -177,16 +180,17 @@ def _split(modes: tuple[Mode, ...], decays: Decays, refusing: bool) -> tuple[tup
 
 
 def _is_told(mode: Mode, seconds: float) -> bool:
-    if mode.pole.imag == 0:
-        return abs(mode.pole) * seconds >= _LEAST_DECAY
+    if mode.damping_ratio > _HARDLY_A_VIBRATION:
+        return -mode.pole.real * seconds >= _LEAST_DECAY
     return mode.frequency * seconds >= _LEAST_PERIODS
 
 
 def _too_short(mode: Mode, seconds: float) -> tuple[str, str]:
-    if mode.pole.imag == 0:
+    if mode.damping_ratio > _HARDLY_A_VIBRATION:
+        decay = -1 / mode.pole.real
         return (
-            f"{seconds:.3g} s of a motion that decays in {1 / abs(mode.pole):.3g} s",
-            f"at least {_LEAST_DECAY / abs(mode.pole):.3g} s, {_LEAST_DECAY:g} times as long",
+            f"{seconds:.3g} s of a motion that decays in {decay:.3g} s",
+            f"at least {_LEAST_DECAY * decay:.3g} s, {_LEAST_DECAY:g} times as long",
         )
     return (
         f"{seconds:.3g} s, {mode.frequency * seconds:.2g} periods of the lowest mode at {mode.frequency:.3g} Hz",
