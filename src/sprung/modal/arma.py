@@ -11,6 +11,9 @@ from sprung.modal.identified import Modes
 from sprung.modal.selection import Task
 from sprung.modal.subspace import recurring
 
+_RANK = 1e-15
+"""Singular value, as a part of the largest, that is rounding."""
+
 _MORE = 2
 """Times the lags that the order asks for: the ones too many take up noise."""
 
@@ -49,7 +52,7 @@ def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None 
     hankel = np.hstack(thinned.hankel(2 * lags))
     instruments, regressors, target = np.split(hankel, [lags * channels, 2 * lags * channels])
     left, singular, right = np.linalg.svd(regressors @ instruments.T)
-    kept = min(task.order, len(singular))
+    kept = min(task.order, int(np.sum(singular > _RANK * singular[0])))
     inverse = (right[:kept].T / singular[:kept]) @ left[:, :kept].T
     coefficients = target @ instruments.T @ inverse
     companion = np.eye(lags * channels, k=channels)

@@ -13,7 +13,7 @@ from sprung.modal.decays import Decays
 from sprung.modal.identified import Modes
 from sprung.modal.modes import Mode, in_order
 from sprung.modal.refinement import climb
-from sprung.modal.selection import Task
+from sprung.modal.selection import Task, refuse_without_decay
 from sprung.modal.sums import moments
 from sprung.modal.uncertainty import bounds
 
@@ -53,7 +53,9 @@ def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | 
     task = Task.of(records, rate, order, "ml-frequency")
     high = task.decays.spectrum.band[1]
     lines = Lines.up_to(task.decays, _WIDER * high)
-    stand = climb(lines, task.span.poles(task.order))
+    start = task.span.poles(task.order)
+    refuse_without_decay(start, "ml-frequency")
+    stand = climb(lines, start)
     lost = lines.numbers / max(lines.numbers - stand.parameters / lines.channels, 1.0)
     spread = bounds(stand.weighted(1 / (stand.variance * lost)))
     found = zip(stand.poles.exponent * rate, stand.poles.shapes.T, spread, strict=True)

@@ -171,7 +171,9 @@ class Stand:
         size, count = self.shapes.shape[1], self.poles.count
         twice = np.where(self.poles.exponent.imag != 0, 2.0, 1.0)
         own = np.diagonal(self.gram[:, :size, :size], axis1=1, axis2=2).real[:, None, :count]
-        energy = (np.abs(self.coefficients[:, :, :count]) ** 2 * own).sum(axis=0) * twice
+        # Poles that are none of the motion may have any amplitude.
+        sizes = np.minimum(np.abs(self.coefficients[:, :, :count]) * np.sqrt(np.maximum(own, 0.0)), 1e100)
+        energy = (sizes**2).sum(axis=0) * twice
         return np.asarray(energy / np.maximum(self.decays.energy.sum(axis=0), 1e-300)[:, None])
 
     @cached_property

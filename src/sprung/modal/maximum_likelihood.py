@@ -15,6 +15,7 @@ from sprung.modal.likelihood import Poles, Stand
 from sprung.modal.modelling import agreement, model_by_data, model_of_order
 from sprung.modal.modes import Mode, in_order
 from sprung.modal.records import as_records
+from sprung.modal.selection import refuse_without_decay
 from sprung.modal.subspace import Span
 from sprung.modal.uncertainty import bounds, spreads
 
@@ -66,6 +67,7 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
         expected = f"1 to {span.most} for {decays.channels} channels and {decays.seconds.min():.3g} s"
         problems.add("ml: order", f"{order}", expected, "Choose it in that range, or leave it out.")
     problems.raise_if_any()
+    refuse_without_decay(span.poles(min(max(span.standing_out, 2), span.most)), "ml")
     model = model_by_data(decays, span) if order is None else model_of_order(decays, span, order)
     stand = model.stand
     found, rejected = [], list(model.rejected)

@@ -94,7 +94,8 @@ def model_by_data(decays: Decays, span: Span, most: int = MOST_POLES) -> Model:
     inflation = _inflation(stand)
     if inflation.max() > _COLOURED:
         # No number of modes leaves white noise, and a large one may have lost its way: all smaller ones are tried.
-        smaller = [climb(decays, span.poles(n), _FIRST_STEPS, _FAR) for n in range(2, order)]
+        starts = [span.poles(n) for n in range(2, order)]
+        smaller = [climb(decays, poles, _FIRST_STEPS, _FAR) for poles in starts if poles.count]
         stand = min([*smaller, stand], key=lambda one: _criterion(one, inflation))
     stand = _turned(_grown(stand, most, rejected))
     stand = _pruned(stand, rejected)

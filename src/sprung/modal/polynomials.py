@@ -31,6 +31,9 @@ _WEIGHINGS, _LEAST = 8, 1e-9
 
 _ROUNDING = 1e-12
 
+_RANK = 1e-15
+"""Singular value, as a part of the largest, that is rounding."""
+
 _MORE = 3
 """Times the lags that the order asks for: the ones too many take up noise."""
 
@@ -73,7 +76,7 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
     stacked = np.vstack(factors)
     # A(z) begins with 1: the newest samples are what the delayed ones give, within the rank of the motion.
     left, singular, right = np.linalg.svd(stacked[:, channels:], full_matrices=False)
-    kept = slice(min(task.order, len(singular)))
+    kept = slice(min(task.order, int(np.sum(singular > _RANK * singular[0]))))
     inverse = (right[kept].T / singular[kept]) @ left[:, kept].T
     coefficients = (inverse @ stacked[:, :channels]).T
     companion = np.eye(lags * channels, k=-channels)

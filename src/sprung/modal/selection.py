@@ -114,3 +114,17 @@ class Task:
         shapes = np.concatenate([poles.shapes[:, kept], poles.shapes[:, kept].conj()], axis=1)
         once = np.concatenate([np.ones(len(kept), dtype=np.bool_), poles.exponent[kept].imag != 0])
         return Modes(modes_from(both[once], shapes[:, once]), tuple(rejected), method)
+
+
+def refuse_without_decay(poles: Poles, method: str) -> None:
+    """Refuse records whose span holds nothing that decays.
+
+    Raises
+    ------
+    InputError
+        If there are no poles to begin with.
+    """
+    problems = Problems()
+    if not poles.count:
+        problems.add(f"{method}: records", "nothing that decays", "a free decay", "Look at the recordings.")
+    problems.raise_if_any()

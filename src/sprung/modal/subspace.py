@@ -23,6 +23,9 @@ _ABOVE = 1.3
 
 _ROUNDING = 1e-12
 
+_STILL = 1e-6
+"""Change of the exponent over the longest record below which a pole is no motion."""
+
 _GROWTH = 1.0
 """Powers of e by which a motion may seem to grow over the longest record."""
 
@@ -127,6 +130,6 @@ def vibrating(z: Complex, shapes: Complex, thinned: Thinned, step: int = 1) -> P
     """
     usable = (np.abs(z) > 1e-12) & ~((z.imag == 0) & (z.real < 0)) & (z.imag >= 0)
     exponent = np.log(z[usable].astype(complex)) / (step * thinned.every)
-    decaying = exponent.real * thinned.longest < _GROWTH
+    decaying = (exponent.real * thinned.longest < _GROWTH) & (np.abs(exponent) * thinned.longest > _STILL)
     at_channels = thinned.scale[:, None] * shapes[:, usable]
     return Poles.of(exponent[decaying], at_channels[:, decaying].astype(np.complex128))
