@@ -20,8 +20,9 @@ def test_the_study(monkeypatch: pytest.MonkeyPatch) -> None:
     assert rows[0]["40 dB"]["found"] == 7
     assert rows[0]["40 dB"]["body"][0] < rows[1]["40 dB"]["body"][0] * 2
     assert one[0]["40 dB"]["wheels"] == [None, None]
-    page = modal.page(trials, rows, one, [])
+    page = modal.page(trials, rows, one, {modal.OWN: 50.0, "another": 200.0}, [])
     assert "3 of 3 sets gave exactly seven modes" in page
+    assert "0.25 of its time" in page
 
 
 def test_the_stored_numbers_are_as_wanted() -> None:

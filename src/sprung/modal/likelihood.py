@@ -118,6 +118,15 @@ class Stand:
         """Give the same with other weights."""
         return Stand(self.decays, self.poles, weights, self.gram, self.data)
 
+    def without(self, which: int) -> Stand:
+        """Leave one mode out: its sums are left out too."""
+        size = self.shapes.shape[1]
+        gone = np.append(np.flatnonzero(self.poles.paired == which) + self.poles.count, which)
+        kept = np.setdiff1d(np.arange(size), gone)
+        both = np.concatenate([kept, kept + size])
+        gram, data = self.gram[:, both[:, None], both], self.data[:, :, both]
+        return Stand(self.decays, self.poles.without(which), self.weights, gram, data)
+
     @cached_property
     def shapes(self) -> Complex:
         """Of all poles, conjugates behind, shape (channel, pole)."""

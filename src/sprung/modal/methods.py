@@ -95,6 +95,9 @@ DEFAULT = next(iter(METHODS))
 APPROXIMATE = frozenset({"peaks", "emd"})
 """Those that are not exact, not even without noise."""
 
+_CREDULOUS = APPROXIMATE | {"svm", "svm-printed"}
+"""Those that find slow motions in noise: they are left out, and say nothing of the records."""
+
 _LEAST_PERIODS, _LEAST_DECAY = 2.0, 3.0
 """Periods of a vibration, and powers of e of an overdamped motion, that a record must hold for it to be told."""
 
@@ -154,7 +157,7 @@ def identify_modes(records: Sequence[ArrayLike], rate: float, method: str = DEFA
         problems.add(f"{method}: records", "no motion in any channel", "a free decay", "Look at the recordings.")
     problems.raise_if_any()
     found = METHODS[method](arrays, rate, order)
-    kept, slow = _split(found.modes, Decays.of(arrays, rate), refusing=method not in APPROXIMATE)
+    kept, slow = _split(found.modes, Decays.of(arrays, rate), refusing=method not in _CREDULOUS)
     return Modes(kept, (*found.rejected, *slow), method)
 
 

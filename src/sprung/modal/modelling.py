@@ -13,7 +13,7 @@ from sprung.modal.identified import Rejected
 from sprung.modal.likelihood import LEAST_NOISE, Poles, Stand, scales
 from sprung.modal.modes import UNRESOLVED
 from sprung.modal.refinement import climb
-from sprung.modal.selection import MOST_POLES
+from sprung.modal.selection import FIRST_POLES, MOST_POLES
 from sprung.modal.subspace import Span
 from sprung.modal.turning import alternatives
 from sprung.modal.uncertainty import spreads
@@ -26,9 +26,6 @@ _TRIED = 3
 
 _FIRST_STEPS, _STEPS, _FAR = 12, 40, 1e-2
 """Steps of a fit that is only to be compared, where it is easy and where it is not, and what they need not gain."""
-
-_FIRST_POLES = 8
-"""Poles to begin with at the most, or twice the channels where there are more: others are added one by one."""
 
 _HOPELESS = 30.0
 """Times its cost that a mode must gain, the others held, for a fit without it to be left undone."""
@@ -87,7 +84,7 @@ def model_by_data(decays: Decays, span: Span, most: int = MOST_POLES) -> Model:
     theirs are taken away. Two things make a gain count for less, so that no modes are invented to explain what is not
     linear: residuals that are coloured where the motion is, and pieces of the records that contradict each other.
     """
-    first = max(_FIRST_POLES, 2 * decays.channels)
+    first = max(FIRST_POLES, 2 * decays.channels)
     order = min(max(span.standing_out, 2), first, most, span.most)
     stand = climb(decays, span.poles(order))
     rejected: list[Rejected] = []
@@ -234,11 +231,11 @@ def _pruned(stand: Stand, rejected: list[Rejected]) -> Stand:
             float(np.trace(spread.pole)) > (UNRESOLVED * abs(pole) * stand.decays.rate) ** 2
             for pole, spread in zip(exponents, spreads(stand, 1.0), strict=True)
         ]
-        losses = [Stand.at(stand.decays, stand.poles.without(i), stand.weights).cost for i in range(len(exponents))]
+        losses = [stand.without(i).cost for i in range(len(exponents))]
         for i in sorted(range(len(exponents)), key=lambda j: (not weak[j], losses[j])):
             if exponents[i] in asked:
                 continue
-            small = Stand.at(stand.decays, stand.poles.without(i), stand.weights)
+            small = stand.without(i)
             gain, cost = _gain(small, stand)
             if gain > cost:
                 # What the others would make up for is worth a look only where it may change the answer.

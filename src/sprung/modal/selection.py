@@ -24,7 +24,10 @@ _NOTHING = 1e-20
 """Part of a channel's energy below which a pole explains nothing of it but rounding."""
 
 MOST_POLES = 40
-"""Poles that a method looks for at the most, unless somebody asks for more."""
+"""Poles that the likelihood looks for at the most, unless somebody asks for more."""
+
+FIRST_POLES = 8
+"""Poles to look for at first, or twice the channels where there are more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +57,8 @@ class Task:
         records, rate
             As the methods take them.
         order
-            How many poles to look for; None for as many as stand out from noise.
+            How many poles to look for; None for as many as stand out from noise, but no more than twice the channels: what is
+            not quite linear lets more stand out than there are.
         method
             For messages.
 
@@ -66,7 +70,7 @@ class Task:
         arrays = as_records(records, rate, method)
         decays = Decays.of(arrays, rate)
         span = Span.of(arrays, decays.spectrum)
-        wanted = min(span.standing_out, MOST_POLES) if order is None else order
+        wanted = min(span.standing_out, max(FIRST_POLES, 2 * decays.channels)) if order is None else order
         task = cls(decays, span, wanted)
         task.allow(span.most, method, given=order is not None)
         return task
