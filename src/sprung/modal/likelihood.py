@@ -25,6 +25,9 @@ Index = NDArray[np.int64]
 _TINY = 1e-15
 """Part of its diagonal added to normal equations that are to be inverted: rounding must not make them indefinite."""
 
+_UNDETERMINED = 1e-13
+"""Information, in units of a parameter's own, that is lost in rounding."""
+
 LEAST_NOISE = 1e-6
 """Noise of a channel, as a part of its root-mean-square, below which nothing is told from rounding."""
 
@@ -251,6 +254,13 @@ class Stand:
         """
         return self._information(np.arange(self.decays.count))
 
+    @cached_property
+    def covariance(self) -> Complex:
+        """The inverse of that over what is free; shape (parameter, parameter), zero for what is held."""
+        covariance = np.zeros((self.gradient.size,) * 2, dtype=np.complex128)
+        covariance[np.ix_(self.free, self.free)] = inverse_information(self.information[np.ix_(self.free, self.free)])
+        return covariance
+
     def by_record(self) -> Iterator[tuple[Complex, Complex]]:
         """Give each record's own gradient and information; shapes (parameter,) and (parameter, parameter)."""
         for record in range(self.decays.count):
@@ -292,6 +302,15 @@ def scales(diagonal: Real) -> Real:
     """Give what brings a diagonal, in the last axis, to 1, of what is not as good as zero."""
     least = np.maximum(1e-60 * diagonal.max(axis=-1, keepdims=True), 1e-200)
     return np.asarray(1 / np.sqrt(np.maximum(diagonal, least)))
+
+
+def inverse_information(information: Complex) -> Complex:
+    """Invert information, with as large a variance as can be told where there is none."""
+    scale = scales(np.diagonal(information).real)
+    eigenvalues, vectors = np.linalg.eigh(information * scale[:, None] * scale)
+    # What rounding leaves of a direction that nothing determines: its variance is as large as can be told.
+    roots = scale[:, None] * vectors / np.sqrt(np.maximum(eigenvalues, _UNDETERMINED))
+    return np.asarray(roots @ roots.conj().T, dtype=np.complex128)
 
 
 def inverse_of(normal: Complex) -> Complex:

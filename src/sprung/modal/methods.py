@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import Problems, did_you_mean
 from sprung.modal.arma import autoregression
@@ -25,6 +25,8 @@ from sprung.modal.polynomials import complex_frequency, rational_fractions
 from sprung.modal.records import as_records
 from sprung.modal.ssi import subspace_by_covariances, subspace_by_data
 from sprung.modal.svm import state_variable_method
+
+Real = NDArray[np.float64]
 
 Method = Callable[[Sequence[ArrayLike], float, int | None], Modes]
 """Takes records of shape (channel, time), the sampling rate and the order, None to choose it; gives modes."""
@@ -157,18 +159,21 @@ def identify_modes(records: Sequence[ArrayLike], rate: float, method: str = DEFA
         problems.add(f"{method}: records", "no motion in any channel", "a free decay", "Look at the recordings.")
     problems.raise_if_any()
     found = METHODS[method](arrays, rate, order)
-    kept, slow = _split(found.modes, Decays.of(arrays, rate), refusing=method not in _CREDULOUS)
+    kept, slow = _split(found.modes, arrays, rate, refusing=method not in _CREDULOUS)
     return Modes(kept, (*found.rejected, *slow), method)
 
 
-def _split(modes: tuple[Mode, ...], decays: Decays, refusing: bool) -> tuple[tuple[Mode, ...], tuple[Rejected, ...]]:
+def _split(
+    modes: tuple[Mode, ...], records: Sequence[Real], rate: float, refusing: bool
+) -> tuple[tuple[Mode, ...], tuple[Rejected, ...]]:
     """Leave out modes that are too slow for the records; refuse the records where these are most of them."""
-    seconds = float(decays.seconds.max())
+    seconds = max(record.shape[1] for record in records) / rate
     slow = [mode for mode in modes if not _is_told(mode, seconds)]
     if not slow:
         return modes, ()
+    decays = Decays.of(records, rate)
     poles = Poles.of(
-        np.array([mode.pole / decays.rate for mode in modes], dtype=complex),
+        np.array([mode.pole / rate for mode in modes], dtype=complex),
         np.stack([mode.shape for mode in modes], axis=1),
     )
     shares = Stand.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)).shares

@@ -163,6 +163,7 @@ def _inflation(stand: Stand) -> Real:
 
 
 def _grown(stand: Stand, most: int, rejected: list[Rejected]) -> Stand:
+    begun = stand
     while len(stand.poles.both(stand.poles.exponent)) < most:
         if not stand.left_spectrum.standing_out.any() or _is_rounding(stand.left, stand.decays):
             break
@@ -183,7 +184,7 @@ def _grown(stand: Stand, most: int, rejected: list[Rejected]) -> Stand:
             rejected.extend(Rejected(complex(pole) * stand.decays.rate, said) for pole in more.exponent)
             break
         stand = larger
-    return climb(stand.decays, stand.poles)
+    return stand if stand is begun else climb(stand.decays, stand.poles)
 
 
 def _turned(stand: Stand) -> Stand:

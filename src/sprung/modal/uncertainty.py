@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.modal.likelihood import Stand, scales
+from sprung.modal.likelihood import Stand, inverse_information
 from sprung.modal.modes import Spread
 
 Real = NDArray[np.float64]
@@ -13,9 +13,6 @@ Complex = NDArray[np.complex128]
 
 _BANDWIDTH, _BINS = 1.5, 6.0
 """Half the band around a mode in which residuals are looked at: times its decay rate as a frequency, and bins at the least."""
-
-_UNDETERMINED = 1e-13
-"""Information, in units of a parameter's own, that is lost in rounding."""
 
 _SIGNIFICANT = 3.0
 """Standard errors by which an excess must be real before it counts."""
@@ -39,11 +36,10 @@ def spreads(stand: Stand, disagreement: float) -> tuple[Spread, ...]:
     samples = stand.decays.numbers
     # Degrees of freedom: what all of the fit takes up, spread over the channels.
     lost = samples / max(samples - stand.parameters / stand.decays.channels, 1.0)
-    weighted = stand.weighted(1 / (stand.variance * lost))
-    return bounds(weighted, _colour_of_modes(stand) + disagreement - 1)
+    return bounds(stand, _colour_of_modes(stand) + disagreement - 1, lost)
 
 
-def bounds(stand: Stand, excess: Real | None = None) -> tuple[Spread, ...]:
+def bounds(stand: Stand, excess: Real | None = None, lost: float = 1.0) -> tuple[Spread, ...]:
     """Give the Cramér-Rao bound of all modes: at true poles, shapes and noise, what no unbiased estimate can better.
 
     Parameters
@@ -52,6 +48,8 @@ def bounds(stand: Stand, excess: Real | None = None) -> tuple[Spread, ...]:
         Poles, shapes and, in its weights, the noise of the channels.
     excess
         By which to enlarge the variances of each mode, shape (mode,); by nothing unless given.
+    lost
+        By which the noise is larger than the weights have it.
 
     Returns
     -------
@@ -59,17 +57,14 @@ def bounds(stand: Stand, excess: Real | None = None) -> tuple[Spread, ...]:
         In the order of the poles.
     """
     size, count, channels = stand.shapes.shape[1], stand.poles.count, stand.decays.channels
-    free = stand.free
-    covariance = np.zeros((size * (channels + 1),) * 2, dtype=np.complex128)
-    covariance[np.ix_(free, free)] = _inverse(stand.information[np.ix_(free, free)])
-    covariance = covariance.reshape(channels + 1, size, channels + 1, size)
+    covariance = stand.covariance.reshape(channels + 1, size, channels + 1, size)
     conjugate = np.arange(count)
     conjugate[stand.poles.paired] = count + np.arange(len(stand.poles.paired))
     factors, every = np.ones(count) if excess is None else excess, np.arange(channels + 1)
     found = []
     for j, other in enumerate(conjugate.tolist()):
         own, across = covariance[every, j, every, j].real, covariance[every, j, every, other]
-        parts = _parts(own, across if other != j else own) * factors[j]
+        parts = _parts(own, across if other != j else own) * (factors[j] * lost)
         entries = np.sqrt(np.maximum(parts[:-1, [0, 1], [0, 1]], 0.0))
         found.append(Spread(parts[-1] * stand.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j])))
     return tuple(found)
@@ -86,7 +81,7 @@ def bound_alone(stand: Stand, which: int) -> Spread:
         The mode, which vibrates.
     """
     free = stand.pole_of(which)
-    covariance = _inverse(stand.information[np.ix_(free, free)])
+    covariance = inverse_information(stand.information[np.ix_(free, free)])
     pole = _parts(covariance[:1, 0].real, covariance[:1, 1])[0] * stand.decays.rate**2
     return Spread(pole, np.zeros(stand.decays.channels, dtype=np.complex128))
 
@@ -102,14 +97,6 @@ def _parts(own: Real, across: Complex) -> Real:
     # Where one direction is all but undetermined, rounding may make the other negative.
     eigenvalues, vectors = np.linalg.eigh(parts)
     return np.asarray((vectors * np.maximum(eigenvalues, 0.0)[:, None, :]) @ np.swapaxes(vectors, 1, 2), dtype=float)
-
-
-def _inverse(information: Complex) -> Complex:
-    scale = scales(np.diagonal(information).real)
-    eigenvalues, vectors = np.linalg.eigh(information * scale[:, None] * scale)
-    # What rounding leaves of a direction that nothing determines: its variance is as large as can be told.
-    roots = scale[:, None] * vectors / np.sqrt(np.maximum(eigenvalues, _UNDETERMINED))
-    return np.asarray(roots @ roots.conj().T, dtype=np.complex128)
 
 
 def _colour_of_modes(stand: Stand) -> Real:
