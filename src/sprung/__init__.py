@@ -17,7 +17,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sprung import report as report
     from sprung import study as study
-    from sprung.pipeline import Result, check, draft, identify, load, modes, plan, plan_campaign, plan_file, validate
+    from sprung.pipeline import (
+        Result,
+        check,
+        draft,
+        identify,
+        is_recordings,
+        load,
+        modes,
+        modes_of_recordings,
+        plan,
+        plan_campaign,
+        plan_file,
+        validate,
+    )
     from sprung.recording import Campaign, Drop, read, schema_text, to_sep005, write
     from sprung.simulation import simulate, simulate_file
     from sprung.vehicle import Load, Sensor, Vehicle
@@ -32,8 +45,10 @@ __all__ = [
     "check",
     "draft",
     "identify",
+    "is_recordings",
     "load",
     "modes",
+    "modes_of_recordings",
     "plan",
     "plan_campaign",
     "plan_file",
@@ -58,8 +73,10 @@ _HOME = {
     "check": "pipeline",
     "draft": "pipeline",
     "identify": "pipeline",
+    "is_recordings": "pipeline",
     "load": "pipeline",
     "modes": "pipeline",
+    "modes_of_recordings": "pipeline",
     "plan": "pipeline",
     "plan_campaign": "pipeline",
     "plan_file": "pipeline",

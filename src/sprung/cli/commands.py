@@ -12,7 +12,7 @@ from typer.core import TyperGroup
 
 import sprung
 from sprung.cli.output import INTERRUPTED, REJECTED, advancing, complain, say, say_json, working
-from sprung.errors import InputError, Problem
+from sprung.errors import Fault, InputError, Problem
 
 
 class Commands(TyperGroup):
@@ -157,17 +157,59 @@ def check(
 
 @app.command(epilog="Example: [bold]sprung modal campaign.toml --method svm[/bold]")
 def modal(
-    campaign: CampaignFile,
-    method: Annotated[str, typer.Option(help="era, or svm: the paper's State Variable Method.")] = "era",
+    campaign: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CAMPAIGN",
+            help="campaign.toml, or the folder it is in; or a recording, or a folder of nothing but them.",
+        ),
+    ],
+    method: Annotated[
+        str,
+        typer.Option(
+            help="ml, the likeliest modes, with uncertainty; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
+            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd."
+        ),
+    ] = "ml",
+    order: Annotated[
+        Optional[int],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            min=1, help="How many poles to look for, two for each mode (default: as many as the records hold)."
+        ),
+    ] = None,
+    amplitude: Annotated[
+        bool,
+        typer.Option(
+            "--amplitude", help="Follow each mode through the decays: frequency and damping against amplitude."
+        ),
+    ] = False,
+    start: Annotated[
+        Optional[float],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            help="Of recordings alone: where the free decay begins, s on their clock (default: at the largest reading)."
+        ),
+    ] = None,
+    diagram: Annotated[bool, typer.Option("--diagram", help="Draw a stabilisation diagram beside it.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Find natural frequencies and damping ratios per load; no vehicle model."""
+    """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
     with working("reading the recordings"):
-        read = sprung.read(campaign)
-        found = sprung.modes(read, method=method)
-        faults = sprung.check(read).faults
+        if sprung.is_recordings(campaign):
+            found = sprung.modes_of_recordings(
+                campaign, method=method, order=order, start=start, amplitude=amplitude, diagram=diagram
+            )
+            faults: tuple[Fault, ...] = ()
+        else:
+            read = sprung.read(campaign)
+            found = sprung.modes(read, method=method, order=order, amplitude=amplitude, diagram=diagram)
+            faults = sprung.check(read).faults
     if as_json:
-        say_json({"modes": {load: [asdict(mode) for mode in modes] for load, modes in found.items()}})
+        say_json(
+            {
+                "modes": {load: [asdict(mode) for mode in one] for load, one in found.items()},
+                "modal": {load: one.document() for load, one in found.items()},
+            }
+        )
     else:
         say(sprung.report.text_of(sprung.report.modes_view(found, faults)))
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sprung.identification.delays import SETTLED, STEPS, Delays
 from sprung.identification.longhand import REACH
 from sprung.identification.records import Run
-from sprung.identification.sums import gram, waves
+from sprung.modal import gram, waves
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

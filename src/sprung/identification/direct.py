@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sprung.identification.monomials import expand, parameters_of
 from sprung.identification.records import Run
 from sprung.identification.start import Outline
-from sprung.identification.sums import waves
+from sprung.modal import waves
 from sprung.vehicle import LAWS, PARAMETERS, LinearModel, Sensor
 
 Real = NDArray[np.float64]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sprung.identification.amplitudes import inverse_of, reach_of
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.solution import solve_modes
-from sprung.identification.sums import gram
+from sprung.modal import gram
 
 Real = NDArray[np.float64]
 

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification.sums import BLOCK, blocks, correlate
+from sprung.modal import BLOCK, blocks, correlate
 from sprung.prepare import Decay
 from sprung.recording import LoggerClock
 from sprung.vehicle import separate_names

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,30 @@ from sprung.vehicle import Matrices
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+
+
+UNRESOLVED = 0.1
+"""Standard uncertainty of a pole, as a part of its size, from which on the records do not determine it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """How sure a mode is.
+
+    Attributes
+    ----------
+    pole
+        Covariance of the pole's real and imaginary part, 1/s², shape (2, 2).
+    shape
+        Standard uncertainty of each entry of the shape, that of its real part and, as imaginary part, that of its imaginary
+        part; 0 for the entry that is 1; shape (channel,).
+    excess
+        Variance of the residuals around the mode's frequency in units of white noise: contained in both; 1 for white noise.
+    """
+
+    pole: Real
+    shape: Complex
+    excess: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,11 +50,14 @@ class Mode:
         How far each channel or coordinate moves, its largest entry 1; shape (channel,).
     name
         One of `sprung.modal.MODE_NAMES`; None where nothing was said about what moves.
+    spread
+        How sure it is; None where the method does not tell.
     """
 
     pole: complex
     shape: Complex
     name: str | None = None
+    spread: Spread | None = None
 
     @property
     def frequency(self) -> float:
@@ -46,6 +73,32 @@ class Mode:
     def damping_ratio(self) -> float:
         """Share of critical damping; 1 for a real pole of a decaying motion."""
         return -self.pole.real / abs(self.pole)
+
+    @property
+    def resolved(self) -> bool:
+        """Whether the records determine the pole, as far as anybody asked."""
+        return self.spread is None or bool(np.trace(self.spread.pole) < (UNRESOLVED * abs(self.pole)) ** 2)
+
+    @property
+    def frequency_std(self) -> float | None:
+        """Standard uncertainty of the undamped natural frequency, Hz."""
+        return self._std(np.array([self.pole.real, self.pole.imag]) / abs(self.pole) / (2 * np.pi))
+
+    @property
+    def damped_frequency_std(self) -> float | None:
+        """Standard uncertainty of the damped frequency, Hz."""
+        return self._std(np.array([0.0, 1.0]) / (2 * np.pi))
+
+    @property
+    def damping_ratio_std(self) -> float | None:
+        """Standard uncertainty of the damping ratio; 0 for a real pole, whose ratio is 1."""
+        across = np.array([-self.pole.imag, self.pole.real]) * self.pole.imag
+        return self._std(across / abs(self.pole) ** 3)
+
+    def _std(self, slope: Real) -> float | None:
+        if self.spread is None:
+            return None
+        return float(np.sqrt(np.maximum(slope @ self.spread.pole @ slope, 0.0)))
 
 
 def similarity(one: ArrayLike, other: ArrayLike) -> Real:
@@ -119,6 +172,25 @@ def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
             largest = shape[np.argmax(np.abs(shape))]
             modes.append(Mode(pole, shape / (largest if largest != 0 else 1.0)))
     return tuple(mode for group in together(modes) for mode in group)
+
+
+def in_order(modes: Sequence[Mode]) -> tuple[Mode, ...]:
+    """Bring modes into the order of `modes_from`, spreads and all.
+
+    Parameters
+    ----------
+    modes
+        In any order.
+    """
+    if not modes:
+        return ()
+    ordered = modes_from([mode.pole for mode in modes], np.stack([mode.shape for mode in modes], axis=1))
+    left = list(modes)
+    found = []
+    for mode in ordered:
+        own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
+        found.append(replace(left.pop(own), shape=mode.shape))
+    return tuple(found)
 
 
 def vibrations(matrices: Matrices) -> tuple[Mode, ...]:

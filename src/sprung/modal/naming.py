@@ -128,14 +128,14 @@ def in_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | 
     Returns
     -------
     tuple of Mode
-        Without names; a coordinate no sensor tells of stays at rest.
+        Without names and spreads; a coordinate no sensor tells of stays at rest.
     """
     places = _body_places(sensors)
     if a is None:
         a = -float(places[:, 0].min() + places[:, 0].max()) / 2 if len(places) else 0.0
     rows = Rows.of([sensor.row for sensor in sensors], ("a",)).at([a])
     inverse = np.linalg.pinv(rows)
-    return tuple(replace(mode, shape=inverse @ mode.shape, name=None) for mode in modes)
+    return tuple(replace(mode, shape=inverse @ mode.shape, name=None, spread=None) for mode in modes)
 
 
 def name_by_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import Problems
 from sprung.modal.modes import Mode, modes_from
+from sprung.modal.records import as_records
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -107,8 +108,7 @@ def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 
     ----------
     Zhang and Hayama's State Variable Method as given in section 2.2 of the paper.
     """
-    arrays = [np.asarray(record, dtype=float) for record in records]
-    check_records(arrays, rate, "svm")
+    arrays = as_records(records, rate, "svm")
     channels = arrays[0].shape[0]
     equations = sum(max(record.shape[1] - 2 * lag, 0) for record in arrays)
     problems = Problems()
@@ -132,38 +132,3 @@ def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 
     z, vectors = np.linalg.eig(transition)
     poles = np.log(np.where(z == 0, np.finfo(float).tiny, z).astype(complex)) * rate / lag
     return StateVariables(transition, poles, size * vectors[:channels])
-
-
-def check_records(records: Sequence[Real], rate: float, where: str) -> None:
-    """Refuse records that cannot be worked on together.
-
-    Parameters
-    ----------
-    records
-        Shape (channel, time) each.
-    rate
-        Samples per second.
-    where
-        For the message.
-
-    Raises
-    ------
-    InputError
-        With everything that is wrong.
-    """
-    problems = Problems()
-    if not records:
-        problems.add(f"{where}: records", "none", "at least one", "Give the decays of one load.")
-    if not rate > 0:
-        problems.add(f"{where}: rate", f"{rate}", "samples per second, positive", "Correct it.")
-    for i, record in enumerate(records):
-        place = f"{where}: records[{i}]"
-        if record.ndim != 2:
-            problems.add(place, f"an array of shape {record.shape}", "shape (channel, time)", "Put channels in rows.")
-        elif record.shape[0] != np.shape(records[0])[0]:
-            found, expected = f"{record.shape[0]} channels", f"{np.shape(records[0])[0]} as in the first record"
-            problems.add(place, found, expected, "Give the same channels of every drop.")
-        elif not np.isfinite(record).all():
-            bad = int((~np.isfinite(record)).sum())
-            problems.add(place, f"{bad} samples that are not numbers", "numbers", "Leave out what could not be used.")
-    problems.raise_if_any()

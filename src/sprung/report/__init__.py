@@ -4,9 +4,10 @@ from sprung.report.check import check_view
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
 from sprung.report.layout import text_of
+from sprung.report.modal import modes_view
 from sprung.report.paper import paper_view
 from sprung.report.plan import plan_view
-from sprung.report.terminal import modes_view, result_view
+from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [

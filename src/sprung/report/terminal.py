@@ -132,13 +132,14 @@ def mode_table(load: str, modes: Sequence[ModeEstimate]) -> RenderableType:
     rows = []
     for mode in modes:
         damped = "-" if mode.frequency_std is None else f"{mode.damped_frequency:.3f}"
-        frequency = _with_std(mode.frequency, mode.frequency_std)
-        rows.append([mode.name, *frequency, damped, *_with_std(mode.damping_ratio, mode.damping_ratio_std)])
+        frequency = with_std(mode.frequency, mode.frequency_std)
+        rows.append([mode.name, *frequency, damped, *with_std(mode.damping_ratio, mode.damping_ratio_std)])
     headers = ("mode", "f_n Hz", "± Hz", "f_d Hz", "damping", "±")
     return table(f"Modes, {load}", headers, rows, headers[1:], ("f_d Hz", "±"))
 
 
-def _with_std(value: float, std: float | None) -> tuple[str, str]:
+def with_std(value: float, std: float | None) -> tuple[str, str]:
+    """Round a frequency or damping ratio by its uncertainty; without one there is no number."""
     if std is None:
         return "-", "-"
     if std < 10.0**-_FINEST:
@@ -184,16 +185,3 @@ def fault_list(faults: Sequence[Fault]) -> RenderableType:
         text = Text.assemble(f"{fault.where}: ", (fault.code, "yellow"), f": {fault.what}. {fault.do}")
         lines.append(hanging("  - ", text))
     return Group(*lines)
-
-
-def modes_view(modes: Mapping[str, Sequence[ModeEstimate]], faults: Sequence[Fault] = ()) -> RenderableType:
-    """Show modes found without a vehicle model, and what is wrong with the recordings."""
-    parts: list[RenderableType] = []
-    for load, found in modes.items():
-        headers = ("mode", "f_n Hz", "f_d Hz", "damping")
-        rows = [
-            [mode.name, f"{mode.frequency:.4f}", f"{mode.damped_frequency:.4f}", f"{mode.damping_ratio:.4f}"]
-            for mode in found
-        ]
-        parts += [table(f"Modes, {load}", headers, rows, headers[1:]), Text()]
-    return Group(*(parts[:-1] if not faults else [*parts, fault_list(faults)]))

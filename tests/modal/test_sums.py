@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sprung.identification.sums import BLOCK, blocks, correlate, gram, moments
+from sprung.modal.sums import BLOCK, blocks, correlate, gram, moments
 
 
 @given(

@@ -1,0 +1,31 @@
+"""What tells a mode of the structure from one of the computation."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def complexity(shape: ArrayLike) -> float:
+    """Give the modal phase collinearity of a shape: 1 where all channels move in phase or in opposition, 0 at the least.
+
+    Parameters
+    ----------
+    shape
+        Shape (channel,).
+
+    Returns
+    -------
+    float
+        The share of the larger eigenvalue of the covariance of real and imaginary parts over the smaller, squared:
+        ((λ₁ - λ₂)/(λ₁ + λ₂))².
+
+    References
+    ----------
+    R. S. Pappa, K. B. Elliott and A. Schenk, J. Guid. Control Dyn. 16 (1993) 852.
+    """
+    values = np.asarray(shape, dtype=complex)
+    parts = np.stack([values.real, values.imag])
+    eigenvalues = np.linalg.eigvalsh(parts @ parts.T)
+    total = float(eigenvalues.sum())
+    return float(((eigenvalues[1] - eigenvalues[0]) / total) ** 2) if total > 0 else 1.0

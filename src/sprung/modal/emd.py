@@ -1,0 +1,154 @@
+"""Empirical mode decomposition with the Hilbert transform."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicSpline
+from scipy.signal import hilbert
+
+from sprung.modal.identified import Modes, Rejected
+from sprung.modal.residues import shapes_of
+from sprung.modal.selection import Task
+
+Real = NDArray[np.float64]
+
+_SIFTS, _SETTLED = 12, 0.05
+"""Times a motion is sifted at the most, and the change, as a part of its energy, at which it need not be any more."""
+
+_FINER = 4
+"""Times the samples in a period that other methods work with."""
+
+_MOTIONS = 6
+"""Intrinsic motions of a channel that are looked for."""
+
+_UPPER, _LOWER = 0.9, 0.1
+"""Parts of the largest amplitude between which a decay is followed."""
+
+_STRAIGHT = 0.9
+"""Squared correlation that the logarithm of an amplitude must have with time to be a decay."""
+
+_ALIKE = 0.2
+"""Part of a frequency within which motions are taken for the same mode."""
+
+
+def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+    """Take intrinsic motions of each channel for modes: phase and amplitude of their analytic signals against time.
+
+    Not exact, not even without noise: sifting separates motions that are more than an octave apart and last for several
+    periods, and the Hilbert transform of a record that begins with its largest motion is wrong there. On vehicles it finds the
+    body and the wheels as one motion each.
+
+    Parameters
+    ----------
+    records, rate
+        As for `eigensystem_realisation`.
+    order
+        Twice the modes to give, those of the most energy first; unless given all.
+
+    Returns
+    -------
+    Modes
+        Motions of several channels and records of about one frequency count as one, energies as weights.
+
+    Raises
+    ------
+    InputError
+        As `eigensystem_realisation`.
+
+    References
+    ----------
+    N. E. Huang et al., Proc. R. Soc. Lond. A 454 (1998) 903; free vibrations after J. N. Yang, Y. Lei, S. Pan and N. Huang,
+    Earthq. Eng. Struct. Dyn. 32 (2003) 1443.
+    """
+    task = Task.of(records, rate, order, "emd")
+    # Envelopes need more samples in a period than poles do.
+    every = max(task.thinned.every // _FINER, 1)
+    found = []
+    for record in task.decays.values:
+        count = record.shape[1] // every
+        means = record[:, : count * every].reshape(len(record), count, every).mean(axis=2)
+        for channel in means / np.maximum(np.linalg.norm(means, axis=1, keepdims=True), 1e-300):
+            for motion in _intrinsic(channel):
+                pole = _decay(motion)
+                if pole is not None:
+                    found.append((pole, float((motion**2).sum())))
+    # Motions of one frequency, the strongest first.
+    poles, weights = [], []
+    found.sort(key=lambda one: -one[1])
+    while found:
+        first = abs(found[0][0].imag)
+        same = [one for one in found if abs(one[0].imag - first) < _ALIKE * first]
+        found = [one for one in found if abs(one[0].imag - first) >= _ALIKE * first]
+        weight = np.array([energy for _, energy in same])
+        poles.append(complex(weight @ np.array([pole for pole, _ in same]) / weight.sum()))
+        weights.append(float(weight.sum()))
+    kept = [pole for pole, weight in zip(poles, weights, strict=True) if weight > 1e-3 * max(weights)]
+    kept = kept[: len(kept) if order is None else max(order // 2, 1)]
+    rejected = tuple(
+        Rejected(
+            pole * rate / every,
+            "its motion is too weak beside the others, or was not asked for",
+        )
+        for pole in poles
+        if pole not in kept
+    )
+    if not kept:
+        return Modes((), rejected, "emd")
+    modes = task.modes(shapes_of(task.thinned, np.array([pole / every for pole in kept], dtype=complex)), "emd")
+    return Modes(modes.modes, (*rejected, *modes.rejected), "emd")
+
+
+def _intrinsic(values: Real) -> Iterator[Real]:
+    """Sift a channel into its intrinsic motions, the fastest first."""
+    left = values
+    for _ in range(_MOTIONS):
+        motion = left
+        for _ in range(_SIFTS):
+            middle = _middle(motion)
+            if middle is None:
+                return
+            motion = motion - middle
+            if float((middle**2).sum()) < _SETTLED**2 * float((motion**2).sum()):
+                break
+        yield motion
+        left = left - motion
+
+
+def _middle(values: Real) -> Real | None:
+    """Give the mean of the envelopes through maxima and minima, mirrored at the ends; None with too few of either."""
+    inner = values[1:-1]
+    time = np.arange(len(values))
+    sides = []
+    for sign in (1, -1):
+        tops = np.flatnonzero((sign * inner > sign * values[:-2]) & (sign * inner >= sign * values[2:])) + 1
+        if len(tops) < 3:
+            return None
+        at = np.concatenate([-tops[1::-1], tops, 2 * len(values) - tops[:-3:-1]])
+        heights = np.concatenate([values[tops[1::-1]], values[tops], values[tops[:-3:-1]]])
+        at, once = np.unique(at, return_index=True)
+        sides.append(CubicSpline(at, heights[once])(time))
+    return np.asarray((sides[0] + sides[1]) / 2, dtype=float)
+
+
+def _decay(motion: Real) -> complex | None:
+    """Fit frequency and decay rate, per sample, to the analytic signal of a motion, while it falls."""
+    signal = np.asarray(hilbert(motion))
+    amplitude = np.abs(signal)
+    begin = int(np.argmax(amplitude))
+    falling = amplitude[begin:]
+    below = np.flatnonzero(falling < _LOWER * falling[0])
+    end = begin + (int(below[0]) if below.size else len(falling))
+    start = begin + int(np.argmax(falling < _UPPER * falling[0]))
+    if end - start < 8:
+        return None
+    time = np.arange(start, end)
+    slope = np.polyfit(time, np.log(np.maximum(amplitude[start:end], 1e-300)), 1)[0]
+    straight = np.corrcoef(time, np.log(np.maximum(amplitude[start:end], 1e-300)))[0, 1] ** 2
+    speed = np.polyfit(time, np.unwrap(np.angle(signal[start:end])), 1)[0]
+    turned = abs(speed) * (end - start)
+    if not (slope < 0 and straight > _STRAIGHT and turned > np.pi and abs(speed) < np.pi):
+        return None
+    return complex(float(slope), abs(float(speed)))

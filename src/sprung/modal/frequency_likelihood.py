@@ -1,0 +1,117 @@
+"""Maximum likelihood in the frequency domain: the lines of a band, instead of all samples."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from sprung.modal.decays import Decays
+from sprung.modal.identified import Modes
+from sprung.modal.modes import Mode, in_order
+from sprung.modal.refinement import climb
+from sprung.modal.selection import Task, refuse_without_decay
+from sprung.modal.sums import moments
+from sprung.modal.uncertainty import bounds
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_WIDER = 1.5
+"""Times the highest frequency of the motion up to which lines are used."""
+
+
+def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+    """Identify modes as those that make the lines of a band likeliest.
+
+    The transform of each whole record, on the lines of the discrete Fourier transform up to a little above the motion, is
+    fitted with those of damped sinusoids, which are known in closed form for a finite record. White noise in that band is
+    enough; what lies above does not matter.
+
+    Parameters
+    ----------
+    records, rate, order
+        As for `eigensystem_realisation`.
+
+    Returns
+    -------
+    Modes
+        Exact without noise, repeated and real poles too; with spreads for noise that is white in the band.
+
+    Raises
+    ------
+    InputError
+        As `eigensystem_realisation`.
+
+    References
+    ----------
+    P. Guillaume, P. Verboven and S. Vanlanduit, Proc. ISMA 23 (1998) 359, here for the transform of free decays.
+    """
+    task = Task.of(records, rate, order, "ml-frequency")
+    high = task.decays.spectrum.band[1]
+    lines = Lines.up_to(task.decays, _WIDER * high)
+    start = task.span.poles(task.order)
+    refuse_without_decay(start, "ml-frequency")
+    stand = climb(lines, start)
+    lost = lines.numbers / max(lines.numbers - stand.parameters / lines.channels, 1.0)
+    spread = bounds(stand.weighted(1 / (stand.variance * lost)))
+    found = zip(stand.poles.exponent * rate, stand.poles.shapes.T, spread, strict=True)
+    return Modes(in_order([Mode(complex(pole), shape, spread=own) for pole, shape, own in found]), (), "ml-frequency")
+
+
+@dataclass(frozen=True, eq=False)
+class Lines(Decays):
+    """Records as their Fourier transforms on the lines of a band; the line at 0 Hz, and with it the offsets, left out.
+
+    Attributes
+    ----------
+    angles
+        2π times the lines and their negatives, per sample, of each record, shape (line,).
+    transforms
+        Of the records there, over the root of the number of samples; shape (channel, line) each.
+    """
+
+    angles: tuple[Real, ...]
+    transforms: tuple[Complex, ...]
+
+    @classmethod
+    def up_to(cls, decays: Decays, highest: float) -> Self:
+        """Transform records up to some frequency, Hz."""
+        angles, transforms = [], []
+        for values in decays.values:
+            count = values.shape[1]
+            last = min(max(int(highest / decays.rate * count), 2), (count - 1) // 2)
+            lines = np.fft.rfft(values)[:, 1 : last + 1] / np.sqrt(count)
+            own = 2 * np.pi * np.arange(1, last + 1) / count
+            angles.append(np.concatenate([own, -own]))
+            transforms.append(np.concatenate([lines, lines.conj()], axis=1))
+        energy = np.array([(np.abs(lines) ** 2).sum(axis=1) for lines in transforms])
+        return cls(decays.values, decays.rate, decays.samples, energy, decays.blocked, tuple(angles), tuple(transforms))
+
+    @property
+    def numbers(self) -> float:
+        """How many numbers each channel has, all records together."""
+        return float(sum(len(own) for own in self.angles))
+
+    def gram(self, exponent: Complex) -> Complex:
+        """Give the inner products of the transforms of (e^{λk}, k e^{λk}) with each other."""
+        waves = self._waves(exponent)
+        return np.array([one.conj() @ one.T for one in waves])
+
+    def correlate(self, exponent: Complex) -> Complex:
+        """Give the inner products of the transforms of (e^{λk}, k e^{λk}) with those of the records."""
+        pairs = zip(self._waves(exponent), self.transforms, strict=True)
+        return np.array([lines @ one.conj().T for one, lines in pairs])
+
+    def _waves(self, exponent: Complex) -> list[Complex]:
+        """Transform e^{λk} and k e^{λk}, for each record; shape (2 pole, line)."""
+        found = []
+        for angles, count in zip(self.angles, self.samples.tolist(), strict=True):
+            apart = (exponent[:, None] - 1j * angles)[None]
+            last = np.repeat(np.exp(exponent * count)[None, :, None], len(angles), axis=2)
+            both = moments(apart, np.zeros(1, dtype=np.int64), last, np.full((1, 1, 1), count), powers=2)
+            found.append(np.concatenate([part[0] for part in both]) / np.sqrt(count))
+        return found

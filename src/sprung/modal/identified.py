@@ -1,0 +1,65 @@
+"""What a modal identification gives: the modes, and what was met on the way and is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.modal.modes import Mode
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Rejected:
+    """A pole that was met and is none of the modes.
+
+    Attributes
+    ----------
+    pole
+        1/s.
+    reason
+        Why not, with the numbers.
+    """
+
+    pole: complex
+    reason: str
+
+
+@dataclass(frozen=True, eq=False)
+class Modes(Sequence[Mode]):
+    """Modes common to several free decays, a sequence in the order of undamped natural frequency.
+
+    Attributes
+    ----------
+    modes
+        The modes.
+    rejected
+        Poles that were met and are none.
+    method
+        By which they were found.
+    """
+
+    modes: tuple[Mode, ...]
+    rejected: tuple[Rejected, ...] = ()
+    method: str = ""
+
+    @overload
+    def __getitem__(self, index: int) -> Mode: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Mode, ...]: ...
+    def __getitem__(self, index: int | slice) -> Mode | tuple[Mode, ...]:
+        """Give one mode, or several."""
+        return self.modes[index]
+
+    def __len__(self) -> int:
+        """Count the modes."""
+        return len(self.modes)
+
+    def __iter__(self) -> Iterator[Mode]:
+        """Go through the modes."""
+        return iter(self.modes)

@@ -1,0 +1,59 @@
+"""Modes of poles alone: what each pole contributes to every channel of every record, and how many shapes that takes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.modal.likelihood import Poles
+from sprung.modal.sums import waves
+from sprung.modal.thinning import Thinned
+
+Complex = NDArray[np.complex128]
+
+_ANOTHER = 6.0
+"""Standard errors by which a second shape of one pole must stand out from noise."""
+
+_LEAST = 1e-3
+"""Part of the first that a second shape must be: two poles that are close take rounding for one."""
+
+
+def shapes_of(thinned: Thinned, exponent: Complex) -> Poles:
+    """Give poles their shapes: every channel's contribution by least squares, then what is common to the records.
+
+    The contributions of a pole, a matrix of channels by records, are the product of its shape and its amplitudes. A repeated
+    pole has as many shapes as that matrix has ranks, and comes back as often.
+
+    Parameters
+    ----------
+    thinned
+        The records.
+    exponent
+        λ per sample of the records as they were, of one of each conjugate pair, none twice; shape (pole,).
+    """
+    every = np.concatenate([exponent, exponent[exponent.imag != 0].conj()]) * thinned.every
+    contributions, spreads, squares, freedom = [], [], 0.0, 0
+    for record in thinned.records:
+        motion = waves(every, record.shape[1])
+        motion = motion - motion.mean(axis=0)
+        sizes = np.linalg.norm(motion, axis=0)
+        inverse = np.linalg.pinv(motion / sizes, rcond=1e-14) / sizes[:, None]
+        values = (record - record.mean(axis=1, keepdims=True)).T
+        found = inverse @ values
+        contributions.append(found)
+        spreads.append(np.linalg.norm(inverse, axis=1))
+        squares += float((np.abs(values - motion @ found) ** 2).sum())
+        freedom += values.size
+    noise = np.sqrt(max(squares / freedom, 1e-300))
+    poles, shapes = [], []
+    for j, pole in enumerate(exponent):
+        # Channels have noise of one size here, and each contribution its own standard error.
+        matrix = (
+            np.array([found[j] / spread[j] for found, spread in zip(contributions, spreads, strict=True)]).T / noise
+        )
+        own, strengths, _ = np.linalg.svd(matrix, full_matrices=False)
+        limit = max(_ANOTHER * (np.sqrt(matrix.shape[0]) + np.sqrt(matrix.shape[1])), _LEAST * strengths[0])
+        for k in range(max(int((strengths > limit).sum()), 1)):
+            poles.append(pole)
+            shapes.append(thinned.scale * own[:, k])
+    return Poles.of(np.array(poles, dtype=np.complex128), np.stack(shapes, axis=1).astype(np.complex128))

@@ -1,0 +1,135 @@
+"""Modes of recordings alone: no campaign file, no vehicle, nothing but channels and a clock."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.errors import Problems
+from sprung.modal import DEFAULT
+from sprung.pipeline.modes import LoadModes, examined
+from sprung.recording import FILE, Table, read_table
+from sprung.units import acceleration_factor
+
+Real = NDArray[np.float64]
+
+RECORDINGS = "recordings"
+"""What stands where a campaign has the name of a load."""
+
+_OTHER_FILES = frozenset({".toml", ".json", ".md", ".html", ".svg", ".png", ".npz", ".py"})
+
+_STEADY = 0.01
+"""Part of the sampling interval by which it may vary: a clock that does so more is none for a fit."""
+
+
+def is_recordings(path: str | os.PathLike[str]) -> bool:
+    """Say whether a path is a recording or a folder of them, and no campaign."""
+    place = Path(path)
+    return bool(recordings_in(place)) and not (place / FILE).exists()
+
+
+def recordings_in(place: Path) -> list[Path]:
+    """Give the files that may be recordings: one file itself, or those in a folder."""
+    files = sorted(place.iterdir()) if place.is_dir() else [place]
+    return [
+        file
+        for file in files
+        if file.is_file() and file.suffix.lower() not in _OTHER_FILES and not file.name.startswith(".")
+    ]
+
+
+def modes_of_recordings(
+    path: str | os.PathLike[str],
+    method: str = DEFAULT,
+    order: int | None = None,
+    *,
+    start: float | None = None,
+    amplitude: bool = False,
+    diagram: bool = False,
+) -> dict[str, LoadModes]:
+    """Find the modes common to free decays that nothing is known of but their recordings.
+
+    Parameters
+    ----------
+    path
+        A recording in any format sprung reads, or a folder of them: one decay each, the same channels and rate.
+    method, order, amplitude, diagram
+        As for `modes`.
+    start
+        Where the free decay begins, s on the files' own clock; unless given, at each recording's largest reading.
+
+    Returns
+    -------
+    dict
+        Under `RECORDINGS`. Modes are numbered. Channels keep their unit, but for accelerations, which come in m/s².
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or they do not go together; every problem at once.
+    """
+    problems = Problems()
+    tables: list[tuple[Path, Table]] = []
+    for file in recordings_in(Path(path)):
+        with problems.collecting():
+            tables.append((file, read_table(file)))
+    problems.raise_if_any()
+    if not tables:
+        problems.add(str(path), "no recording", "at least one", "Give a recording, or a folder of them.")
+        problems.raise_if_any()
+    first = tables[0][1]
+    channels = [name for name in first.channels if all(name in table.channels for _, table in tables)]
+    if len(channels) < 2:
+        found = f"{len(channels)} channels that all {len(tables)} files have"
+        problems.add(
+            str(path), found, "two or more: shapes are ratios of channels", "Give files with the same channels."
+        )
+    rates = [_rate(file, table, problems) for file, table in tables]
+    if len({round(rate, 6) for rate in rates}) > 1:
+        found = ", ".join(f"{file.name} {rate:g} Hz" for (file, _), rate in zip(tables, rates, strict=True))
+        problems.add(str(path), found, "one rate", "Give files of one rate together.")
+    problems.raise_if_any()
+    records = []
+    for file, table in tables:
+        values = table.take([table.channels.index(name) for name in channels])
+        factors = [_factor(table.units[table.channels.index(name)]) for name in channels]
+        values = np.array(factors)[:, None] * values
+        begin = _begin(values) if start is None else int(np.searchsorted(table.time, start))
+        values = values[:, begin:]
+        if not np.isfinite(values).all():
+            bad = int((~np.isfinite(values)).sum())
+            problems.add(file.name, f"{bad} cells that are not numbers", "numbers", "Leave them out, or mend the file.")
+        records.append(values)
+    problems.raise_if_any()
+    names = tuple(file.stem for file, _ in tables)
+    numbered = examined(records, rates[0], method, order, tuple(channels), names, amplitude=amplitude, diagram=diagram)
+    return {RECORDINGS: numbered}
+
+
+def _rate(file: Path, table: Table, problems: Problems) -> float:
+    steps = np.diff(table.time)
+    step = float(np.median(steps)) if len(steps) else 0.0
+    if not step > 0 or float(np.abs(steps - step).max()) > _STEADY * step:
+        problems.add(file.name, "a clock that is not steady", "equal steps of time", "Resample the recording.")
+        return 1.0
+    return (len(steps)) / float(table.time[-1] - table.time[0])
+
+
+def _factor(unit: str | None) -> float:
+    """Give what brings an acceleration to m/s²; everything else stays as it is."""
+    try:
+        return 1.0 if unit is None else acceleration_factor(unit)
+    except ValueError:
+        return 1.0
+
+
+def _begin(values: Real) -> int:
+    """Give the sample of the largest reading, each channel counted in its own size."""
+    off = values - np.nanmedian(values, axis=1, keepdims=True)
+    size = np.sqrt(np.nanmean(off**2, axis=1, keepdims=True))
+    weighed: Sequence[float] = np.nansum((off / np.where(size > 0, size, 1.0)) ** 2, axis=0).tolist()
+    return int(np.argmax(weighed))
