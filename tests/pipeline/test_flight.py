@@ -24,7 +24,7 @@ DROPS: list[dict[str, Any]] = [
 
 @pytest.fixture(scope="module")
 def campaign() -> sprung.Campaign:
-    return sprung.simulate(TABLE_1_CAR, loads=[LOAD], drops=DROPS, rate=250, duration=1.6, noise=0.1, seed=3)
+    return sprung.simulate(TABLE_1_CAR, loads=[LOAD], drops=DROPS, rate=250, duration=1.6, noise=0.2, seed=3)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +67,7 @@ def test_a_fall_that_the_model_does_not_explain_is_not_used(campaign: sprung.Cam
     held = []
     for recording in campaign.recordings:
         time = recording.start + np.arange(recording.values.shape[1]) / recording.rate
-        pull = 3.0 * ((time > 0.405) & (time < 0.43)) * np.array([[1.0]] * 4 + [[0.0]] * 4)
+        pull = 8.0 * ((time > 0.405) & (time < 0.43)) * np.array([[1.0]] * 4 + [[0.0]] * 4)
         held.append(replace(recording, values=recording.values + pull))
     found = sprung.identify(replace(campaign, recordings=tuple(held)), fall=True)
     assert found.fit.since == "landing"
