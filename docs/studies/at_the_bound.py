@@ -139,7 +139,8 @@ flight, landing, free vibration for {DURATION:g} s, eight sensors at {RATE:g} Hz
 without and five more with a load of {100 * LOAD:g} % of the vehicle's mass, off centre. What is *weighed* - the total mass, or
 both axles - has an uncertainty of {100 * WEIGHING:g} % of the vehicle's mass, and what the scales show is drawn anew in every
 campaign. Each campaign goes through the whole of `sprung.identify`, with nothing else known than the wheelbase: it finds
-release and landing, chooses the model, and starts without a guess.
+release and landing, chooses the model, and starts without a guess. The fall before the landing is left out: what it tells
+is not in the bound ([the fall](fall.md)).
 
 The bound is computed by `sprung.planning` at the true parameters, from the drops that were used, each decay beginning
 where the last tyre last touches the ground. Errors are relative, and counted in units of the bound. *Error* is the

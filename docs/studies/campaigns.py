@@ -145,7 +145,7 @@ class Case:
 
     def identify(self, number: int) -> Trial:
         """Identify the vehicle from one noisy campaign."""
-        return self.judge(sprung.identify(self.campaign(number)))
+        return self.judge(sprung.identify(self.campaign(number), fall=False))
 
     def judge(self, result: sprung.Result) -> Trial:
         """Hold a result against the truth."""
