@@ -1,0 +1,72 @@
+"""Vehicles that do what no element of ours does: never accepted, and no wrong number with a small error bar."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+import sprung
+from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle, drop_from_blocks
+from sprung.vehicle.rows import body_point
+
+Array = NDArray[np.float64]
+
+LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
+DROPS: list[dict[str, Any]] = [
+    {"wheels": wheels, "load": load} for load in ("empty", "ballast") for wheels in (("fl", "fr"), ("fl", "rl"))
+]
+RATE = 250
+
+
+def with_a_loose_mass(mass: float, frequency: float, damping: float) -> sprung.Campaign:
+    """Decays of the car with a mass on a soft spring above its front axle: an eighth degree of freedom, solved exactly."""
+    clean = sprung.simulate(TABLE_1_CAR, loads=[LOAD], drops=DROPS, noise=0.0, seed=1, rate=RATE)
+    names, values = tuple(TABLE_1_CAR.parameters), np.array(list(TABLE_1_CAR.parameters.values()))
+    at = Rows.of([body_point(0.1, 0.0)], names).at(values)[0]
+    sensors = Rows.of([sensor.row for sensor in clean.sensors], names).at(values)
+    felt, rate = np.append(at, -1.0), 2 * np.pi * frequency
+    random, recordings = np.random.default_rng(1), []
+    for drop, recording in zip(clean.drops, clean.recordings, strict=True):
+        load = clean.load(drop.load)
+        M, C, K = (np.pad(one, (0, 1)) for one in TABLE_1_CAR.matrices(load))
+        M[7, 7] = mass
+        K += mass * rate**2 * np.outer(felt, felt)
+        C += 2 * damping * mass * rate * np.outer(felt, felt)
+        A = np.block([[np.zeros((8, 8)), np.eye(8)], [-np.linalg.solve(M, np.hstack([K, C]))]])
+        fall = drop_from_blocks(TABLE_1_CAR, load, drop.wheels, 0.05)
+        state = fall.state(fall.decay_start)
+        X = np.concatenate([state[:7], [at @ state[:7]], state[7:], [at @ state[7:]]])
+        step, accelerations = expm(A / RATE), []
+        for _ in range(3 * RATE):
+            accelerations.append((A @ X)[8:15])
+            X = step @ X
+        readings = sensors @ np.array(accelerations).T + 9.80665
+        noisy = readings + 0.02 * random.standard_normal(readings.shape)
+        recordings.append(replace(recording, values=noisy, start=0.0))
+    begun = tuple(drop.model_copy(update={"start": 0.0}) for drop in clean.drops)
+    return replace(clean, recordings=tuple(recordings), drops=begun)
+
+
+def with_hard_stops() -> sprung.Campaign:
+    """Stops six times as stiff as the springs, met within the static stroke."""
+    car = Vehicle.from_parameters(
+        TABLE_1_CAR.parameters | {"k_bf": 1e5, "k_br": 1e5, "x_bf": 0.03, "x_br": 0.03}, name="on its stops"
+    )
+    return sprung.simulate(car, loads=[LOAD], drops=DROPS, noise=0.02, seed=1, rate=RATE)
+
+
+@pytest.mark.parametrize("kind", ["loose mass", "hard stops"])
+def test_what_no_element_explains_is_not_accepted(kind: str) -> None:
+    """Rejected; or, where stops are found to be what it is, accepted with every number within four standard errors."""
+    result = sprung.identify(with_a_loose_mass(150.0, 9.0, 0.08) if kind == "loose mass" else with_hard_stops())
+    explained = kind == "hard stops" and result.fit.model == ("bump-stop",)
+    assert result.verdict.state == ("accept" if explained else "reject")
+    for name, truth in TABLE_1_CAR.parameters.items():
+        found = result.parameters.get(name)
+        if found is not None and found.value is not None and found.std is not None:
+            assert abs(found.value - truth) < 4 * found.std
