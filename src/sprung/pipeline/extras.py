@@ -86,6 +86,8 @@ class Attempt:
         Whether it was fitted, or only scored.
     taken
         Whether it stayed.
+    against
+        Why it did not, where it gained enough.
     """
 
     extra: str
@@ -93,12 +95,14 @@ class Attempt:
     asked: float
     fitted: bool
     taken: bool
+    against: str = ""
 
     @property
     def text(self) -> str:
         """The attempt in words."""
         verb = "gains" if self.fitted else "would gain"
-        return f"{self.extra} ({verb} {max(self.gain, 0.0):.0f} of {self.asked:.0f} asked)"
+        but = f", but {self.against}" if self.against else ""
+        return f"{self.extra} ({verb} {max(self.gain, 0.0):.0f} of {self.asked:.0f} asked{but})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,9 +147,9 @@ class Way:
         added = tuple(extra for extra in extras if extra != SEPARATE)
         return self.choice.having((*self.choice.extras, *added), "separate" if SEPARATE in extras else None)
 
-    def _noted(self, gains: Mapping[str, float], fitted: bool, taken: bool) -> Way:
+    def _noted(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> Way:
         """Give the same with attempts noted, by extra and gain."""
-        notes = [Attempt(extra, gain, self._asked(extra), fitted, taken) for extra, gain in gains.items()]
+        notes = [Attempt(extra, gain, self._asked(extra), fitted, taken, against) for extra, gain in gains.items()]
         return replace(self, path=(*self.path, *notes))
 
     def carried(self) -> Way:
@@ -181,12 +185,12 @@ class Way:
             summit = fit_from(larger, self.decays, way.summit, NEAR, self.progress)
             gain = 2 * (summit.loglikelihood - way.summit.loglikelihood) / summit.disagreement
             inflation, tried = inflation_of(summit, self.decays), replace(way, choice=larger, summit=summit)
-            sound = summit.converged and possible(extra, summit) and not tried._feigned(extra, inflation)
-            if gain > way._asked(extra) and sound:
+            against = tried._against(extra, inflation) if summit.converged else "the fit with it did not settle"
+            if gain > way._asked(extra) and not against:
                 way = replace(way._noted({extra: gain}, True, True), choice=larger, summit=summit)
                 refused.clear()
             else:
-                way = way._noted({extra: gain}, True, False)
+                way = way._noted({extra: gain}, True, False, against if gain > way._asked(extra) else "")
 
     def nonlinear(self, plain: Choice) -> Way:
         """Fit the extras with laws of their own that promise something together, and leave out what is not missed.
@@ -292,9 +296,13 @@ class Way:
         much = before > self._rest
         return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
-    def _feigned(self, extra: str, inflation: float) -> bool:
-        """Say whether an extra may be a model error in disguise: where there is one, what is small counts for nothing."""
-        return inflation > _ERRS and size_of(extra, self.summit.parameters) < _MATTERS
+    def _against(self, extra: str, inflation: float) -> str:
+        """Say what speaks against an extra, whatever it gains; nothing where nothing does."""
+        if not possible(extra, self.summit):
+            return "it would have to be less than nothing"
+        if inflation > _ERRS and size_of(extra, self.summit.parameters) < _MATTERS:
+            return "it is so small that it may be another error of the model"
+        return ""
 
     def _together(self, hopeful: Sequence[str]) -> Way:
         """Fit extras together, and leave out again what is not missed, the least missed first."""
@@ -316,7 +324,7 @@ class Way:
                 extra: lost_without(way.summit, neutral(extra, way.choice.tracks)) / inflation
                 for extra in decided(way.choice)
             }
-            vain = [extra for extra in lost if not possible(extra, way.summit) or way._feigned(extra, inflation)]
+            vain = [extra for extra in lost if way._against(extra, inflation)]
             lost |= dict.fromkeys(vain, 0.0)
             least = min(lost, key=lambda extra: lost[extra] / way._asked(extra), default=None)
             if least is None or lost[least] > way._asked(least):
