@@ -24,6 +24,9 @@ from sprung.vehicle import LinearModel, Rows
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+_BEYOND_MEASURE = 100.0
+"""Powers of e by which no motion grows within a record."""
+
 _BACKWARD = 30.0
 """Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
 
@@ -164,12 +167,20 @@ class Place:
         delayed = any(run.late.shape[1] for run in self.likelihood.records.runs)
         return not delayed and self.modes.condition > _DEFECTIVE
 
+    @property
+    def _runs_away(self) -> bool:
+        """Whether this vehicle's motion grows beyond all measure: rates that may be negative can do that."""
+        longest = max(float((run.step[run.group] * run.samples).max()) for run in self.likelihood.records.runs)
+        return float(self.modes.poles.real.max()) * longest > _BEYOND_MEASURE
+
     def moved(self, values: Real, weights: Real) -> Place:
         """Go to other parameter values, SI, shape (parameter,)."""
         return self.likelihood.at(values)
 
     def misfit(self, weights: Real) -> tuple[Real, float]:
         """Give the residual sums of squares alone, (m/s²)², shape (drop, channel), and what delays cost beside them."""
+        if self._runs_away:
+            return np.full_like(self.likelihood.observations, np.inf, dtype=np.float64), 0.0
         solved = self._solve(weights)
         return self.likelihood.records.in_order([one.residual for one in solved]), sum(one.penalty for one in solved)
 

@@ -20,6 +20,10 @@ Key = tuple[int, int, int]
 """A product of parameters: their positions in the list of names counted from 1, in order, filled up with 0 for 1."""
 
 
+_NOTHING = 1e-100
+"""Sums below this tell nothing, in any unit."""
+
+
 def expand(model: LinearModel, law: Law) -> dict[Key, Real]:
     """Write M, C or K as a linear combination of products of parameters.
 
@@ -75,7 +79,8 @@ def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], n
             for length, rate in ((two - 1, three - 1), (three - 1, two - 1)):
                 if length in lengths and np.isfinite(values[rate]):
                     sums[lengths.index(length)] += values[rate] * term
-        size = max(float(np.abs(sums).max(initial=0.0)), np.finfo(float).tiny)
+        largest = float(np.abs(sums).max(initial=0.0))
+        size = largest if largest > _NOTHING else 1.0
         design.append(sums.reshape(len(lengths), -1).T / size)
         observed.append(sum((products[key] * term for key, term in pairs.items()), np.zeros((7, 7))).ravel() / size)
     stacked = np.vstack(design)

@@ -45,6 +45,9 @@ Real = NDArray[np.float64]
 
 STOPS = "bump-stop"
 
+_WHOLLY = frozenset({"asymmetry", "rigid-axle"})
+"""Extras that look like many a mistake with sensors and loads: they explain the records wholly, or they are not there."""
+
 _UNLIKELY = 0.25
 """Part of the gain that is asked of a larger model below which it is not even fitted."""
 
@@ -186,6 +189,8 @@ class Way:
             gain = 2 * (summit.loglikelihood - way.summit.loglikelihood) / summit.disagreement
             inflation, tried = inflation_of(summit, self.decays), replace(way, choice=larger, summit=summit)
             against = tried._against(extra, inflation) if summit.converged else "the fit with it did not settle"
+            if not against and extra in _WHOLLY and tried._errs:
+                against = "it does not explain all of it, as it would if it were what is the matter"
             if gain > way._asked(extra) and not against:
                 way = replace(way._noted({extra: gain}, True, True), choice=larger, summit=summit)
                 refused.clear()
