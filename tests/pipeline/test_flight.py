@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.pipeline.identify import fit_campaign
 from sprung.prepare import flights, prepare
 from sprung.prepare.flight import FROM_RELEASE
 from sprung.vehicle import TABLE_1_CAR
@@ -96,4 +95,4 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
 
 def test_the_campaign_may_say_whether_the_fall_is_used(campaign: sprung.Campaign) -> None:
     told = replace(campaign, model=campaign.model.model_copy(update={"fall": False}))
-    assert fit_campaign(told).since == "landing"
+    assert sprung.identify(told).fit.since == "landing"

@@ -76,3 +76,10 @@ def test_identified_without_being_asked_for(more: dict[str, float], extra: str) 
         assert found.value is not None
         assert found.std is not None
         assert abs(found.value - truth) < 5 * found.std
+
+
+def test_the_vehicle_nearest_to_what_a_fit_found() -> None:
+    """Friction a little below nothing is none; left springs softer than right ones are what they are."""
+    found = TABLE_1_CAR.parameters | {"F_f": -2.0, "F_r": 30.0, "d_ksf": -800.0, "y_s": -0.02}
+    car = Vehicle.nearest(found, cg_height=0.5)
+    assert (car.F_f, car.F_r, car.d_ksf, car.y_s, car.cg_height) == (0.0, 30.0, -800.0, -0.02, 0.5)

@@ -155,8 +155,7 @@ def _scale(fit: Fit) -> Scale:
 
 
 def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
-    scales = np.array([PARAMETERS[name].scales for name in fit.names])
-    scaling = np.where(scales, fit.values / fit.slopes, 0.0)
+    scaling = fit.scaling
     found = []
     directions = fit.undetermined
     if directions.shape[1] and np.linalg.norm(directions.T @ scaling) > 0.999 * np.linalg.norm(scaling):

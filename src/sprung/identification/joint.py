@@ -129,6 +129,12 @@ class Fit:
         wider = self.relative_covariance + by**2 * open_ @ open_.T
         return replace(self, relative_covariance=wider, covariance=wider * np.outer(self.slopes, self.slopes))
 
+    @property
+    def scaling(self) -> Real:
+        """The direction of the coordinates in which every mass and rate grows alike, which no acceleration shows."""
+        scales = np.array([PARAMETERS[name].scales for name in self.names])
+        return np.where(scales, self.values / self.slopes, 0.0)
+
     def size(self, name: str) -> float:
         """Give what counts as much of a parameter: its value, or, where that may be zero, what would matter beside others."""
         at = self.names.index(name)

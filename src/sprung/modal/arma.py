@@ -47,7 +47,7 @@ def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None 
     task = Task.of(records, rate, order, "arma")
     thinned, channels = task.thinned, task.decays.channels
     longest = max((thinned.shortest // thinned.step - 2) // 3, 1)
-    task.allow(longest * channels, "arma")
+    task.allow(longest * channels)
     lags = min(_MORE * -(-task.order // channels), longest)
     hankel = np.hstack(thinned.hankel(2 * lags))
     instruments, regressors, target = np.split(hankel, [lags * channels, 2 * lags * channels])
@@ -57,4 +57,4 @@ def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None 
     coefficients = target @ instruments.T @ inverse
     companion = np.eye(lags * channels, k=channels)
     companion[-channels:] = coefficients
-    return task.modes(recurring(companion, np.eye(channels, lags * channels), thinned), "arma")
+    return task.modes(recurring(companion, np.eye(channels, lags * channels), thinned))

@@ -97,7 +97,7 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
     )
     if not kept:
         return Modes((), rejected, "emd")
-    modes = task.modes(shapes_of(task.thinned, np.array([pole / every for pole in kept], dtype=complex)), "emd")
+    modes = task.modes(shapes_of(task.thinned, np.array([pole / every for pole in kept], dtype=complex)))
     return Modes(modes.modes, (*rejected, *modes.rejected), "emd")
 
 

@@ -42,4 +42,4 @@ def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: in
     J.-N. Juang and R. S. Pappa, J. Guid. Control Dyn. 8 (1985) 620.
     """
     task = Task.of(records, rate, order, "era")
-    return task.modes(task.span.poles(task.order), "era")
+    return task.modes(task.span.poles(task.order))

@@ -51,10 +51,10 @@ def realisation_by_correlations(records: Sequence[ArrayLike], rate: float, order
     delays = shifts + 1 - own  # of H(j), j = 0 ... delays
     first = own if delays - own >= 3 else 0
     half = (delays - first) // 2
-    task.allow(half * rows, "era-dc")
+    task.allow(half * rows)
     hankel = np.hstack(thinned.hankel(shifts))
     correlations = hankel @ hankel[:rows].T
     blocks = [correlations[j * channels : j * channels + rows] for j in range(first, delays + 1)]
     stacked = np.vstack([np.hstack(blocks[i : i + len(blocks) - half]) for i in range(half + 1)])
     left = np.linalg.svd(stacked, full_matrices=False)[0]
-    return task.modes(realised(left[:, : task.order], thinned, rows), "era-dc")
+    return task.modes(realised(left[:, : task.order], thinned, rows))

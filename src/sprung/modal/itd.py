@@ -49,9 +49,9 @@ def state_variables_in_rows(records: Sequence[ArrayLike], rate: float, order: in
         As `eigensystem_realisation`.
     """
     task = Task.of(records, rate, order, "svm-rows")
-    states = _states(task, "svm-rows")
+    states = _states(task)
     transition = np.linalg.lstsq(states.before.T, states.after.T, rcond=None)[0].T
-    return task.modes(recurring(np.asarray(transition, dtype=float), states.seen, task.thinned), "svm-rows")
+    return task.modes(recurring(np.asarray(transition, dtype=float), states.seen, task.thinned))
 
 
 def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
@@ -81,17 +81,17 @@ def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | 
     (1986) 1028.
     """
     task = Task.of(records, rate, order, "itd")
-    before, after, seen = _states(task, "itd")
+    before, after, seen = _states(task)
     one = np.linalg.solve((before @ before.T).T, (after @ before.T).T).T
     other = np.linalg.solve((before @ after.T).T, (after @ after.T).T).T
-    return task.modes(recurring((one + other) / 2, seen, task.thinned), "itd")
+    return task.modes(recurring((one + other) / 2, seen, task.thinned))
 
 
-def _states(task: Task, method: str) -> _States:
+def _states(task: Task) -> _States:
     """Give principal components of delayed samples, each of variance 1 over all records."""
     thinned, channels = task.thinned, task.decays.channels
     shifts = thinned.shifted(_ROWS)
-    task.allow(shifts * channels, method)
+    task.allow(shifts * channels)
     hankel = np.hstack(thinned.hankel(shifts))
     left, singular, right = np.linalg.svd(hankel[:-channels], full_matrices=False)
     basis, sizes = left[:, : task.order], singular[: task.order]

@@ -62,7 +62,7 @@ def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = 
         poles.append(2 * np.pi * top * step * complex(-ratio / np.sqrt(1 - ratio**2), 1.0))
     if not poles:
         return Modes((), tuple(rejected), "peaks")
-    found = task.modes(shapes_of(task.thinned, np.array([pole / rate for pole in poles], dtype=complex)), "peaks")
+    found = task.modes(shapes_of(task.thinned, np.array([pole / rate for pole in poles], dtype=complex)))
     return Modes(found.modes, (*rejected, *found.rejected), "peaks")
 
 

@@ -66,7 +66,7 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
     task = Task.of(records, rate, order, "lscf")
     thinned, channels = task.thinned, task.decays.channels
     longest = max((thinned.shortest // 2 - 2) // (channels + 2), 1)
-    task.allow(longest * channels, "lscf")
+    task.allow(longest * channels)
     lags = min(_MORE * -(-task.order // channels), longest)
     factors = []
     for lines, transform in _transforms(thinned.records, thinned.step):
@@ -82,7 +82,7 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
     companion = np.eye(lags * channels, k=-channels)
     companion[:channels] = coefficients
     seen = np.eye(channels, lags * channels)
-    return task.modes(recurring(companion, seen, thinned), "lscf")
+    return task.modes(recurring(companion, seen, thinned))
 
 
 def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
@@ -115,7 +115,7 @@ def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | N
     """
     task = Task.of(records, rate, order, "rfp")
     thinned = task.thinned
-    task.allow(max(thinned.shortest // 2 - 2, 1) // 2, "rfp")
+    task.allow(max(thinned.shortest // 2 - 2, 1) // 2)
     lines = list(_on_the_axis(thinned))
     weights = [np.ones(len(s)) for s, _ in lines]
     # Where several denominators fit exactly there is a smaller one.
@@ -128,7 +128,7 @@ def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | N
     exponent = np.log(z[usable].astype(complex)) / (thinned.step * thinned.every)
     if not exponent.size:
         return Modes((), (), "rfp")
-    return task.modes(shapes_of(task.thinned, exponent), "rfp")
+    return task.modes(shapes_of(task.thinned, exponent))
 
 
 def _on_the_axis(thinned: Thinned) -> Iterator[tuple[Complex, Complex]]:

@@ -42,11 +42,14 @@ class Task:
         Of the same, thinned out.
     order
         How many poles.
+    method
+        Whose task it is, for messages.
     """
 
     decays: Decays
     span: Span
     order: int
+    method: str
 
     @classmethod
     def of(cls, records: Sequence[ArrayLike], rate: float, order: int | None, method: str) -> Task:
@@ -60,7 +63,7 @@ class Task:
             How many poles to look for; None for as many as stand out from noise, but no more than twice the channels: what is
             not quite linear lets more stand out than there are.
         method
-            For messages.
+            Whose task it is.
 
         Raises
         ------
@@ -71,8 +74,8 @@ class Task:
         decays = Decays.of(arrays, rate)
         span = Span.of(arrays, decays.spectrum)
         wanted = min(span.standing_out, max(FIRST_POLES, 2 * decays.channels)) if order is None else order
-        task = cls(decays, span, wanted)
-        task.allow(span.most, method, given=order is not None)
+        task = cls(decays, span, wanted, method)
+        task.allow(span.most, given=order is not None)
         return task
 
     @property
@@ -80,7 +83,7 @@ class Task:
         """The records, thinned out."""
         return self.span.thinned
 
-    def allow(self, most: int, method: str, given: bool = True) -> None:
+    def allow(self, most: int, given: bool = True) -> None:
         """Refuse an order beyond the most that the records allow.
 
         Raises
@@ -91,17 +94,20 @@ class Task:
         problems = Problems()
         if given and not 1 <= self.order <= most:
             said = f"1 to {most} for {self.decays.channels} channels and {self.decays.seconds.min():.3g} s"
-            problems.add(f"{method}: order", f"{self.order}", said, "Choose it in that range, or leave it out.")
+            problems.add(f"{self.method}: order", f"{self.order}", said, "Choose it in that range, or leave it out.")
         elif self.order < 1:
             problems.add(
-                f"{method}: records", "nothing that stands out from noise", "a free decay", "Look at the recordings."
+                f"{self.method}: records",
+                "nothing that stands out from noise",
+                "a free decay",
+                "Look at the recordings.",
             )
         problems.raise_if_any()
 
-    def modes(self, poles: Poles, method: str) -> Modes:
+    def modes(self, poles: Poles) -> Modes:
         """Keep of poles as many as wanted, those that explain most of the records, and give the reasons for the others."""
         if not poles.count:
-            return Modes((), (), method)
+            return Modes((), (), self.method)
         weights = 1 / np.maximum(self.decays.energy.sum(axis=0), 1e-300)
         shares = Stand.at(self.decays, poles, weights).shares.max(axis=0)
         rate, room = self.decays.rate, self.order
@@ -117,7 +123,7 @@ class Task:
         both = np.concatenate([poles.exponent[kept], poles.exponent[kept].conj()]) * rate
         shapes = np.concatenate([poles.shapes[:, kept], poles.shapes[:, kept].conj()], axis=1)
         once = np.concatenate([np.ones(len(kept), dtype=np.bool_), poles.exponent[kept].imag != 0])
-        return Modes(modes_from(both[once], shapes[:, once]), tuple(rejected), method)
+        return Modes(modes_from(both[once], shapes[:, once]), tuple(rejected), self.method)
 
 
 def refuse_without_decay(poles: Poles, method: str) -> None:

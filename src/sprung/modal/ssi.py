@@ -42,10 +42,10 @@ def subspace_by_covariances(records: Sequence[ArrayLike], rate: float, order: in
     B. Peeters and G. De Roeck, Mech. Syst. Signal Process. 13 (1999) 855, section 3.2.
     """
     task = Task.of(records, rate, order, "ssi-cov")
-    hankel, rows = _past_and_future(task, "ssi-cov")
+    hankel, rows = _past_and_future(task)
     covariances = hankel[rows:] @ hankel[:rows].T
     left = np.linalg.svd(covariances, full_matrices=False)[0]
-    return task.modes(realised(left[:, : task.order], task.thinned), "ssi-cov")
+    return task.modes(realised(left[:, : task.order], task.thinned))
 
 
 def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
@@ -71,15 +71,15 @@ def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | Non
     P. Van Overschee and B. De Moor, Automatica 29 (1993) 649; unweighted principal components.
     """
     task = Task.of(records, rate, order, "ssi-data")
-    hankel, rows = _past_and_future(task, "ssi-data")
+    hankel, rows = _past_and_future(task)
     lower = triangle(hankel.T).T
     left = np.linalg.svd(lower[rows:, :rows], full_matrices=False)[0]
-    return task.modes(realised(left[:, : task.order], task.thinned), "ssi-data")
+    return task.modes(realised(left[:, : task.order], task.thinned))
 
 
-def _past_and_future(task: Task, method: str) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], int]:
+def _past_and_future(task: Task) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], int]:
     """Stack past over future of all records, and count the rows of the past."""
     thinned = task.thinned
     rows = (thinned.shifted(_ROWS) + 1) // 2 * thinned.channels
-    task.allow(rows - thinned.channels, method)
+    task.allow(rows - thinned.channels)
     return np.hstack(thinned.hankel(2 * (rows // thinned.channels) - 1)), rows

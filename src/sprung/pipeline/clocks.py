@@ -93,7 +93,7 @@ def set_clocks(
     }
     decays = prepared.decays
     for _ in range(_PASSES):
-        vehicle = Vehicle.from_parameters(summit.parameters, name=campaign.name, **campaign.heights.by_key)
+        vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
         timed = []
         for decay in prepared.decays:
             drop, seen = by_name[decay.file]

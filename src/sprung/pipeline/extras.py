@@ -187,8 +187,8 @@ class Way:
             self.progress(f"with {extra}")
             summit = fit_from(larger, self.decays, way.summit, NEAR, self.progress)
             gain = 2 * (summit.loglikelihood - way.summit.loglikelihood) / summit.disagreement
-            inflation, tried = inflation_of(summit, self.decays), replace(way, choice=larger, summit=summit)
-            against = tried._against(extra, inflation) if summit.converged else "the fit with it did not settle"
+            tried = replace(way, choice=larger, summit=summit)
+            against = tried._against(extra, tried._inflation) if summit.converged else "the fit with it did not settle"
             if not against and extra in _WHOLLY and tried._errs:
                 against = "it does not explain all of it, as it would if it were what is the matter"
             if gain > way._asked(extra) and not against:
@@ -239,18 +239,22 @@ class Way:
         for _ in range(_MORE):
             if not found.choice.nonlinear:
                 break
-            inflation = inflation_of(found.summit, self.decays)
-            if inflation > _ERRS and not found._errs:
+            if found._inflation > _ERRS and not found._errs:
                 break  # what is left is small and no noise: anything would seem to explain some of it
             refused = {one.extra for one in found.path[len(self.path) :] if one.fitted and not one.taken}
             tried = [extra for extra in found._open([SEPARATE, *EXTRAS]) if extra not in refused]
             promised = found._prospects(tried) if tried else {}
-            more = [extra for extra in tried if promised[extra] / inflation > self._asked(extra)]
+            more = [extra for extra in tried if promised[extra] / found._inflation > self._asked(extra)]
             larger = found._together(more) if more else found
             if larger.choice.names == found.choice.names:
                 break
             found = larger
         return found
+
+    @cached_property
+    def _inflation(self) -> float:
+        """By how much the records tell less than white residuals of drops that agree would."""
+        return inflation_of(self.summit, self.decays)
 
     @cached_property
     def _rest(self) -> Real:
@@ -268,7 +272,7 @@ class Way:
 
     def _worth(self, than: Way) -> float:
         """Give what it gains over another way, in twice the log-likelihood, beyond what is asked of its parameters."""
-        gain = 2 * (self.summit.loglikelihood - than.summit.loglikelihood) / inflation_of(self.summit, self.decays)
+        gain = 2 * (self.summit.loglikelihood - than.summit.loglikelihood) / self._inflation
         return gain - (len(self.choice.names) - len(than.choice.names)) * self._each
 
     def with_forces(self, wanted: Choice) -> Way:

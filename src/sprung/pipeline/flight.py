@@ -19,7 +19,7 @@ from sprung.pipeline.choice import Choice
 from sprung.pipeline.extras import Way
 from sprung.prepare import Decay, Flight, Prepared, flights
 from sprung.recording import Campaign
-from sprung.vehicle import NEUTRAL, PARAMETERS, WHEELS, Block, Rows, Vehicle, drops_with_forces, quantity
+from sprung.vehicle import WHEELS, Block, Rows, Vehicle, drops_with_forces, quantity
 
 Real = NDArray[np.float64]
 
@@ -66,8 +66,7 @@ def is_needed(fit: Fit) -> bool:
     fit
         Of the decays.
     """
-    scales = np.array([PARAMETERS[name].scales for name in fit.names])
-    scaling = np.where(scales, fit.values / fit.slopes, 0.0)
+    scaling = fit.scaling
     total, gradient = quantity("total_mass", fit.names, fit.values)
     # Falling tells nothing of the absolute scale: what is left of the uncertainties when the total mass is given.
     within = np.eye(len(fit.names)) - np.outer(scaling, gradient * fit.slopes / total)
@@ -126,7 +125,7 @@ def fly(
 def _begun(campaign: Campaign, choice: Choice, summit: Summit, found: Sequence[Flight | None]) -> Real:
     """Give {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, 14)."""
     states = summit.states[:, :14].copy()
-    vehicle = _vehicle(choice, summit)
+    vehicle = Vehicle.nearest(summit.parameters, name="fitted", **choice.heights.by_key)
     rows = Rows.of([sensor.row for sensor in campaign.sensors], summit.names).at(summit.values)
     for state, flight in zip(states, found, strict=True):
         if flight is not None:
@@ -148,10 +147,3 @@ def _start(flight: Flight, vehicle: Vehicle, campaign: Campaign, rows: Real) -> 
     ]
     best = motions[int(np.argmin(missed))]
     return np.concatenate([best.displacement[:, before], best.velocity[:, before]])
-
-
-def _vehicle(choice: Choice, summit: Summit) -> Vehicle:
-    """Give the fitted vehicle; what came out a little below zero, where no vehicle is, is none."""
-    positive = {name for name in NEUTRAL if not PARAMETERS[name].signed}
-    values = {name: max(value, 0.0) if name in positive else value for name, value in summit.parameters.items()}
-    return Vehicle.from_parameters(values, name="fitted", **choice.heights.by_key)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -134,8 +134,6 @@ class Fitted(NamedTuple):
         The decays as they were found, before any fit.
     accused
         What is probably wrong, though nothing was done about it.
-    since
-        Whether drops are used from their release on, or from when the last tyre was down.
     """
 
     campaign: Campaign
@@ -147,7 +145,6 @@ class Fitted(NamedTuple):
     found: tuple[Decay, ...]
     path: tuple[Attempt, ...] = ()
     accused: tuple[Fault, ...] = ()
-    since: Literal["release", "landing"] = "landing"
 
 
 def fit_campaign(
@@ -194,7 +191,6 @@ def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str]
         prepared=fitted.prepared._replace(decays=flown.decays),
         summit=flown.summit,
         fit=flown.fit,
-        since="release",
     )
 
 
@@ -336,7 +332,7 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
 
 def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None) -> Result:
     """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
-    campaign, choice, why, prepared, summit, fit, _, path, accused, since = fitted
+    campaign, choice, why, prepared, summit, fit, _, path, accused = fitted
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
@@ -365,7 +361,7 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
         modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
-        fit=_fit_report(choice, why, path, fit, decays, channels, misfit, since),
+        fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
         drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         validation=validated,
@@ -381,7 +377,6 @@ def _fit_report(
     decays: Sequence[Decay],
     channels: Sequence[str],
     misfit: Misfit,
-    since: Literal["release", "landing"],
 ) -> FitReport:
     return FitReport(
         samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
@@ -391,7 +386,7 @@ def _fit_report(
         tracks=choice.tracks,
         why=why,
         axes=axes_of(choice.heights),
-        since=since,
+        since="release" if choice.airborne else "landing",
         path=path,
         method=METHOD,
         iterations=fit.iterations,

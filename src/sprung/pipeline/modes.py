@@ -291,16 +291,12 @@ def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: in
     wheels = len({sensor.on for sensor in sensors} - {"body"})
     told = [mode for mode in modes if not mode.name.startswith("body")]
     if len(told) < wheels:
+        these = "1 drop of this load tells" if drops == 1 else f"{drops} drops of this load tell"
         said.append(
-            f"{wheels} wheels hop in {wheels} modes, of which {_count(drops, 'drop')} of this load "
-            f"{'tells' if drops == 1 else 'tell'} {len(told)}: each may stand for several that are close, and its name for one "
-            "of them. Drops of other wheels would tell them apart."
+            f"{wheels} wheels hop in {wheels} modes, of which {these} {len(told)}: each may stand for several that are "
+            "close, and its name for one of them. Drops of other wheels would tell them apart."
         )
     return tuple(said)
-
-
-def _count(number: int, thing: str) -> str:
-    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
 def _level(decay: Decay) -> Real:

@@ -39,9 +39,8 @@ def subject_of_fit(
     name
         The vehicle's.
     """
-    # An extra may come out a little below zero, where no vehicle is.
-    parameters = {name: max(value, 0.0) for name, value in zip(fit.names, fit.values.tolist(), strict=True)}
-    vehicle = Vehicle.from_parameters(parameters, name=name, **heights.by_key)
+    found = dict(zip(fit.names, fit.values.tolist(), strict=True))
+    vehicle = Vehicle.nearest(found, name=name, **heights.by_key)
     return Subject(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from sprung.prepare.decay import Decay
 from sprung.prepare.events import Seen
 from sprung.recording import Drop
-from sprung.vehicle import WHEELS, Wheel
+from sprung.vehicle import Wheel
 
 _CLEAR = 0.01
 """s after the release by which the blocks are out of the way."""
@@ -76,10 +76,9 @@ def _flight(decay: Decay, drop: Drop, seen: Seen) -> Flight | None:
         return None
     start = recording.start + first / decay.rate
     events = replace(decay.events, last_lift_off=None, why_start=FROM_RELEASE)
-    fallen = tuple(wheel for wheel in WHEELS if seen.fell.get(wheel, wheel in drop.wheels))
     return Flight(
         replace(decay, values=values, earlier=values[:, :0], start=start, events=events),
-        fallen,
+        seen.wheels,
         drop.height,
         (first - release) / decay.rate,
     )

@@ -207,6 +207,18 @@ class Vehicle:
         given: dict[str, Any] = {**parameters, **heights}
         return cls(**given, name=name)
 
+    @classmethod
+    def nearest(cls, values: Mapping[str, float], *, name: str = "vehicle", **heights: float | None) -> Vehicle:
+        """Make the vehicle that is nearest to what a fit has found: what came out a little below zero, where none is, is zero.
+
+        Parameters
+        ----------
+        values, name, heights
+            As for `from_parameters`.
+        """
+        able = {one: value if PARAMETERS[one].signed else max(value, 0.0) for one, value in values.items()}
+        return cls.from_parameters(able, name=name, **heights)
+
     @property
     def tracks(self) -> Tracks:
         """Whether springs and dampers share their half-distance, and their place on the axle, on both axles."""
