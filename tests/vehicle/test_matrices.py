@@ -25,6 +25,7 @@ TYPICAL = {
 UNEVEN = {name: 0.5 * TYPICAL[PARAMETERS[name].unit][0] for name in PARAMETERS if name[:2] == "d_"}
 NARROW = {name: (-most, most) for name, most in UNEVEN.items()}
 NARROW |= {"y_s": (-0.2, 0.2), "m_xf": (-10.0, 40.0), "m_xr": (-10.0, 40.0)}
+NARROW |= {"m_e": (0.5, 5.0), "x_e": (-2.5, 0.5)}  # no more than the lightest of these bodies is left with
 NARROW |= {name: (0.4, 1.1) for name in PARAMETERS if name[:2] == "n_"}
 
 
@@ -100,7 +101,7 @@ def test_anti_roll_bar_feels_roll_and_wheels_but_not_bounce_or_pitch() -> None:
     p["k_af"] = 0.0
     bar = with_bar - model_of(ALL_NAMES, LINEAR_EXTRAS).matrices(list(p.values())).K
     # Left minus right travel is 2 t_f2 φ - (z_uA - z_uB), here with t_f2 = 1.
-    g = np.array([0.0, 0.0, 2.0, -1.0, 1.0, 0.0, 0.0])
+    g = np.array([0.0, 0.0, 2.0, -1.0, 1.0, 0.0, 0.0, 0.0])
     assert_allclose(bar, np.outer(g, g), atol=1e-14)
 
 

@@ -14,6 +14,7 @@ from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.prediction import Prediction, predictions
 from sprung.identification.profile import profiled
 from sprung.identification.scores import force_scores
+from sprung.identification.start import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
 from sprung.identification.structured import StructuredFit, structured_least_squares
 from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around
 from sprung.identification.suspects import Suspect, suspects
@@ -25,6 +26,8 @@ __all__ = [
     "NO_INFORMATION",
     "RANK",
     "STARTS",
+    "USUAL_ENGINE",
+    "USUAL_MOUNTING",
     "Coordinates",
     "Correlation",
     "Estimates",
@@ -33,6 +36,7 @@ __all__ = [
     "Knowledge",
     "Likelihood",
     "ModeEstimate",
+    "Mounting",
     "Place",
     "Prediction",
     "Scale",
@@ -55,6 +59,7 @@ __all__ = [
     "look_around",
     "lost_without",
     "mode_estimates",
+    "mountings_of",
     "of_colour",
     "parameters_from_matrices",
     "predictions",

@@ -46,7 +46,7 @@ def added_mass(empty: ArrayLike, loaded: ArrayLike, added: ArrayLike) -> Matrice
 
 def _refuse_singular(added: Real) -> None:
     own = np.sqrt(np.abs(np.diag(added)))
-    without = [name for name, size in zip(COORDINATES, own, strict=True) if size == 0]
+    without = [name for name, size in zip(COORDINATES[: len(own)], own, strict=True) if size == 0]
     size = np.where(own > 0, own, 1.0)
     singular = np.linalg.svd(added / np.outer(size, size), compute_uv=False)
     rank = int((singular > _SINGULAR * max(float(singular[0]), _SINGULAR)).sum())

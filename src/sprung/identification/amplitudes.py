@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.delays import SETTLED, STEPS, Delays
-from sprung.identification.longhand import REACH
+from sprung.identification.longhand import reach
 from sprung.identification.records import Run
 from sprung.modal import gram, waves
 
@@ -29,12 +29,12 @@ Complex = NDArray[np.complex128]
 
 
 def reach_of(right: Complex) -> Complex:
-    """Give what is assumed of initial states as information on the amplitudes of modes; both of shape (..., 14, 14)."""
-    return np.asarray((np.swapaxes(right.conj(), 1, 2) / REACH**2) @ right, dtype=np.complex128)
+    """Give what is assumed of initial states as information on the amplitudes of modes; both of shape (..., mode, mode)."""
+    return np.asarray((np.swapaxes(right.conj(), 1, 2) / reach(right.shape[-1]) ** 2) @ right, dtype=np.complex128)
 
 
 def inverse_of(normal: Complex) -> Complex:
-    """Invert normal equations of amplitudes, which may differ by orders of magnitude; shape (..., 14, 14)."""
+    """Invert normal equations of amplitudes, which may differ by orders of magnitude; shape (..., mode, mode)."""
     scale = 1 / np.sqrt(np.diagonal(normal, axis1=1, axis2=2).real)
     both = scale[:, :, None] * scale[:, None, :]
     return np.asarray(np.linalg.inv(normal * both), dtype=np.complex128) * both
@@ -51,15 +51,15 @@ class Sums:
     expected
         How late each logger should be, s, shape (record, logger).
     poles
-        λ, 1/s, shape (group, 14).
+        λ, 1/s, shape (group, mode).
     shapes
-        s, shape (group, channel, 14).
+        s, shape (group, channel, mode).
     reach
-        What is assumed of initial states, as information on the amplitudes, shape (group, 14, 14).
+        What is assumed of initial states, as information on the amplitudes, shape (group, mode, mode).
     gram
-        Inner products of (e^{λk}, k e^{λk}) with each other, shape (record, 28, 28).
+        Inner products of (e^{λk}, k e^{λk}) with each other, shape (record, 2 mode, 2 mode).
     data
-        Inner products of them with the records, shape (record, channel, 28).
+        Inner products of them with the records, shape (record, channel, 2 mode).
     """
 
     run: Run
@@ -115,17 +115,18 @@ class Sums:
 
     def _delays(self, solved: Amplitudes, values: Real) -> Delays:
         weighted = self.shapes.conj() * solved.weights[:, None]
-        gram, data = self.gram[:, :14, :14], self.data[:, :, :14]
+        m = solved.modes
+        gram, data = self.gram[:, :m, :m], self.data[:, :, :m]
         inverse, amplitudes = solved.inverse, solved.amplitudes
         known = self.expected, self.run.expected_std, self.run.follows, self.run.late
         return Delays(values, *known, self.poles, self.shapes, weighted, gram, data, inverse, amplitudes)
 
     def _solve(self, weights: Real) -> Amplitudes:
-        w, group = self.run.present * weights, self.run.group
+        w, group, m = self.run.present * weights, self.run.group, self.poles.shape[1]
         weighted = self.shapes.conj() * w[:, None]
-        normal = (np.swapaxes(weighted, 1, 2) @ self.shapes)[group] * self.gram[:, :14, :14]
+        normal = (np.swapaxes(weighted, 1, 2) @ self.shapes)[group] * self.gram[:, :m, :m]
         inverse = inverse_of(normal + self.reach[group])
-        projected = (weighted[group] * self.data[:, :, :14]).sum(axis=1)
+        projected = (weighted[group] * self.data[:, :, :m]).sum(axis=1)
         return Amplitudes(self, w, normal, inverse, (inverse @ projected[:, :, None])[:, :, 0])
 
 
@@ -140,11 +141,11 @@ class Amplitudes:
     weights
         1/σ², zero for channels that are left out, shape (channel,).
     normal
-        Normal equations of the amplitudes, from the records alone, shape (record, 14, 14).
+        Normal equations of the amplitudes, from the records alone, shape (record, mode, mode).
     inverse
-        Inverse of the same with their reach added, shape (record, 14, 14).
+        Inverse of the same with their reach added, shape (record, mode, mode).
     amplitudes
-        q, shape (record, 14).
+        q, shape (record, mode).
     delays
         Those of several loggers' clocks, which are in the shapes of the sums; None where all have one clock.
     """
@@ -156,21 +157,26 @@ class Amplitudes:
     amplitudes: Complex
     delays: Delays | None = None
 
+    @property
+    def modes(self) -> int:
+        """How many there are."""
+        return len(self.amplitudes[0])
+
     @cached_property
     def _fitted(self) -> Complex:
-        """Coefficients of e^{λk} in the fitted records, shape (record, channel, 14)."""
+        """Coefficients of e^{λk} in the fitted records, shape (record, channel, mode)."""
         return self.sums.shapes[self.sums.run.group] * self.amplitudes[:, None, :]
 
     @cached_property
     def _smoothed(self) -> Complex:
-        """Inner products of (e^{λk}, k e^{λk}) with the fitted records, shape (record, channel, 28)."""
-        return self._fitted @ np.swapaxes(self.sums.gram[:, :, :14], 1, 2)
+        """Inner products of (e^{λk}, k e^{λk}) with the fitted records, shape (record, channel, 2 mode)."""
+        return self._fitted @ np.swapaxes(self.sums.gram[:, :, : self.modes], 1, 2)
 
     @cached_property
     def residual(self) -> Real:
         """Residual sum of squares of each channel, (m/s²)², shape (record, channel)."""
-        run, fitted = self.sums.run, self._fitted
-        unexplained = 2 * self.sums.data[:, :, :14] - self._smoothed[:, :, :14]
+        run, fitted, m = self.sums.run, self._fitted, self.modes
+        unexplained = 2 * self.sums.data[:, :, :m] - self._smoothed[:, :, :m]
         explained = (fitted.real * unexplained.real + fitted.imag * unexplained.imag).sum(axis=2)
         residual: Real = run.present * np.maximum(run.energy - explained, 0.0)
         return residual
@@ -183,8 +189,8 @@ class Amplitudes:
     @property
     def leverage(self) -> Real:
         """How many of the amplitudes each channel pays for, all records together; shape (channel,)."""
-        s = self.sums.shapes
-        hat = self.sums.run.by_group(self.sums.gram[:, :14, :14] * np.swapaxes(self.inverse, 1, 2))
+        s, m = self.sums.shapes, self.modes
+        hat = self.sums.run.by_group(self.sums.gram[:, :m, :m] * np.swapaxes(self.inverse, 1, 2))
         leverage: Real = self.weights * ((s.conj() @ hat) * s).sum(axis=(0, 2)).real
         return leverage
 
@@ -194,14 +200,15 @@ class Amplitudes:
         Parameters
         ----------
         slopes
-            Without delays: σ and τ beside each other, τ per sample; shape (group, channel, change, 28).
+            Without delays: σ and τ beside each other, τ per sample; shape (group, channel, change, 2 mode).
         """
         if self.delays is None:
             return slopes
         later = (self.delays.values @ self.delays.late.T)[:, :, None, None]
         turn = np.exp(self.sums.poles[:, None, None] * later)
-        secular = slopes[..., 14:] * turn
-        moved = slopes[..., :14] * turn + secular * (later / self.sums.run.step[:, None, None, None])
+        shapes, secular = np.split(slopes, 2, axis=-1)
+        secular = secular * turn
+        moved = shapes * turn + secular * (later / self.sums.run.step[:, None, None, None])
         return np.concatenate([moved, secular], axis=-1)
 
     def gradient(self, slopes: Complex) -> Real:
@@ -210,7 +217,7 @@ class Amplitudes:
         Parameters
         ----------
         slopes
-            σ and τ beside each other, τ per sample; shape (group, channel, parameter, 28).
+            σ and τ beside each other, τ per sample; shape (group, channel, parameter, 2 mode).
 
         Returns
         -------
@@ -252,7 +259,7 @@ class Amplitudes:
             shared = q[members].conj()[:, :, None] * driven[members]
             if not apart:
                 shared = shared.sum(axis=0, keepdims=True)
-            products = (own.reshape(-1, 28) @ np.swapaxes(shared, 1, 2)).reshape(-1, *own.shape)
+            products = (own.reshape(-1, q.shape[1]) @ np.swapaxes(shared, 1, 2)).reshape(-1, *own.shape)
             products *= self.weights[:, None, None]
             # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
             within = (own.view(float) @ np.swapaxes(products.view(float), 2, 3)).sum(axis=1)
@@ -265,12 +272,12 @@ class Amplitudes:
         return np.concatenate(found)
 
     def _across(self, group: int, slopes: Complex, driven: Complex) -> Complex:
-        """Give the inner products of a group's derivatives with what the amplitudes do, (record, 14, parameter)."""
+        """Give the inner products of a group's derivatives with what the amplitudes do, (record, mode, parameter)."""
         channels, parameters = slopes.shape[:2]
         # Amplitudes see the derivatives through the shapes.
         through = (self.sums.shapes[group].conj() * self.weights[:, None]).T
-        seen = (through @ slopes.reshape(channels, -1)).reshape(14, parameters, 28)
-        across = np.swapaxes(driven[:, :14], 0, 1) @ np.swapaxes(seen, 1, 2)
+        seen = (through @ slopes.reshape(channels, -1)).reshape(self.modes, parameters, -1)
+        across = np.swapaxes(driven[:, : self.modes], 0, 1) @ np.swapaxes(seen, 1, 2)
         return np.ascontiguousarray(np.swapaxes(across, 0, 1))
 
     def delay_covariances(self, slopes: Complex, covariance: Real) -> Iterator[Real]:
@@ -296,7 +303,7 @@ class Amplitudes:
         # What noise puts into the amplitudes: their inverse normal equations, less what their reach holds back.
         eigenvalues, vectors = np.linalg.eigh(self.normal)
         roots = self.inverse @ (vectors * np.sqrt(np.maximum(eigenvalues, 0.0))[:, None, :])
-        each = [replace(self, amplitudes=roots[:, :, j], delays=None).information(slopes) for j in range(14)]
+        each = [replace(self, amplitudes=roots[:, :, j], delays=None).information(slopes) for j in range(self.modes)]
         total: Real = np.sum(each, axis=(0, 1))
         return total
 

@@ -65,7 +65,7 @@ def ascend_stepped(
         Parameter values, SI, by name.
     states
         {X, Ẋ} of each drop at its first sample, near to what the start would have, and memories where they are known;
-        shape (drop, 14) or (drop, 14 + memory).
+        shape (drop, state) or (drop, state + memory).
     enough
         Expected gain in log-likelihood at which to stop.
     near
@@ -120,7 +120,7 @@ def prospects(
     values
         Its parameters where it equals the fitted one, SI, by name.
     states
-        {X, Ẋ} of each drop there, shape (drop, 14).
+        {X, Ẋ} of each drop there, shape (drop, state).
     together
         The directions of the fitted model: parameters that move together in it.
     candidates

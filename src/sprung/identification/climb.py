@@ -296,7 +296,7 @@ class Climb:
                     else 8 * damping
                 )
                 return moved(), damping, gain
-            if first:
+            if first and np.isfinite(won):
                 above = moved()
                 back, _ = self.slope(above).step(damping)
                 moved, won = self._tried(point, self.knowledge.bind(above.u + back), now)

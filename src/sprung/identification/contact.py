@@ -17,7 +17,7 @@ from sprung.identification.records import channel_shares
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import HEAVE, LinearModel
+from sprung.vehicle import WHEELS_AT, LinearModel
 
 Real = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def ascend_from_contact(
     first
         Where the fit of these decays ended.
     again
-        Fits decays that begin elsewhere: from a summit and the {X, Ẋ} that it has where they begin, (drop, 14).
+        Fits decays that begin elsewhere: from a summit and the {X, Ẋ} that it has where they begin, (drop, state).
 
     Returns
     -------
@@ -83,16 +83,16 @@ def ascend_from_contact(
 
 
 def _shifts(decays: Sequence[Decay], models: Mapping[str, LinearModel], found: Summit) -> tuple[list[int], Real]:
-    """Give by how many samples the start of each decay has to be moved, and {X, Ẋ} there, shape (drop, 14)."""
+    """Give by how many samples the start of each decay has to be moved, and {X, Ẋ} there, shape (drop, state)."""
     shifts, states = [], found.states.copy()
     for i, decay in enumerate(decays):
         matrices = models[decay.load].matrices(found.values)
-        weight = matrices.M @ HEAVE * STANDARD_GRAVITY
-        static = np.linalg.solve(matrices.K, weight)[3:, None]  # how far the standing vehicle compresses its tyres
+        sag = np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY)
+        static = sag[WHEELS_AT, None]  # how far the standing vehicle compresses its tyres
         # Friction cannot be followed backward.
         earlier, samples = decay.earlier.shape[1] if isinstance(found.point.place, Place) else 0, decay.samples
         motion = found.point.place.motion(found.point.weights, i, earlier, min(samples, int(_LONGEST * decay.rate)))
-        loose = np.flatnonzero((static - motion[3:7] < _COMPRESSED * static).any(axis=0))
+        loose = np.flatnonzero((static - motion[WHEELS_AT] < _COMPRESSED * static).any(axis=0))
         first = int(loose[-1]) + 1 + _wary(decay) if loose.size else 0
         shocked = _shocked(decay, found, i)
         first = max(first, earlier + shocked) if shocked else first

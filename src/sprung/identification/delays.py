@@ -38,19 +38,19 @@ class Delays:
     late
         1 where a channel has a delay, shape (channel, delay).
     poles
-        λ, 1/s, shape (record, 14).
+        λ, 1/s, shape (record, mode).
     turned
-        Shapes with the delays in them, shape (record, channel, 14).
+        Shapes with the delays in them, shape (record, channel, mode).
     weighted
         Their conjugates, times 1/σ².
     gram
-        Inner products of e^{λk} with each other, shape (record, 14, 14).
+        Inner products of e^{λk} with each other, shape (record, mode, mode).
     data
-        Inner products of them with the records, shape (record, channel, 14).
+        Inner products of them with the records, shape (record, channel, mode).
     inverse
-        Inverse normal equations of the amplitudes, shape (record, 14, 14).
+        Inverse normal equations of the amplitudes, shape (record, mode, mode).
     amplitudes
-        q, shape (record, 14).
+        q, shape (record, mode).
     """
 
     values: Real
@@ -68,7 +68,7 @@ class Delays:
 
     @cached_property
     def _velocities(self) -> Complex:
-        """λ q: what a delay adds to the amplitudes of its channels, shape (record, 14)."""
+        """λ q: what a delay adds to the amplitudes of its channels, shape (record, mode)."""
         return self.poles * self.amplitudes
 
     def _seen(self, amplitudes: Complex) -> Complex:
@@ -78,7 +78,7 @@ class Delays:
 
     @cached_property
     def _driven(self) -> Complex:
-        """Inner products of what each delay changes with what the amplitudes do, shape (record, delay, 14)."""
+        """Inner products of what each delay changes with what the amplitudes do, shape (record, delay, mode)."""
         return np.asarray(self.late.T @ self._seen(self._velocities), dtype=np.complex128)
 
     @property
@@ -123,18 +123,18 @@ class Delays:
         record
             Which.
         slopes
-            Derivatives of the turned shapes, see `Amplitudes.information`; shape (channel, parameter, 28).
+            Derivatives of the turned shapes, see `Amplitudes.information`; shape (channel, parameter, 2 mode).
         driven
-            Inner products of (e^{λk}, k e^{λk}) with each other, times the amplitudes; shape (28, 28).
+            Inner products of (e^{λk}, k e^{λk}) with each other, times the amplitudes; shape (2 mode, 2 mode).
         across
-            Inner products of the derivatives with what the amplitudes do, shape (14, parameter).
+            Inner products of the derivatives with what the amplitudes do, shape (mode, parameter).
 
         Returns
         -------
         ndarray
             Shape (delay, parameter).
         """
-        moved = (self.weighted[record] * self._velocities[record].conj()) @ driven[:14]
+        moved = (self.weighted[record] * self._velocities[record].conj()) @ driven[: len(driven) // 2]
         by_channel = (slopes @ moved[:, :, None])[..., 0].real
         shared = (self._driven[record].conj() @ (self.inverse[record] @ across)).real
         response: Real = self.late.T @ by_channel - shared

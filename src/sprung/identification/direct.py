@@ -21,7 +21,7 @@ from sprung.identification.monomials import expand, parameters_of
 from sprung.identification.records import Run
 from sprung.identification.start import Outline
 from sprung.modal import waves
-from sprung.vehicle import LAWS, PARAMETERS, LinearModel, Sensor
+from sprung.vehicle import LAWS, PARAMETERS, LinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -64,9 +64,9 @@ def direct_start(
         Parameters, SI, by name; None where the sensors do not see every coordinate, or no vehicle explains the records.
     """
     wheelbase = outline.wheelbase
-    seen = np.array([sensor.row.seen_from_front_axle(wheelbase).constant for sensor in sensors])
     moved = [model.seen_from_front_axle(wheelbase) for model in models]
     names = moved[0].names
+    seen = Rows.of([sensor.row.seen_from_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
     sprung, ahead = 1 + names.index("m_s"), 1 + names.index("a")
     # m_s a² stands where I_yy does: only their sum can be found.
     keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))
@@ -125,7 +125,10 @@ def _terms(model: LinearModel, keys: Sequence[Key], wheelbase: float) -> Real:
 def _sketches(runs: Sequence[Run], seen: Real) -> list[Run]:
     """Thin the records of every load, and cut them to one length as far as they are of a similar one."""
     groups = [
-        (run, i) for run in runs if np.linalg.matrix_rank(seen[run.present > 0]) == 7 for i in range(len(run.load))
+        (run, i)
+        for run in runs
+        if np.linalg.matrix_rank(seen[run.present > 0]) == seen.shape[1]
+        for i in range(len(run.load))
     ]
     first = [run.sketch(group, _RATE, _LONGEST, _MOST) for run, group in groups]
     durations = np.array([float(one.samples[0] * one.step[0]) for one in first])

@@ -150,7 +150,7 @@ class Place:
 
     @cached_property
     def _slopes(self) -> list[Complex]:
-        """σ and τ of every run beside each other, τ per sample; each of shape (group, channel, parameter, 28)."""
+        """σ and τ of every run beside each other, τ per sample; each of shape (group, channel, parameter, 2 mode)."""
         likelihood = self.likelihood
         slopes = differentiate_modes(likelihood.loads, likelihood.sensors, self.values, self.modes, likelihood.span)
         return self._of_runs(slopes)
@@ -304,7 +304,7 @@ class Place:
         }
 
     def states(self, weights: Real) -> Real:
-        """Give {X, Ẋ} of each drop at its first sample, SI, shape (drop, 14)."""
+        """Give {X, Ẋ} of each drop at its first sample, SI, shape (drop, state)."""
         if self._defective:
             return np.array([one.state for one in self._longhand(weights)])
         found = []
@@ -314,7 +314,7 @@ class Place:
         return self.likelihood.records.in_order(found)
 
     def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
-        """Follow one drop from some samples before its first one to some after it: {X, Ẋ}, SI, shape (14, time)."""
+        """Follow one drop from some samples before its first one to some after it: {X, Ẋ}, SI, shape (state, time)."""
         run, group = self.run_of(position)
         poles, shapes = self.modes.poles[run.load[group]], self.modes.right[run.load[group]]
         exponent = poles[:, None] * np.arange(-before, after) * run.step[group]
@@ -329,7 +329,7 @@ class Place:
         return run, int(run.group[np.flatnonzero(run.order == position)[0]])
 
     def slopes_of(self, position: int) -> Complex:
-        """Give σ and τ of one drop beside each other, τ per sample; shape (channel, parameter, 28)."""
+        """Give σ and τ of one drop beside each other, τ per sample; shape (channel, parameter, 2 mode)."""
         run, group = self.run_of(position)
         slopes: Complex = self._slopes[[one is run for one in self.likelihood.records.runs].index(True)][group]
         return slopes

@@ -17,8 +17,20 @@ from sprung.vehicle import LinearModel, Rows, affine_response
 Real = NDArray[np.float64]
 
 
-REACH = np.repeat([1.0, 10.0], 7)
-"""How far from rest a decay may begin, in standard deviations: a metre or radian, and ten of them in a second."""
+def reach(state: int) -> Real:
+    """Give how far from rest a decay may begin, in standard deviations: a metre or radian, and ten of them in a second.
+
+    Parameters
+    ----------
+    state
+        How many numbers a state {X, Ẋ} has.
+
+    Returns
+    -------
+    ndarray
+        Shape (state,).
+    """
+    return np.repeat([1.0, 10.0], state // 2)
 
 
 class Longhand(NamedTuple):
@@ -35,7 +47,7 @@ class Longhand(NamedTuple):
     fitted
         What the model makes of the centred record; shape (channel, time).
     state
-        {X, Ẋ} at the first sample, SI, shape (14,).
+        {X, Ẋ} at the first sample, SI, shape (2n,) with n coordinates.
     """
 
     residual: Real
@@ -72,7 +84,8 @@ def evaluate_drop(
     """
     channels, samples = record.shape
     lower, slopes = model.accelerations(values)
-    A = np.vstack([np.hstack([np.zeros((7, 7)), np.eye(7)]), lower])
+    n, size = lower.shape
+    A = np.vstack([np.eye(n, size, n), lower])
     S = sensors.at(values)
     root = np.sqrt(weights)[:, None]
 
@@ -89,28 +102,28 @@ def evaluate_drop(
         readings = np.concatenate([readings, readings @ propagator])
         propagator = propagator @ propagator
     basis = weighted(readings[:samples].transpose(2, 1, 0)).T
-    within_reach = np.vstack([basis, np.diag(1 / REACH)])
-    size = np.linalg.norm(within_reach, axis=0)
-    orthonormal, triangle = np.linalg.qr(within_reach / size)
-    target = np.append(weighted(record), np.zeros(14))
-    state = np.linalg.solve(triangle, orthonormal.T @ target) / size
+    within_reach = np.vstack([basis, np.diag(1 / reach(size))])
+    sizes = np.linalg.norm(within_reach, axis=0)
+    orthonormal, triangle = np.linalg.qr(within_reach / sizes)
+    target = np.append(weighted(record), np.zeros(size))
+    state = np.linalg.solve(triangle, orthonormal.T @ target) / sizes
     left = target - orthonormal @ (orthonormal.T @ target)
 
     # How the readings from that state change with each parameter: Ẏ' = A Y' + dA Y, both propagated together.
     changes = []
     for dS, dlower in zip(np.swapaxes(sensors.slopes, 0, 1), slopes, strict=True):
-        dA = np.vstack([np.zeros((7, 14)), dlower])
-        both = np.block([[A, np.zeros((14, 14))], [dA, A]])
-        motion = affine_response(both, np.zeros(28), np.append(state, np.zeros(14)), 1 / rate, samples)
-        changes.append((dS @ lower + S @ dlower) @ motion[:14] + S @ lower @ motion[14:])
-    jacobian = np.vstack([weighted(np.array(changes)).T, np.zeros((14, len(changes)))])
+        dA = np.vstack([np.zeros((n, size)), dlower])
+        both = np.block([[A, np.zeros_like(A)], [dA, A]])
+        motion = affine_response(both, np.zeros(2 * size), np.append(state, np.zeros(size)), 1 / rate, samples)
+        changes.append((dS @ lower + S @ dlower) @ motion[:size] + S @ lower @ motion[size:])
+    jacobian = np.vstack([weighted(np.array(changes)).T, np.zeros((size, len(changes)))])
     jacobian = jacobian - orthonormal @ (orthonormal.T @ jacobian)
 
     fitted = np.swapaxes(readings[:samples] @ state, 0, 1)
     fitted = (fitted - fitted.mean(axis=1, keepdims=True)) * (weights > 0)[:, None]
     return Longhand(
         residual=np.sum((record - fitted) ** 2, axis=1),
-        leverage=np.sum(orthonormal[:-14].reshape(channels, samples, -1) ** 2, axis=(1, 2)),
+        leverage=np.sum(orthonormal[:-size].reshape(channels, samples, -1) ** 2, axis=(1, 2)),
         gradient=jacobian.T @ left,
         information=jacobian.T @ jacobian,
         fitted=fitted,

@@ -74,7 +74,7 @@ def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> t
         for way in (-1, 1)
     ]
     upper = np.flatnonzero(modes.poles.imag >= 0)
-    named = name_modes([Mode(complex(modes.poles[j]), modes.right[:7, j]) for j in upper])
+    named = name_modes([Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper])
     left = set(upper.tolist())
     estimates = []
     for mode in named:

@@ -16,7 +16,7 @@ from scipy.signal import lfilter
 from sprung.identification.climb import told_directions
 from sprung.identification.joint import residual_records
 from sprung.identification.likelihood import Place
-from sprung.identification.longhand import REACH
+from sprung.identification.longhand import reach
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay
 from sprung.vehicle import Felt, NonlinearModel
@@ -105,13 +105,14 @@ def _of_drop(
     # What the forces are per unit of each parameter, and how every mode answers them.
     here = np.array([values[name] for name in model.names])
     G = model.forces.rows.at(here)
-    travel, rate = G @ (motion[:7] + model.sag(here)[:7, None]), G @ motion[7:]
+    X, V = np.split(motion, 2)
+    travel, rate = G @ (X + model.sag(here)[:, None]), G @ V
     way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
     felt = Felt(travel.T, rate.T, way.T, np.zeros_like(travel.T))
     chosen = [model.names.index(name) for name in brought]
     unit = model.forces.sensitivity(here, felt).force[:, :, chosen]
     pushes = -np.linalg.solve(model.linear.matrices(here).M, G.T)
-    into = left[:, 7:] @ pushes
+    into = left[:, len(X) :] @ pushes
     modal = np.einsum("jf,tfb->jbt", into, unit, optimize=True)
     answers = np.empty(modal.shape, dtype=np.complex128)
     for j, pole in enumerate(poles):
@@ -128,17 +129,17 @@ def _of_drop(
     waves = np.exp(np.multiply.outer(at, poles * step))
     driven = waves * (left @ state)
     slopes = place.slopes_of(position)
-    fitted = (np.hstack([driven, driven * at[:, None]]) @ slopes.reshape(-1, 28).T).real.reshape(
+    fitted = (np.hstack([driven, driven * at[:, None]]) @ slopes.reshape(-1, slopes.shape[-1]).T).real.reshape(
         len(at), *slopes.shape[:2]
     )
-    starts = (shapes[:, None, :] * left.T[None]).reshape(-1, 14)
-    begun = (waves @ starts.T).real.reshape(len(at), len(shapes), 14)
+    starts = (shapes[:, None, :] * left.T[None]).reshape(-1, len(poles))
+    begun = (waves @ starts.T).real.reshape(len(at), len(shapes), len(poles))
     whole = np.concatenate([fitted, forced, begun, np.nan_to_num(residual)[:, at].T[:, :, None]], axis=2)
     whole = (whole - whole.mean(axis=0)) * np.sqrt(weights * run.present)[:, None]
     flat = whole.reshape(-1, whole.shape[2])
     products = flat.T @ flat * (samples / len(at))
     count = fitted.shape[2] + forced.shape[2]
-    across, within = products[:count, count:-1], products[count:-1, count:-1] + np.diag(REACH**-2)
+    across, within = products[:count, count:-1], products[count:-1, count:-1] + np.diag(reach(len(state)) ** -2.0)
     taken = np.linalg.solve(within, np.column_stack([across.T, products[count:-1, -1]]))
     information = products[:count, :count] - across @ taken[:, :-1]
     return information, products[:count, -1] - across @ taken[:, -1]

@@ -6,7 +6,7 @@ have them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -29,11 +29,11 @@ class ModalSolution:
     Attributes
     ----------
     poles
-        λ, 1/s, shape (..., 14).
+        λ, 1/s, shape (..., mode): two for every coordinate.
     right
-        Eigenvectors of the state matrix as columns, shape (..., 14, 14).
+        Eigenvectors of the state matrix as columns, shape (..., mode, mode).
     shapes
-        s: reading of each channel per unit of modal amplitude, shape (..., channel, 14).
+        s: reading of each channel per unit of modal amplitude, shape (..., channel, mode).
     """
 
     poles: Complex
@@ -42,19 +42,29 @@ class ModalSolution:
 
     @cached_property
     def left(self) -> Complex:
-        """Inverse of `right`, shape (..., 14, 14)."""
+        """Inverse of `right`, shape (..., mode, mode)."""
         return np.asarray(np.linalg.inv(self.right), dtype=np.complex128)
 
     @property
+    def displacements(self) -> Complex:
+        """Displacements of the coordinates in each mode, shape (..., coordinate, mode)."""
+        return self.right[..., : self.right.shape[-1] // 2, :]
+
+    @property
+    def velocities(self) -> Complex:
+        """Velocities of the coordinates in each mode, shape (..., coordinate, mode)."""
+        return self.right[..., self.right.shape[-1] // 2 :, :]
+
+    @property
     def accelerations(self) -> Complex:
-        """Accelerations of the seven coordinates in each mode, shape (..., 7, 14)."""
-        return self.right[..., 7:, :] * self.poles[..., None, :]
+        """Accelerations of the coordinates in each mode, shape (..., coordinate, mode)."""
+        return self.velocities * self.poles[..., None, :]
 
     @property
     def condition(self) -> float:
         """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
         # Displacements and velocities are made comparable by a mean frequency.
-        balance = np.repeat([float(np.abs(self.poles).mean()), 1.0], 7)
+        balance = np.repeat([float(np.abs(self.poles).mean()), 1.0], self.right.shape[-1] // 2)
         right = _sizes(self.right * balance[:, None], axis=-2)
         return float((right * _sizes(self.left / balance, axis=-1)).max())
 
@@ -65,11 +75,11 @@ class ModalSlopes(NamedTuple):
     Attributes
     ----------
     poles
-        Shape (..., parameter, 14).
+        Shape (..., parameter, mode).
     shapes
-        σ, what multiplies q e^{λt} in the derivative of a channel; shape (..., channel, parameter, 14).
+        σ, what multiplies q e^{λt} in the derivative of a channel; shape (..., channel, parameter, mode).
     secular
-        τ, what multiplies q t e^{λt}; shape (..., channel, parameter, 14).
+        τ, what multiplies q t e^{λt}; shape (..., channel, parameter, mode).
     """
 
     poles: Complex
@@ -98,7 +108,8 @@ def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolutio
     poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
     S = sensors.at(values)
     S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
-    return ModalSolution(poles, right, S @ (right[..., 7:, :] * poles[..., None, :]))
+    modes = ModalSolution(poles, right, right)
+    return replace(modes, shapes=S @ modes.accelerations)
 
 
 def differentiate_modes(
@@ -129,14 +140,14 @@ def differentiate_modes(
 
     With motions v, λv, λ²v of a mode, dA V is -M⁻¹ (dM λ²v + dC λv + dK v).
     """
-    displacements = modes.right[..., :7, :]
-    motions = np.concatenate([modes.accelerations, modes.right[..., 7:, :], displacements], axis=-2)
-    # The rows of dM, dC and dK beside each other: (..., 7 rows of every parameter, 21).
+    motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
+    # The rows of dM, dC and dK beside each other: (..., the rows of every parameter, 3 coordinate).
     slopes = np.moveaxis(np.concatenate(model.slopes(values), axis=-1), 0, -2)
     lead = modes.poles.shape[:-1]
-    forces = (slopes.reshape(*lead, -1, 21) @ motions).reshape(*lead, 7, len(values), 14)
+    by_coordinate = (*lead, slopes.shape[-3], len(values), modes.poles.shape[-1])
+    forces = (slopes.reshape(*lead, -1, slopes.shape[-1]) @ motions).reshape(by_coordinate)
     changed = respond(model, sensors, values, modes, forces, span)
-    moved = (sensors.slopes.reshape(-1, 7) @ modes.accelerations).reshape(*changed.shapes.shape)
+    moved = (sensors.slopes.reshape(-1, sensors.slopes.shape[-1]) @ modes.accelerations).reshape(*changed.shapes.shape)
     return changed._replace(shapes=changed.shapes + moved)
 
 
@@ -150,26 +161,27 @@ def respond(
     model, sensors, values, modes, span
         As for `differentiate_modes`.
     forces
-        (dM λ² + dC λ + dK) v of every mode v, for several changes; shape (..., 7, change, 14).
+        (dM λ² + dC λ + dK) v of every mode v, for several changes; shape (..., coordinate, change, mode).
 
     Returns
     -------
     ModalSlopes
         By change instead of by parameter.
     """
-    lead, channels, changes = modes.poles.shape[:-1], len(sensors.affine), forces.shape[-2]
-    S = np.broadcast_to(sensors.at(values), (*lead, channels, 7))
-    both = np.concatenate([modes.left[..., 7:], S], axis=-2) @ -np.linalg.inv(model.matrices(values).M)
-    changed = (both @ forces.reshape(*lead, 7, -1)).reshape(*lead, 14 + channels, changes, 14)
-    D, of_sensors = changed[..., :14, :, :], changed[..., 14:, :, :]
+    *lead, n, changes, m = forces.shape
+    channels = len(sensors.affine)
+    S = np.broadcast_to(sensors.at(values), (*lead, channels, n))
+    both = np.concatenate([modes.left[..., n:], S], axis=-2) @ -np.linalg.inv(model.matrices(values).M)
+    changed = (both @ forces.reshape(*lead, n, -1)).reshape(*lead, m + channels, changes, m)
+    D, of_sensors = changed[..., :m, :, :], changed[..., m:, :, :]
 
     difference = modes.poles[..., None, :] - modes.poles[..., :, None]
     close = np.abs(difference) * span < _CLOSE
     mixing = np.where(close, 0.0, 1.0 / np.where(close, 1.0, difference))
 
     def seen(mixed: Complex) -> Complex:
-        by_channel: Complex = modes.shapes @ mixed.reshape(*lead, 14, -1)
-        return by_channel.reshape(*lead, channels, changes, 14)
+        by_channel: Complex = modes.shapes @ mixed.reshape(*lead, m, -1)
+        return by_channel.reshape(*lead, channels, changes, m)
 
     return ModalSlopes(
         np.diagonal(D, axis1=-3, axis2=-1),

@@ -15,13 +15,47 @@ from sprung.vehicle import NEUTRAL, Sensor
 BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 """Hz: from a limousine to an empty lorry."""
 
+USUAL_ENGINE = 0.1
+"""Part of the sprung mass that an engine on mounts usually is."""
+
+_MOUNTED = (7.0, 10.0, 14.0)  # Hz of an engine on its mounts
+
 HOP_FREQUENCIES = (8.5, 12.0, 18.0)
 """Hz."""
 
 DAMPING_RATIOS = (0.12, 0.35, 0.8)
 
 _GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
+_MOUNT_DAMPING = 0.08  # damping ratio of usual engine mounts
 _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
+
+
+class Mounting(NamedTuple):
+    """How an engine may be mounted, before a fit says so.
+
+    Attributes
+    ----------
+    frequency
+        On its mounts, the body held, Hz.
+    place
+        Forward of the front axle, m.
+    """
+
+    frequency: float = 10.0
+    place: float = 0.0
+
+    def engine(self, mass: float) -> dict[str, float]:
+        """Give the parameters of an engine of a mass in kg, SI, by name."""
+        omega = 2 * np.pi * self.frequency
+        return {"m_e": mass, "k_e": mass * omega**2, "c_e": 2 * _MOUNT_DAMPING * mass * omega, "x_e": self.place}
+
+
+USUAL_MOUNTING = Mounting()
+
+
+def mountings_of(wheelbase: float) -> list[Mounting]:
+    """Give how engines are usually mounted: above either axle of a vehicle with a wheelbase in m."""
+    return [Mounting(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
 
 
 class Outline(NamedTuple):
@@ -64,7 +98,7 @@ class Outline(NamedTuple):
         return self.mass * (1 - 4 * _WHEEL_SHARE)
 
 
-def catalogue(outline: Outline, known: Mapping[str, Known]) -> Iterator[dict[str, float]]:
+def catalogue(outline: Outline, known: Mapping[str, Known], engine: bool = False) -> Iterator[dict[str, float]]:
     """Make vehicles of every usual kind, of one size.
 
     Parameters
@@ -73,6 +107,8 @@ def catalogue(outline: Outline, known: Mapping[str, Known]) -> Iterator[dict[str
         The size.
     known
         What was measured beforehand.
+    engine
+        Whether each has an engine on mounts, wherever that usually is.
 
     Yields
     ------
@@ -95,7 +131,9 @@ def catalogue(outline: Outline, known: Mapping[str, Known]) -> Iterator[dict[str
             values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
         values |= {"a": a, "b": b}
         values |= NEUTRAL
-        yield values | {name: one.value for name, one in known.items() if name in values}
+        for mounting in mountings_of(wheelbase) if engine else [USUAL_MOUNTING]:
+            values |= mounting.engine(USUAL_ENGINE * sprung_mass)
+            yield values | {name: one.value for name, one in known.items() if name in values}
 
 
 def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.likelihood import Evaluation
-from sprung.identification.longhand import REACH
+from sprung.identification.longhand import reach
 from sprung.identification.records import channel_shares
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
@@ -56,7 +56,7 @@ class SteppedLikelihood:
         Part of gravity's change that the sensors feel when the body turns: 1 where they turn with it, else 0.
     begin
         {X, Ẋ} and memories with which every drop starts, as far as is known at first; from where the vehicle rests with its
-        load, as everywhere in the fit; shape (drop, 14 + memory).
+        load, as everywhere in the fit; shape (drop, state + memory).
     """
 
     models: tuple[NonlinearModel, ...]
@@ -92,7 +92,7 @@ class SteppedLikelihood:
             The sensors' rows, in the order of the decays' channels.
         states
             {X, Ẋ} of each drop at its first sample, from which the first climb starts, and memories where they are known;
-            shape (drop, 14) or (drop, 14 + memory).
+            shape (drop, state) or (drop, state + memory).
         tilting
             Whether the sensors turn with the body, and feel the less of gravity.
         longest
@@ -104,7 +104,8 @@ class SteppedLikelihood:
         for record, decay in zip(values, decays, strict=True):
             centred = decay.values - decay.values.mean(axis=1, keepdims=True)
             record[:, : decay.samples] = np.where(decay.usable[:, None], centred, 0.0)
-        begin = np.zeros((len(decays), 14 + len(next(iter(models.values())).forces.remembering)))
+        one = next(iter(models.values()))
+        begin = np.zeros((len(decays), one.state + len(one.forces.remembering)))
         given = min(begin.shape[1], states.shape[1])
         begin[:, :given] = states[:, :given]
         return cls(
@@ -139,12 +140,12 @@ class SteppedLikelihood:
 
     @cached_property
     def reach(self) -> Real:
-        """How far from rest a decay may begin, in standard deviations; shape (14 + memory,)."""
-        reach: Real = np.concatenate([REACH, np.full(self.begin.shape[1] - 14, _MEMORY)])
-        return reach
+        """How far from rest a decay may begin, in standard deviations; shape (state + memory,)."""
+        state = self.models[0].state
+        return np.concatenate([reach(state), np.full(self.begin.shape[1] - state, _MEMORY)])
 
     def beginning(self, states: Real) -> SteppedLikelihood:
-        """Give the same with other initial states and memories to start from, shape (drop, 14 + memory)."""
+        """Give the same with other initial states and memories to start from, shape (drop, state + memory)."""
         return replace(self, begin=states)
 
     def at(self, values: Real) -> SteppedPlace:
@@ -152,9 +153,10 @@ class SteppedLikelihood:
         return SteppedPlace(self, values, self.begin + self.sag(values))
 
     def sag(self, values: Real) -> Real:
-        """Give by how much the load of each drop lets it down where it rests; shape (drop, 14 + memory), X alone not zero."""
+        """Give by how much the load of each drop lets it down where it rests; (drop, state + memory), X alone not zero."""
         sag = np.zeros_like(self.begin)
-        sag[:, :7] = np.array([model.sag(values) for model in self.models])[self.kind]
+        of_each = np.array([model.sag(values) for model in self.models])[self.kind]
+        sag[:, : of_each.shape[1]] = of_each
         return sag
 
 
@@ -169,7 +171,7 @@ class SteppedPlace:
     values
         Parameters, SI, shape (parameter,).
     begin
-        {X, Ẋ} and memories of each drop at its first sample, from where the empty vehicle rests, shape (drop, 14 + memory).
+        {X, Ẋ} and memories of each drop at its first sample, from where the empty vehicle rests, shape (drop, state + memory).
     """
 
     likelihood: SteppedLikelihood
@@ -184,11 +186,12 @@ class SteppedPlace:
     @cached_property
     def _path(self) -> Path:
         steps = self.likelihood.every * (self.likelihood.values.shape[2] - 1)
-        return self._stepper.follow(self.begin[:, :14], self.begin[:, 14:], steps)
+        states, memories = np.split(self.begin, [self.likelihood.models[0].state], axis=1)
+        return self._stepper.follow(states, memories, steps)
 
     @cached_property
     def _accelerations(self) -> tuple[Real, Real]:
-        """Accelerations from {X, Ẋ, u, 1} of every drop, shape (drop, 7, input), and by parameter, (drop, parameter, ...)."""
+        """Accelerations from {X, Ẋ, u, 1} of every drop, (drop, coordinate, input), and by parameter, next to it."""
         made = [model.accelerations(self.values) for model in self.likelihood.models]
         rows, slopes = (np.stack(each)[self.likelihood.kind] for each in zip(*made, strict=True))
         return rows, slopes
@@ -202,7 +205,7 @@ class SteppedPlace:
 
     @cached_property
     def _motion(self) -> Real:
-        """Accelerations of the seven coordinates at every sample, shape (time, drop, 7)."""
+        """Accelerations of the coordinates at every sample, shape (time, drop, coordinate)."""
         motion: Real = np.einsum("dij,kdj->kdi", self._accelerations[0], self._inputs, optimize=True)
         return motion
 
@@ -308,21 +311,20 @@ class SteppedPlace:
         all forces are what they were.
         """
         forces, likelihood = self._stepper.forces, self.likelihood
-        remembered = self.begin[:, 14:]
+        state = likelihood.models[0].state
+        X, V, remembered = np.split(self.begin, [state // 2, state], axis=1)
         gone = np.abs(remembered) > _MOST
         if not gone.any():
             return None
         rows = forces.rows.at(self.values)
         memory = np.zeros((len(remembered), forces.number))
         memory[:, forces.remembering] = remembered
-        travel = self.begin[:, :7] @ rows.T
-        answer = forces.answer(self.values, Felt(travel, self.begin[:, 7:14] @ rows.T, np.zeros_like(travel), memory))
+        travel = X @ rows.T
+        answer = forces.answer(self.values, Felt(travel, V @ rows.T, np.zeros_like(travel), memory))
         lost = np.where(gone, remembered, 0.0) * answer.by_memory[:, forces.remembering] @ rows[forces.remembering]
         stiffness = np.array([model.linear.matrices(self.values).K for model in likelihood.models])[likelihood.kind]
-        begin = self.begin.copy()
-        begin[:, :7] += np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
-        begin[:, 14:][gone] = 0.0
-        return begin - likelihood.sag(self.values)
+        X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
+        return np.hstack([X, V, np.where(gone, 0.0, remembered)]) - likelihood.sag(self.values)
 
     def feigned(self, weights: Real) -> Real:
         """Give the information that noise alone feigns: none is known of, shape (parameter, parameter)."""
@@ -338,7 +340,7 @@ class SteppedPlace:
         return [record[:, :samples] for record, samples in zip(whole, self.likelihood.samples, strict=True)]
 
     def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
-        """Follow one drop from its first sample on: {X, Ẋ} and memories, SI, shape (14 + memory, time).
+        """Follow one drop from its first sample on: {X, Ẋ} and memories, SI, shape (state + memory, time).
 
         What was before nobody knows: friction cannot be followed backward in time.
         """
@@ -353,7 +355,7 @@ class SteppedPlace:
         return {}
 
     def states(self, weights: Real) -> Real:
-        """Give {X, Ẋ} and memories of each drop at its first sample, SI, shape (drop, 14 + memory)."""
+        """Give {X, Ẋ} and memories of each drop at its first sample, SI, shape (drop, state + memory)."""
         states: Real = self.begin - self.likelihood.sag(self.values)
         return states
 

@@ -106,7 +106,7 @@ class Summit:
 
     @property
     def states(self) -> Real:
-        """{X, Ẋ} of each drop at the start of its decay, SI, shape (drop, 14)."""
+        """{X, Ẋ} of each drop at the start of its decay, SI, shape (drop, state)."""
         return self.point.place.states(self.point.weights)
 
     def after(self, before: Summit) -> Summit:
@@ -160,7 +160,8 @@ def ascend(
         apart = ascend(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
     outline = Outline.of(known, sensors)
-    usual = [dict(start)] if start is not None else list(catalogue(outline, known))
+    engine = "m_e" in next(iter(models.values())).names
+    usual = [dict(start)] if start is not None else list(catalogue(outline, known, engine))
     climb = _climb(decays, models, sensors, known, usual[0])
     at = climb.knowledge.coordinates.by_name
     if start is not None:

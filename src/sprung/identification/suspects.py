@@ -92,7 +92,7 @@ def suspects(
     changes = list(_changes(summit, place, sensors, loads, heights))
     accused, slopes = [who for who, _ in changes], [slope for _, slope in changes]
     more = ModalSlopes(
-        np.zeros((*place.modes.poles.shape[:-1], len(slopes), 14), dtype=np.complex128),
+        np.stack([one.poles[:, 0] for one in slopes], axis=1),
         np.stack([one.shapes[:, :, 0] for one in slopes], axis=2),
         np.stack([one.secular[:, :, 0] for one in slopes], axis=2),
     )
@@ -134,8 +134,7 @@ def _changes(
 ) -> Iterator[tuple[_Who, ModalSlopes]]:
     """Give what each change does to the response of every load."""
     modes, likelihood = place.modes, place.likelihood
-    nothing = np.zeros((*modes.shapes.shape[:2], 1, 14), dtype=np.complex128)
-    no_poles = np.zeros((len(modes.poles), 1, 14), dtype=np.complex128)
+    nothing, no_poles = np.zeros_like(modes.shapes[:, :, None]), np.zeros_like(modes.poles[:, None])
     for channel, sensor in enumerate(sensors):
         more: tuple[tuple[Kind, Complex], ...] = (("gain", np.ones_like(modes.poles)), ("late", -modes.poles))
         for kind, factor in more:
@@ -150,14 +149,14 @@ def _changes(
     for number, name in enumerate(likelihood.records.loads):
         for item, piece in enumerate(loads[name].items):
             for axis in (0, 1) if piece.position is not None else ():
-                forces = np.zeros((len(modes.poles), 7, 1, 14), dtype=np.complex128)
+                forces = np.zeros_like(modes.accelerations[:, :, None])
                 forces[number, :, 0] = _moved(loads[name], item, axis, heights, summit) @ modes.accelerations[number]
                 changed = respond(likelihood.loads, likelihood.sensors, place.values, modes, forces, likelihood.span)
                 yield ("load-position", name, axis, item), changed
 
 
 def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
-    """Give what a body sensor's row changes by, per metre forward and left; each of shape (7,)."""
+    """Give what a body sensor's row changes by, per metre forward and left; each of shape (coordinate,)."""
     assert sensor.position is not None  # noqa: S101 (asked by the caller; for the type checker)
     x, y, z = sensor.position
     places = [(x, y, z), (x + 1, y, z), (x, y + 1, z)]
@@ -166,7 +165,7 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
 
 
 def _moved(load: Load, item: int, axis: int, heights: Heights, summit: Summit) -> Real:
-    """Give what M changes by, per metre that an item is moved; shape (7, 7)."""
+    """Give what M changes by, per metre that an item is moved; shape (coordinate, coordinate)."""
     sides = []
     for step in (-_NUDGE, _NUDGE):
         place = list(load.items[item].position or ())

@@ -204,7 +204,7 @@ def vibrations(matrices: Matrices) -> tuple[Mode, ...]:
     Returns
     -------
     tuple of Mode
-        Shapes in the seven coordinates, in the order of `together`.
+        Shapes in its coordinates, in the order of `together`.
     """
     poles, vectors = np.linalg.eig(matrices.state)
-    return modes_from(poles, vectors[:7])
+    return modes_from(poles, vectors[: len(matrices.M)])

@@ -23,8 +23,9 @@ MODE_NAMES = (
     "wheel pitch",
     "wheel roll",
     "wheel articulation",
+    "engine bounce",
 )
-"""The paper's seven modes, Table 3."""
+"""The paper's seven modes, Table 3, and the one that an engine on its mounts adds."""
 
 LEAST_SIMILARITY = 0.2
 """A shape less like every template than this gets no name."""
@@ -59,7 +60,7 @@ def name_modes(
     Parameters
     ----------
     modes
-        Shapes in the seven coordinates.
+        Shapes in the coordinates of a vehicle: the paper's seven, or these and its engine's.
     half_wheelbase, half_track
         Levers that make pitch and roll angles comparable with displacements, m.
 
@@ -71,11 +72,13 @@ def name_modes(
     groups = together(modes)
     if not groups:
         return ()
-    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1])  # the body counts at its four corners
+    # The body counts at its four corners, and an engine as much, of which it is a large part.
+    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])
+    scale = scale[: len(groups[0][0].shape)]
     shapes = [scale[:, None] * np.stack([mode.shape for mode in group], axis=1) for group in groups]
     readings = []
     for wheels in (_AXLE_BY_AXLE, _ALL_WHEELS):
-        templates = block_diag(np.eye(3), wheels.T)
+        templates = block_diag(np.eye(3), wheels.T, np.eye(len(scale) - 7))
         alike = np.stack([similarity(shape, templates).mean(axis=0) for shape in shapes])
         rows, columns = linear_sum_assignment(alike, maximize=True)
         readings.append((float(alike[rows, columns].sum()), alike, rows, columns))
@@ -99,7 +102,7 @@ def modes_of(matrices: Matrices) -> tuple[Mode, ...]:
     Returns
     -------
     tuple of Mode
-        Shapes in the seven coordinates, in the order of undamped natural frequency; the two real poles of an overdamped
+        Shapes in its coordinates, in the order of undamped natural frequency; the two real poles of an overdamped
         mode follow each other under one name.
 
     Examples

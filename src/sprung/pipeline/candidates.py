@@ -8,15 +8,28 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Summit, ascend, ascend_stepped, lost_without
+from sprung.identification import USUAL_ENGINE, Summit, ascend, ascend_stepped, lost_without, mountings_of
 from sprung.pipeline.choice import Choice
 from sprung.prepare import Decay
-from sprung.vehicle import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, Rows, Tracks, brought_by, forces_beside, separated
+from sprung.vehicle import (
+    EXTRA_PARAMETERS,
+    NEUTRAL,
+    PARAMETERS,
+    Rows,
+    Tracks,
+    brought_by,
+    coordinates,
+    forces_beside,
+    separated,
+)
 
 Real = NDArray[np.float64]
 
 SEPARATE = "tracks apart"
 """Springs and dampers at half-distances of their own, as one candidate among the extras."""
+
+ENGINE = "engine"
+"""An engine on mounts of its own."""
 
 _TRAVEL = 0.002
 """m of travel at which a spring's force is the size of the friction from which a fit starts."""
@@ -24,7 +37,7 @@ _TRAVEL = 0.002
 _STIFFER = 10.0
 """How many times stiffer than the spring a friction is before it slides, at the start of a fit."""
 
-_NOT_NEGATIVE = frozenset(name for name, value in NEUTRAL.items() if value == 0 and not PARAMETERS[name].signed)
+_NOT_NEGATIVE = frozenset(name for name, told in PARAMETERS.items() if not (told.positive or told.signed))
 """Parameters of extras that cannot be below zero."""
 
 _UNEVEN = ("ks", "kt", "cs")
@@ -38,6 +51,9 @@ _STROKE = 0.05
 
 _MET = (0.35, 0.6, 0.85)
 """Parts of the largest compression at which stops may be met, where a fit begins."""
+
+_SPECK = 1e-5
+"""Part of the body that weighs so little that it changes nothing."""
 
 _ENOUGH = 250.0
 """Samples per second, at least, that tell what an extra promises."""
@@ -71,13 +87,13 @@ def fit_from(
     progress
         Told in words what is being done.
     states
-        {X, Ẋ} of each drop at its first sample, (drop, 14), where these decays begin elsewhere than those.
+        {X, Ẋ} of each drop at its first sample, shape (drop, state), where these decays begin elsewhere than those.
     begun
         Whether their beginnings will do.
     most
         Steps at the most.
     """
-    states = before.states if states is None else states
+    states = carried_over(before.states if states is None else states, before.names, choice.names)
     sensors, known = choice.campaign.sensors, choice.known
     start = start_of(choice, before.parameters)
     if not choice.followed:
@@ -91,7 +107,7 @@ def fit_from(
             start=start,
             states=states,
             enough=enough,
-            near=states.shape[1] > 14,
+            near=states.shape[1] > 2 * len(coordinates(choice.names)),
             begun=begun,
             most=most,
             tilting=choice.tilting,
@@ -115,7 +131,7 @@ def without(choice: Choice, extra: str) -> Choice:
 
 def size_of(extra: str, p: Mapping[str, float]) -> float:
     """Give what an extra matters beside what it is an extra to, as a part."""
-    parts = {
+    parts: dict[str, Callable[[str], float]] = {
         SEPARATE: lambda axle: p[f"t_{axle}1"] / p[f"t_{axle}2"] - 1,
         "anti-roll": lambda axle: p[f"k_a{axle}"] / p[f"k_s{axle}"],
         "tyre-damping": lambda axle: p[f"c_t{axle}"] / p[f"c_s{axle}"],
@@ -125,6 +141,7 @@ def size_of(extra: str, p: Mapping[str, float]) -> float:
         "progressive": lambda axle: _STROKE * p[f"p_{axle}"],
         "bump-stop": lambda axle: p[f"k_b{axle}"] / p[f"k_s{axle}"],
         "asymmetry": lambda axle: max(abs(p[f"d_{rate}{axle}"] / p[f"{rate[0]}_{rate[1:]}{axle}"]) for rate in _UNEVEN),
+        ENGINE: lambda _: p["m_e"] / p["m_s"],
         "rigid-axle": lambda axle: 1 - p[f"n_{axle}" if f"n_{axle}" in p else f"n_{axle}2"],
     }
     return max(abs(parts[extra](axle)) for axle in "fr")
@@ -153,25 +170,56 @@ def places_of_stops(choice: Choice, summit: Summit, decays: Sequence[Decay]) -> 
     """Give compressions, m, at which stops may be met, from how far a fitted vehicle moves."""
     rows = Rows.of([force.row for force in forces_beside(choice.tracks, ("bump-stop",))], choice.names)
     G, point = rows.at(summit.values), summit.point
-    motions = (point.place.motion(point.weights, i, 0, decay.samples)[:7] for i, decay in enumerate(decays))
-    largest = max(float(-(G @ X).min()) for X in motions)
+    motions = (point.place.motion(point.weights, i, 0, decay.samples) for i, decay in enumerate(decays))
+    largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
     return [part * largest for part in _MET] if largest > 0 else []
 
 
-def neutral_start(names: Sequence[str], own: Mapping[str, float], met: float = 1.0) -> dict[str, float]:
-    """Give the same vehicle by the names of a larger model, which meets its stops at a compression in m."""
+def variants(extra: str, choice: Choice, own: Mapping[str, float]) -> list[Choice]:
+    """Give the places from which the fit of an extra may begin, where what it is an extra to says nothing of them."""
+    if extra != ENGINE:
+        return [choice]
+    mountings = mountings_of(own["a"] + own["b"])
+    return [one for one in (replace(choice, mounted=each) for each in mountings) if _has_masses(one, own)]
+
+
+def _has_masses(choice: Choice, own: Mapping[str, float]) -> bool:
+    """Say whether a fit begins with a vehicle of which every part has mass."""
+    start = np.array(list(start_of(choice, own).values()))
+    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in choice.models.values())
+
+
+def neutral_start(choice: Choice, own: Mapping[str, float]) -> dict[str, float]:
+    """Give the same vehicle by the names of a larger model; an engine is next to none, as without any it would be nowhere."""
     together = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
     stiff = {f"s_{axle}": _STIFFER * own[f"k_s{axle}"] for axle in "fr"}
-    stops = dict.fromkeys(("x_bf", "x_br"), met)
-    known = {**NEUTRAL, **stiff, **stops, **separated(own), **together, **own}
-    return {name: known[name] for name in names}
+    stops = dict.fromkeys(("x_bf", "x_br"), choice.met)
+    engine = choice.mounted.engine(_SPECK * own["m_s"])
+    known = {**NEUTRAL, **stiff, **stops, **engine, **separated(own), **together, **own}
+    return {name: known[name] for name in choice.names}
 
 
 def start_of(choice: Choice, own: Mapping[str, float]) -> dict[str, float]:
-    """Give where to start a model from: friction that is not there yet starts with some."""
-    slid = {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr" if f"F_{axle}" not in own}
-    start = neutral_start(choice.names, own, choice.met)
-    return {name: slid.get(name, value) for name, value in start.items()}
+    """Give where to start a model from: friction and engines that are not there yet start with some."""
+    slid = {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"}
+    begun = {**slid, **choice.mounted.engine(USUAL_ENGINE * own["m_s"]), **own}
+    return {name: begun.get(name, value) for name, value in neutral_start(choice, own).items()}
+
+
+def carried_over(states: Real, before: Sequence[str], names: Sequence[str]) -> Real:
+    """Give initial states by the coordinates of another model; an engine that is new moves as the body does.
+
+    Parameters
+    ----------
+    states
+        {X, Ẋ}, and memories where they are known, SI, shape (drop, state).
+    before, names
+        Parameters of the model that they belong to, and of the other.
+    """
+    own, other = coordinates(before), coordinates(names)
+    X, V, memories = np.split(states, [len(own), 2 * len(own)], axis=1)
+    chosen = [own.index(one) if one in own else 0 for one in other]
+    return np.hstack([X[:, chosen], V[:, chosen], memories])
 
 
 def thinned(decays: Sequence[Decay]) -> tuple[list[Decay], float]:

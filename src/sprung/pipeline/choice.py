@@ -8,6 +8,7 @@ from functools import cached_property
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
+from sprung.identification import USUAL_MOUNTING, Mounting
 from sprung.recording import Campaign
 from sprung.vehicle import (
     EXTRAS,
@@ -53,6 +54,8 @@ class Choice:
         Whether wheels may be off the ground, so that the ground is a force beside the others.
     met
         Compression at which stops are thought to be met before a fit says so, m.
+    mounted
+        How an engine is thought to be mounted before a fit says so.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
     """
@@ -66,6 +69,7 @@ class Choice:
     tilting: bool = False
     airborne: bool = False
     met: float = 1.0
+    mounted: Mounting = USUAL_MOUNTING
     carried_at: CarriedAt = "wheels"
 
     @property

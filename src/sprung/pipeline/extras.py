@@ -8,7 +8,7 @@ residuals' colour and the drops' disagreement allowed for.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from sprung.identification import (
     NEAR,
     Summit,
+    ascend,
     expected_gain,
     force_scores,
     inflation_of,
@@ -25,8 +26,10 @@ from sprung.identification import (
     prospects,
 )
 from sprung.pipeline.candidates import (
+    ENGINE,
     SEPARATE,
     brought,
+    carried_over,
     decided,
     fit_from,
     neutral,
@@ -35,6 +38,7 @@ from sprung.pipeline.candidates import (
     possible,
     size_of,
     thinned,
+    variants,
     without,
 )
 from sprung.pipeline.choice import Choice
@@ -45,7 +49,7 @@ Real = NDArray[np.float64]
 
 STOPS = "bump-stop"
 
-_WHOLLY = frozenset({"asymmetry", "rigid-axle"})
+_WHOLLY = frozenset({"asymmetry", "rigid-axle", "engine"})
 """Extras that look like many a mistake with sensors and loads: they explain the records wholly, or they are not there."""
 
 _UNLIKELY = 0.25
@@ -166,36 +170,63 @@ class Way:
 
     def linear(self) -> Way:
         """Try the extras that matrices carry, the most promising first, until none gains what is asked."""
-        campaign, way = self.choice.campaign, self
+        way = self
         refused: set[str] = set()
         while True:
-            promised = {}
-            for extra in way._open([SEPARATE, *LINEAR_EXTRAS]):
-                if extra in refused:
-                    continue
-                larger = way._with([extra])
-                start = neutral_start(larger.names, way.summit.parameters)
-                gain = expected_gain(self.decays, larger.models, campaign.sensors, larger.known, start)
-                promised[extra] = gain / way.summit.disagreement
+            still = [extra for extra in way._open([SEPARATE, *LINEAR_EXTRAS]) if extra not in refused]
+            promised = {extra: way._promised(extra) for extra in still}
             hopeful = [extra for extra, gain in promised.items() if gain > _UNLIKELY * way._asked(extra)]
             way = way._noted({extra: gain for extra, gain in promised.items() if extra not in hopeful}, False, False)
             if not hopeful:
                 return way
             extra = max(hopeful, key=promised.__getitem__)
             refused |= (promised.keys() - set(hopeful)) | {extra}
-            larger = way._with([extra])
-            self.progress(f"with {extra}")
-            summit = fit_from(larger, self.decays, way.summit, NEAR, self.progress)
-            gain = 2 * (summit.loglikelihood - way.summit.loglikelihood) / summit.disagreement
-            tried = replace(way, choice=larger, summit=summit)
-            against = tried._against(extra, tried._inflation) if summit.converged else "the fit with it did not settle"
-            if not against and extra in _WHOLLY and tried._errs:
-                against = "it does not explain all of it, as it would if it were what is the matter"
-            if gain > way._asked(extra) and not against:
-                way = replace(way._noted({extra: gain}, True, True), choice=larger, summit=summit)
+            tried = way._trying(extra)
+            gain = 2 * (tried.summit.loglikelihood - way.summit.loglikelihood) / tried.summit.disagreement
+            against = (
+                tried._against(extra, tried._inflation) if tried.summit.converged else "the fit with it did not settle"
+            )
+            enough = gain > way._asked(extra)
+            larger = tried._noted({extra: gain}, True, True)
+            if enough and not against and extra in _WHOLLY and tried._errs:
+                larger = larger.linear()
+                against = (
+                    "it does not explain all of it, as it would if it were what is the matter" if larger._errs else ""
+                )
+            if enough and not against:
+                way = larger
                 refused.clear()
             else:
-                way = way._noted({extra: gain}, True, False, against if gain > way._asked(extra) else "")
+                way = way._noted({extra: gain}, True, False, against if enough else "")
+                way = replace(way, choice=replace(way.choice, mounted=tried.choice.mounted))
+
+    def wanting(self, extras: Sequence[str]) -> Way:
+        """Fit linear extras that are wanted, whatever they gain."""
+        way = self
+        for extra in extras:
+            way = way._trying(extra)
+        return way
+
+    def _promised(self, extra: str) -> float:
+        """Give what a linear extra would gain, begun where it would gain most."""
+        sensors, own = self.choice.campaign.sensors, self.summit.parameters
+        larger = variants(extra, self._with([extra]), own)
+        gains = [expected_gain(self.decays, one.models, sensors, one.known, neutral_start(one, own)) for one in larger]
+        return max(gains) / self.summit.disagreement
+
+    def _trying(self, extra: str) -> Way:
+        """Fit a linear extra, from wherever it may begin; an engine, without which all may be wrong, from nothing as well."""
+        self.progress(f"with {extra}")
+        larger = self._with([extra])
+        ends = [
+            replace(self, choice=one, summit=fit_from(one, self.decays, self.summit, NEAR, self.progress))
+            for one in variants(extra, larger, self.summit.parameters)
+        ]
+        if extra == ENGINE:
+            sensors, known = larger.campaign.sensors, larger.known
+            anew = ascend(self.decays, larger.models, sensors, known, enough=NEAR, progress=self.progress)
+            ends.append(replace(self, choice=larger, summit=anew.after(self.summit)))
+        return max(ends, key=lambda end: (end.summit.converged, end.summit.loglikelihood))
 
     def nonlinear(self, plain: Choice) -> Way:
         """Fit the extras with laws of their own that promise something together, and leave out what is not missed.
@@ -209,21 +240,35 @@ class Way:
         nonlinear = [extra for extra in self.choice.free if extra not in LINEAR_EXTRAS]
         if not nonlinear or any(decay.clocks for decay in self.decays):
             return self
-        tried = self._open(nonlinear)
-        self.progress("scoring " + ", ".join(tried))
-        way, promised = self._scored(tried)
-        hopeful = [extra for extra in tried if promised[extra] > self._asked(extra)]
-        start = way._noted({extra: promised[extra] for extra in tried if extra not in hopeful}, False, False)
+        self.progress("scoring " + ", ".join(nonlinear))
+        start, hopeful = self._hopeful(nonlinear)
         if not hopeful:
             return start
-        hopeful = _in_order({extra: promised[extra] / self._asked(extra) for extra in hopeful})
-        found = start._parted(replace(plain, met=way.choice.met))._found(hopeful)
-        if plain.names != self.choice.names and found.choice.nonlinear and found._errs:
-            other = replace(start, path=found.path)._found(hopeful)
-            found = other if other._worth(self) > found._worth(self) else replace(found, path=other.path)
-        if found.choice.nonlinear and found._worth(self) > 0:
-            return found.tilted()
-        return replace(self, path=found.path)
+        plain, path, best = replace(plain, met=start.choice.met, mounted=start.choice.mounted), start.path, start
+        for base in start._bases(plain):
+            found = replace(base, path=path)._found(hopeful)
+            path = found.path
+            best = found if found._worth(self) > best._worth(self) else best
+            if best.choice.nonlinear and not best._errs:
+                break
+        return replace(best, path=path).tilted() if best.choice.nonlinear else replace(self, path=path)
+
+    def _hopeful(self, among: Sequence[str]) -> tuple[Way, list[str]]:
+        """Score extras with laws of their own, and give those that promise something, in the order in which to try them."""
+        tried = self._open(among)
+        way, promised = self._scored(tried)
+        hopeful = [extra for extra in tried if promised[extra] > self._asked(extra)]
+        way = way._noted({extra: promised[extra] for extra in tried if extra not in hopeful}, False, False)
+        return way, _in_order({extra: promised[extra] / self._asked(extra) for extra in hopeful})
+
+    def _bases(self, plain: Choice) -> Iterator[Way]:
+        """Give linear vehicles beside which there may be forces, the simplest first."""
+        simplest = self._parted(plain)
+        yield simplest
+        if plain.names != self.choice.names:
+            yield self
+        if any(one.extra == ENGINE and one.fitted and one.gain > one.asked and not one.taken for one in self.path):
+            yield simplest._trying(ENGINE)
 
     def _parted(self, choice: Choice) -> Way:
         """Go on from another linear model."""
@@ -345,7 +390,7 @@ class Way:
     def _scores(self, extras: Sequence[str]) -> dict[str, float]:
         """Score extras with laws of their own from where a linear fit is."""
         larger = self._with(extras)
-        start = neutral_start(larger.names, self.summit.parameters, self.choice.met)
+        start = neutral_start(larger, self.summit.parameters)
         candidates = {extra: brought(extra, larger.tracks) for extra in extras}
         return force_scores(self.summit, self.decays, larger.stepped, start, candidates)
 
@@ -371,8 +416,8 @@ class Way:
             largest.stepped,
             self.choice.campaign.sensors,
             largest.known,
-            values=neutral_start(names, own, self.choice.met),
-            states=self.summit.states,
+            values=neutral_start(largest, own),
+            states=carried_over(self.summit.states, self.summit.names, names),
             together=[separate_names(name) if parted else (name,) for name in own],
             candidates={extra: [(name,) for name in brought(extra, largest.tracks)] for extra in extras},
             tilting=self.choice.tilting,
@@ -385,5 +430,5 @@ def _in_order(promised: Mapping[str, float]) -> list[str]:
 
     Nearly every suspension rubs, and what rubs looks like everything else.
     """
-    rubs = promised.get("friction", 0.0) > _LOOKS_LIKE * max(promised.values())
+    rubs = promised.get("friction", 0.0) > _LOOKS_LIKE * max(promised.values(), default=0.0)
     return sorted(promised, key=lambda extra: (rubs and extra == "friction", promised[extra]), reverse=True)

@@ -19,7 +19,7 @@ from sprung.pipeline.choice import Choice
 from sprung.pipeline.extras import Way
 from sprung.prepare import Decay, Flight, Prepared, flights
 from sprung.recording import Campaign
-from sprung.vehicle import WHEELS, Block, Rows, Vehicle, drops_with_forces, quantity
+from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
 
 Real = NDArray[np.float64]
 
@@ -123,8 +123,8 @@ def fly(
 
 
 def _begun(campaign: Campaign, choice: Choice, summit: Summit, found: Sequence[Flight | None]) -> Real:
-    """Give {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, 14)."""
-    states = summit.states[:, :14].copy()
+    """Give {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
+    states = summit.states[:, : 2 * len(coordinates(summit.names))].copy()
     vehicle = Vehicle.nearest(summit.parameters, name="fitted", **choice.heights.by_key)
     rows = Rows.of([sensor.row for sensor in campaign.sensors], summit.names).at(summit.values)
     for state, flight in zip(states, found, strict=True):

@@ -23,7 +23,7 @@ from sprung.identification import (
     mode_estimates,
 )
 from sprung.pipeline.axes import about_roll_axis, axes_of
-from sprung.pipeline.candidates import fit_from
+from sprung.pipeline.candidates import ENGINE, fit_from
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.clocks import clock_reports, set_clocks
@@ -218,7 +218,8 @@ def _fit(
             changed = one.change(campaign)
             campaign = replace(changed, faults=(*changed.faults, one.fault))
     wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
-    choice = wanted.having(wanted.linear_extras)
+    # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
+    choice = wanted.having(tuple(extra for extra in wanted.linear_extras if extra != ENGINE))
     progress("finding the decays")
     prepared = _without(campaign, prepare(campaign), left_out)
     _need_decays(campaign, prepared)
@@ -227,7 +228,8 @@ def _fit(
     )
     start = None if first is None else first.parameters
     first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
-    way = Way(choice, first, prepared.decays, (), progress).carried().linear()
+    way = Way(choice, first, prepared.decays, (), progress).carried()
+    way = way.wanting([extra for extra in wanted.linear_extras if extra not in choice.extras]).linear()
     way = _from_contact(way)
     way = (
         way.with_forces(wanted)

@@ -78,5 +78,5 @@ def half_sine_bumps(
         matrices = vehicle.matrices(load)
         motion, _ = half_sine_bump(matrices, tyre_rates(vehicle), wheels, height, passage, 1 / rate, samples)
         drops.append(Drop(load=load.name, wheels=wheels, start=before / rate + passage))
-        accelerations.append(np.hstack([np.zeros((7, before)), motion.acceleration]))
+        accelerations.append(np.hstack([np.zeros((len(motion.acceleration), before)), motion.acceleration]))
     return setup.campaign(name_files(drops, "bump"), accelerations, "half-sine bump", np.random.default_rng(seed))

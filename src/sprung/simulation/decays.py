@@ -14,7 +14,7 @@ from sprung.simulation.beforehand import Given
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, decays_with_forces, forces_beside, free_decay
+from sprung.vehicle import Load, Sensor, Vehicle, coordinates, decays_with_forces, forces_beside, free_decay
 
 
 def free_decays(
@@ -39,7 +39,7 @@ def free_decays(
     vehicle, sensors, loads, rate, noise, seed, duration, offset, known, model, gravity
         As for `simulate`; here there is no noise unless asked for.
     states
-        Where the decays start, {X, Ẋ}: how many random ones with each load, or states of shape (drop, 14) used with
+        Where the decays start, {X, Ẋ}: how many random ones with each load, or states of shape (drop, state) used with
         every load, or such states by the name of the load.
 
     Returns
@@ -67,17 +67,17 @@ def free_decays(
     )
     check_not_negative(problems, duration=duration)
     random = np.random.default_rng(seed)
-    starts = {}
+    starts, size = {}, 2 * len(coordinates(vehicle.parameters))
     for load in setup.loads:
         if isinstance(states, int):
             # About what a drop from a few centimetres leaves in a vehicle: m and rad, m/s and rad/s.
-            given: ArrayLike = random.standard_normal((states, 14)) * np.repeat([0.02, 0.3], 7)
+            given: ArrayLike = random.standard_normal((states, size)) * np.repeat([0.02, 0.3], size // 2)
         else:
-            given = states.get(load.name, np.empty((0, 14))) if isinstance(states, Mapping) else states
+            given = states.get(load.name, np.empty((0, size))) if isinstance(states, Mapping) else states
         starts[load.name] = np.atleast_2d(np.asarray(given, dtype=float))
-        if starts[load.name].shape[1:] != (14,):
+        if starts[load.name].shape[1:] != (size,):
             found = f"shape {np.shape(given)} for load '{load.name}'"
-            problems.add("simulate: states", found, "shape (drop, 14)", "Give displacements, then velocities.")
+            problems.add("simulate: states", found, f"shape (drop, {size})", "Give displacements, then velocities.")
     problems.raise_if_any()
 
     samples = round(duration * rate)

@@ -117,5 +117,5 @@ def simulate(
         blocks = [Block(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
         accelerations = [motion.acceleration for motion in motions]
-    accelerations = [np.hstack([np.zeros((7, before)), one]) for one in accelerations]
+    accelerations = [np.hstack([np.zeros((len(one), before)), one]) for one in accelerations]
     return setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))

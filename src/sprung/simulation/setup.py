@@ -101,7 +101,7 @@ class Setup:
         drops
             One for each recording, with a file name.
         accelerations
-            In each of them, of the seven coordinates, (7, time), m/s² and rad/s².
+            In each of them, of the coordinates, (coordinate, time), m/s² and rad/s².
         what
             What was simulated, for the history.
         random

@@ -12,11 +12,9 @@ from sprung.identification import Fit, Prediction, Summit, predictions
 from sprung.prepare import Decay
 from sprung.validation.bodies import MOTIONS, BodyMotion
 from sprung.validation.whiteness import Remainder, noise_of_sensors, remainders
+from sprung.vehicle import coordinates
 
 Real = NDArray[np.float64]
-
-_FREE = 14
-"""Initial displacements and velocities of a drop, which take up as many samples of noise."""
 
 _BEYOND_CHANCE = 4.0
 """Standard deviations by which a sum of squares must exceed what chance makes of it."""
@@ -91,11 +89,12 @@ def validate_drops(
     # Coloured noise tells less; that drops disagree is what is to be seen here.
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
     noise = noise_of_sensors(fit, decays)
+    free = 2 * len(coordinates(fit.names))  # a drop's initial state takes up as many samples of noise
     of_drops = zip(decays, motions, predicted, fit.residual, remainders(fit, decays, noise), strict=True)
     for decay, motion, foretold, residual, left in of_drops:
         values = np.nan_to_num(decay.values)
         energy = max(float(values.var(axis=1) @ weights) * decay.samples, np.finfo(float).tiny)
-        samples = max(int(decay.usable.sum()) * (decay.samples - 1) - _FREE, 1)
+        samples = max(int(decay.usable.sum()) * (decay.samples - 1) - free, 1)
         errors = dict(zip(MOTIONS, motion.errors.tolist(), strict=True))
         squares, over_noise = float(residual @ weights), float(np.sqrt(residual @ noise**-2 / samples))
         found[decay.name] = DropValidation(

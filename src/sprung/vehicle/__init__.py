@@ -32,7 +32,7 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
 from sprung.vehicle.rough import Block, decays_with_forces, drops_with_forces
-from sprung.vehicle.rows import COORDINATES, HEAVE, WHEELS, Row, Wheel
+from sprung.vehicle.rows import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
 from sprung.vehicle.sensor import Sensor
 from sprung.vehicle.stepping import Changes, Path, Stepper
 from sprung.vehicle.vehicle import Vehicle
@@ -43,7 +43,6 @@ __all__ = [
     "EMPTY",
     "EXTRAS",
     "EXTRA_PARAMETERS",
-    "HEAVE",
     "LAWS",
     "LEVEL",
     "LINEAR_EXTRAS",
@@ -52,6 +51,7 @@ __all__ = [
     "SCHOOL_BUS",
     "TABLE_1_CAR",
     "WHEELS",
+    "WHEELS_AT",
     "Added",
     "Block",
     "CarriedAt",
@@ -84,6 +84,7 @@ __all__ = [
     "Wheel",
     "affine_response",
     "brought_by",
+    "coordinates",
     "decays_with_forces",
     "drop_from_blocks",
     "drops_with_forces",

@@ -56,12 +56,12 @@ class Piece(NamedTuple):
     start: float
     """s after the release."""
     state: Array
-    """Y at the start, shape (15,)."""
+    """Y at the start, shape (2n + 1,) with n coordinates."""
     generator: Array
-    """Shape (15, 15); the last column holds the constant force."""
+    """Shape (2n + 1, 2n + 1); the last column holds the constant force."""
 
     def at(self, time: float) -> Array:
-        """Give Y at a time after the release, shape (15,)."""
+        """Give Y at a time after the release, shape (2n + 1,)."""
         return expm(self.generator * (time - self.start)) @ self.state
 
 
@@ -94,7 +94,7 @@ class Fall:
         return math.isinf(self.until)
 
     def state(self, time: float) -> Array:
-        """Give the state {X, Ẋ}, shape (14,), from static equilibrium on flat ground.
+        """Give the state {X, Ẋ}, shape (2n,), from static equilibrium on flat ground.
 
         Parameters
         ----------
@@ -108,7 +108,7 @@ class Fall:
         """
         self._check(time, time)
         piece = self.pieces[int(np.searchsorted([piece.start for piece in self.pieces], time, side="right")) - 1]
-        return piece.at(time)[:14]
+        return piece.at(time)[:-1]
 
     def motion(self, step: float, samples: int, start: float = 0.0) -> Motion:
         """Sample the motion; exact at every sample.
@@ -125,7 +125,7 @@ class Fall:
         Returns
         -------
         Motion
-            Displacement from static equilibrium on flat ground, velocity and acceleration, each (7, samples).
+            Displacement from static equilibrium on flat ground, velocity and acceleration, each (coordinate, samples).
 
         Raises
         ------
@@ -136,13 +136,15 @@ class Fall:
         if samples:
             self._check(times[0], times[-1])
         owner = np.searchsorted([piece.start for piece in self.pieces], times, side="right") - 1
-        sampled = np.empty((22, samples))
+        size = len(self.pieces[0].state)
+        n = size // 2
+        sampled = np.empty((3 * n, samples))
         for i, piece in enumerate(self.pieces):
             mine = np.flatnonzero(owner == i)
             if mine.size:
-                states = affine_response(piece.generator, np.zeros(15), piece.at(times[mine[0]]), step, mine.size)
-                sampled[:, mine] = np.vstack([states, (piece.generator @ states)[7:14]])
-        return Motion(sampled[:7], sampled[7:14], sampled[15:])
+                states = affine_response(piece.generator, np.zeros(size), piece.at(times[mine[0]]), step, mine.size)
+                sampled[:, mine] = np.vstack([states[:-1], (piece.generator @ states)[n:-1]])
+        return Motion(sampled[:n], sampled[n : 2 * n], sampled[2 * n :])
 
     def _check(self, first: float, last: float) -> None:
         if not 0.0 <= first <= last <= self.until:
@@ -198,7 +200,8 @@ def drop_from_blocks(
     ['lift-off', 'lift-off', 'landing', 'landing']
     """
     ground = Ground.under(vehicle, load, gravity)
-    Y = np.concatenate([_resting(ground, vehicle, load, wheels, height), np.zeros(7), [1.0]])
+    at_rest = _resting(ground, vehicle, load, wheels, height)
+    Y = np.concatenate([at_rest, np.zeros_like(at_rest), [1.0]])
     phases: list[Phase] = ["contact" if value >= 0 else "air" for value in ground.compression @ Y]
     events = [Event(0.0, wheel, "lift-off") for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"]
     # A tenth of the fastest time constant: within it a response has one extremum at most.
@@ -246,7 +249,7 @@ def _next_change(
 
 
 def _resting(ground: Ground, vehicle: Vehicle, load: Load, wheels: tuple[Wheel, ...], height: float) -> Array:
-    """Give X on the blocks, shape (7,), or say why there is none."""
+    """Give X on the blocks, shape (coordinate,), or say why there is none."""
     problems = Problems()
     where = f"drop of {vehicle.name}, load '{load.name}'"
     if not wheels:

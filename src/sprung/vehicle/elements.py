@@ -19,7 +19,7 @@ from sprung.vehicle.rows import Row, Wheel
 Law = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 
-LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle")
+LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine")
 """Extras, by the name used in a campaign's ``[model]``, which the linear model can carry."""
 
 EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
@@ -208,6 +208,12 @@ def _elements(places: _Places, extras: Collection[str]) -> Iterator[Element]:
     if "gravity" in extras:
         yield Element("spring", "w_h", rows.roll(), -1.0)
         yield Element("spring", "w_h", rows.pitch(), -1.0)
+    if "engine" in extras:
+        # It is part of the body's mass and inertia, and leaves it where it moves by itself.
+        yield Element("mass", "m_e", rows.engine_bay(), -1.0)
+        yield Element("mass", "m_e", rows.engine())
+        yield Element("spring", "k_e", rows.engine_bay() - rows.engine())
+        yield Element("damper", "c_e", rows.engine_bay() - rows.engine())
     for left, right in rows.AXLES:
         axle = left[0]
         if "anti-roll" in extras:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import Matrices
-from sprung.vehicle.rows import HEAVE, WHEELS, Wheel
+from sprung.vehicle.rows import WHEELS, WHEELS_AT, Wheel
 from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -65,22 +65,22 @@ class Ground:
         """Put a vehicle with its load on the ground; gravity in m/s²."""
         stiffness, damping = np.array([tyre_rates(vehicle)[station] for station in WHEELS]).T
         matrices = vehicle.matrices(load)
-        sag = np.linalg.solve(matrices.K, gravity * matrices.M @ HEAVE)
-        return cls(matrices, stiffness, damping, stiffness * sag[3:])
+        sag = np.linalg.solve(matrices.K, gravity * matrices.weight)
+        return cls(matrices, stiffness, damping, stiffness * sag[WHEELS_AT])
 
     @property
     def compression(self) -> Array:
-        """Tyre rate times tyre compression, N: rows over Y, shape (4, 15)."""
-        rows = np.zeros((4, 15))
-        rows[:, 3:7] = -np.diag(self.stiffness)
-        rows[:, 14] = self.wheel_loads
+        """Tyre rate times tyre compression, N: rows over Y, shape (4, 2n + 1) with n coordinates."""
+        rows = np.zeros((4, 2 * len(self.matrices.M) + 1))
+        rows[:, WHEELS_AT] = -np.diag(self.stiffness)
+        rows[:, -1] = self.wheel_loads
         return rows
 
     @property
     def force(self) -> Array:
-        """Force of each tyre if it is in contact, N: rows over Y, shape (4, 15)."""
+        """Force of each tyre if it is in contact, N: rows over Y, shape (4, 2n + 1)."""
         rows = self.compression
-        rows[:, 10:14] = -np.diag(self.damping)
+        rows[:, len(self.matrices.M) :][:, WHEELS_AT] = -np.diag(self.damping)
         return rows
 
     def generator(self, contact: NDArray[np.bool_]) -> Array:
@@ -94,12 +94,19 @@ class Ground:
         Returns
         -------
         ndarray
-            Shape (15, 15); its last column holds the constant force.
+            Shape (2n + 1, 2n + 1); its last column holds the constant force.
         """
-        generator = np.zeros((15, 15))
-        generator[:14, :14] = self.matrices.state
-        generator[7:14] -= np.linalg.solve(self.matrices.M, np.eye(7)[:, 3:][:, ~contact] @ self.force[~contact])
+        n = len(self.matrices.M)
+        generator = np.zeros((2 * n + 1, 2 * n + 1))
+        generator[:-1, :-1] = self.matrices.state
+        generator[n:-1] -= np.linalg.solve(self.matrices.M, self._wheels.T[:, ~contact] @ self.force[~contact])
         return generator
+
+    @property
+    def _wheels(self) -> Array:
+        """The rows of the wheels, shape (4, n)."""
+        wheels: Array = np.eye(len(self.matrices.M))[WHEELS_AT]
+        return wheels
 
     def rest(self, blocks: Array) -> Array:
         """Find how the vehicle rests on blocks.
@@ -112,15 +119,15 @@ class Ground:
         Returns
         -------
         ndarray
-            X, shape (7,). One wheel may hang, never two, as a vehicle that stands on flat ground rests on any three.
+            X, shape (n,). One wheel may hang, never two, as a vehicle that stands on flat ground rests on any three.
         """
         found = []
         for hanging in (-1, 0, 1, 2, 3):
             on = np.arange(4) != hanging
-            K = self.matrices.K - np.diag(np.append(np.zeros(3), np.where(on, 0.0, self.stiffness)))
-            F = np.append(np.zeros(3), np.where(on, self.stiffness * blocks, -self.wheel_loads))
+            K = self.matrices.K - np.diag(np.where(on, 0.0, self.stiffness) @ self._wheels)
+            F = np.where(on, self.stiffness * blocks, -self.wheel_loads) @ self._wheels
             X = np.asarray(np.linalg.solve(K, F), dtype=np.float64)
-            force = self.wheel_loads - self.stiffness * (X[3:] - blocks)
+            force = self.wheel_loads - self.stiffness * (X[WHEELS_AT] - blocks)
             found.append((float(np.min(np.where(on, force, -force))), X))
         # One of the five neither pulls at a wheel nor lets one sink in; rounding may blur which, where it matters not.
         return max(found, key=lambda each: each[0])[1]
@@ -128,9 +135,10 @@ class Ground:
     def keeps_contact(self, Y: Array) -> bool:
         """Whether, with all wheels on the ground, too little energy is left for any tyre force to reach zero."""
         M, _, K = self.matrices
-        energy = 0.5 * (Y[:7] @ K @ Y[:7] + Y[7:14] @ M @ Y[7:14])
+        X, V = np.split(Y[:-1], 2)
+        energy = 0.5 * (X @ K @ X + V @ M @ V)
         # Energy never grows, and by Cauchy and Schwarz |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
         # where 1 / K_z and 1 / M_z are the wheel's diagonal entries of K⁻¹ and M⁻¹: no tyre unloads by more.
-        flexibility, mobility = (np.diag(np.linalg.inv(matrix))[3:] for matrix in (K, M))
+        flexibility, mobility = (np.diag(np.linalg.inv(matrix))[WHEELS_AT] for matrix in (K, M))
         reach = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
         return bool(np.all(math.sqrt(2 * energy) * reach < self.wheel_loads))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.vehicle.elements import Element, Law
-from sprung.vehicle.rows import Row
+from sprung.vehicle.rows import HEAVE, Row, coordinates
 
 Array = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ LAWS: tuple[Law, ...] = ("mass", "damper", "spring")
 
 
 class Matrices(NamedTuple):
-    """Mass, damping and stiffness matrices, each of shape (..., 7, 7), SI."""
+    """Mass, damping and stiffness matrices, each of shape (..., n, n) with n coordinates, SI."""
 
     M: Array
     C: Array
@@ -29,11 +29,18 @@ class Matrices(NamedTuple):
 
     @property
     def state(self) -> Array:
-        """State matrix A of eq. (4), shape (..., 14, 14), for the state {X, Ẋ}."""
-        A = np.zeros((*self.M.shape[:-2], 14, 14))
-        A[..., :7, 7:] = np.eye(7)
-        A[..., 7:, :] = -np.linalg.inv(self.M) @ np.concatenate([self.K, self.C], axis=-1)
+        """State matrix A of eq. (4), shape (..., 2n, 2n), for the state {X, Ẋ}."""
+        n = self.M.shape[-1]
+        A = np.zeros((*self.M.shape[:-2], 2 * n, 2 * n))
+        A[..., :n, n:] = np.eye(n)
+        A[..., n:, :] = -np.linalg.inv(self.M) @ np.concatenate([self.K, self.C], axis=-1)
         return A
+
+    @property
+    def weight(self) -> Array:
+        """What weighs on each coordinate, kg, or kg m on an angle: M times everything moving up together; shape (..., n)."""
+        weight: Array = self.M @ HEAVE[: self.M.shape[-1]]
+        return weight
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,14 +50,14 @@ class Rows:
     Attributes
     ----------
     affine
-        Shape (row, 7, 1 + parameter): each row's constant part, then its slopes.
+        Shape (row, coordinate, 1 + parameter): each row's constant part, then its slopes.
     """
 
     affine: Array
 
     @classmethod
     def of(cls, rows: Sequence[Row], names: Sequence[str]) -> Rows:
-        """Stack rows over a list of parameter names; a slope by a name not in it is an error.
+        """Stack rows over the coordinates and parameters of a vehicle; a slope by a name not in the list is an error.
 
         Raises
         ------
@@ -58,22 +65,23 @@ class Rows:
             If a row depends on a parameter that is not listed.
         """
         index = {name: i for i, name in enumerate(names, start=1)}
-        affine = np.zeros((len(rows), 7, 1 + len(names)))
+        size = len(coordinates(names))
+        affine = np.zeros((len(rows), size, 1 + len(names)))
         for row, block in zip(rows, affine, strict=True):
-            block[:, 0] = row.constant
+            block[:, 0] = row.constant[:size]
             for name, slope in row.slopes.items():
-                block[:, index[name]] = slope
+                block[:, index[name]] = slope[:size]
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
-        """Give the rows at parameter values of shape (..., parameter); shape (..., row, 7)."""
+        """Give the rows at parameter values of shape (..., parameter); shape (..., row, coordinate)."""
         factors = _with_one(values)
         rows: Array = factors @ self.affine.reshape(-1, factors.shape[-1]).T
         return rows.reshape(*factors.shape[:-1], *self.affine.shape[:2])
 
     @cached_property
     def slopes(self) -> Array:
-        """Change of each row with each parameter; shape (row, parameter, 7)."""
+        """Change of each row with each parameter; shape (row, parameter, coordinate)."""
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
 
 
@@ -93,8 +101,8 @@ class LinearModel:
         The products of parameters that occur: their positions in the list of names counted from 1, in order, filled up
         with 0 in front for a product of fewer than three; shape (product, 3).
     terms
-        What each multiplies in M, C and K: shape (product, 3, 7, 7), or (product, model, 3, 7, 7) of several models
-        `side_by_side`, whose matrices then have a leading axis.
+        What each multiplies in M, C and K: shape (product, 3, n, n) with n coordinates, or (product, model, 3, n, n) of several
+        models `side_by_side`, whose matrices then have a leading axis.
     elements
         What it was compiled from; none where it is several models.
     """
@@ -123,6 +131,7 @@ class LinearModel:
         index = {name: i for i, name in enumerate(names, start=1)}
         terms: dict[tuple[int, ...], Array] = {}
         rows = Rows.of([element.row for element in elements], names).affine
+        size_of_each = (len(LAWS), rows.shape[1], rows.shape[1])
         for element, row in zip(elements, rows, strict=True):
             named = isinstance(element.coefficient, str)
             kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
@@ -135,10 +144,10 @@ class LinearModel:
                 for two, square in zip(factors.tolist(), of_one, strict=True):
                     key = tuple(sorted((kappa, one, two)))
                     if key not in terms:
-                        terms[key] = np.zeros((len(LAWS), 7, 7))
+                        terms[key] = np.zeros(size_of_each)
                     terms[key][law] += square
         kept = {key: term for key, term in terms.items() if term.any()}
-        shape = (len(kept), len(LAWS), 7, 7)
+        shape = (len(kept), *size_of_each)
         products, constants = (
             np.array(list(kept), dtype=np.int64).reshape(-1, 3),
             np.array(list(kept.values())).reshape(shape),
@@ -149,7 +158,7 @@ class LinearModel:
     def side_by_side(cls, models: Sequence[LinearModel]) -> LinearModel:
         """Put models over the same parameters side by side, so that all of them are evaluated at once."""
         keys = list(dict.fromkeys(tuple(key) for model in models for key in model.products.tolist()))
-        terms = np.zeros((len(keys), len(models), len(LAWS), 7, 7))
+        terms = np.zeros((len(keys), len(models), *models[0].terms.shape[1:]))
         for i, model in enumerate(models):
             terms[[keys.index(tuple(key)) for key in model.products.tolist()], i] = model.terms
         return cls(models[0].names, np.array(keys), terms)
@@ -167,7 +176,7 @@ class LinearModel:
         return Matrices(*each)
 
     def slopes(self, values: ArrayLike) -> Matrices:
-        """Give the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., 7, 7)."""
+        """Give the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n)."""
         first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
         others = np.array([second * third, first * third, first * second])
         changes = np.einsum("ik,ikp->pk", others, self._factors)
@@ -181,9 +190,9 @@ class LinearModel:
         Returns
         -------
         lower
-            [-M⁻¹K, -M⁻¹C], shape (7, 14): accelerations from {X, Ẋ}.
+            [-M⁻¹K, -M⁻¹C], shape (n, 2n): accelerations from {X, Ẋ}.
         slopes
-            Its derivative by each parameter, shape (parameter, 7, 14).
+            Its derivative by each parameter, shape (parameter, n, 2n).
         """
         M, C, K = self.matrices(values)
         dM, dC, dK = self.slopes(values)

@@ -20,8 +20,8 @@ from sprung.vehicle.elements import Element, Force
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.laws import Answer, Felt, ForceLaw, Sensitivity
 from sprung.vehicle.load import EMPTY, Load
-from sprung.vehicle.model import LinearModel, Rows
-from sprung.vehicle.rows import HEAVE
+from sprung.vehicle.model import LinearModel, Matrices, Rows
+from sprung.vehicle.rows import coordinates
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -96,7 +96,7 @@ class Step(NamedTuple):
     Attributes
     ----------
     transition, before, after, constant
-        Shapes (14, 14), (14, force), (14, force) and (14,).
+        Shapes (2n, 2n), (2n, force), (2n, force) and (2n,) with n coordinates.
     """
 
     transition: Array
@@ -146,9 +146,14 @@ class NonlinearModel:
         """The parameters."""
         return self.linear.names
 
+    @property
+    def state(self) -> int:
+        """How many numbers a state {X, Ẋ} has."""
+        return 2 * len(coordinates(self.names))
+
     def sag(self, values: Array) -> Array:
-        """Give where the load's weight brings the vehicle to rest without the forces, from the empty one; X, shape (7,)."""
-        weight = self.load.matrices(values).M @ HEAVE * self.gravity
+        """Give where the load's weight brings the vehicle to rest without the forces, from the empty one; X, (coordinate,)."""
+        weight = self.load.matrices(values).weight * self.gravity
         return -np.asarray(np.linalg.solve(self.linear.matrices(values).K, weight), dtype=np.float64)
 
     def offsets(self, values: Array) -> tuple[Array, Array]:
@@ -168,9 +173,9 @@ class NonlinearModel:
                 self.load.slopes(values),
             ),
         )
-        (M, _, K), (dM, _, dK) = ([own - added for own, added in zip(*pair, strict=True)] for pair in both)
-        sag = -np.linalg.solve(K, M @ HEAVE * self.gravity)
-        by_sag = -np.linalg.solve(K, (dM @ HEAVE * self.gravity + dK @ sag).T)
+        empty, moved = (Matrices(*(own - added for own, added in zip(*pair, strict=True))) for pair in both)
+        sag = -np.linalg.solve(empty.K, empty.weight * self.gravity)
+        by_sag = -np.linalg.solve(empty.K, (moved.weight * self.gravity + moved.K @ sag).T)
         G, by_row = self.forces.rows.at(values), self.forces.rows.slopes
         counted = self.forces.weightless
         return counted * (G @ sag), counted[:, None] * (by_row @ sag + G @ by_sag)
@@ -181,14 +186,14 @@ class NonlinearModel:
         Returns
         -------
         rows
-            Shape (7, 15 + force).
+            Shape (n, 2n + 1 + force) with n coordinates.
         slopes
-            By each parameter, shape (parameter, 7, 15 + force).
+            By each parameter, shape (parameter, n, 2n + 1 + force).
         """
         M, C, K = self.linear.matrices(values)
         dM, dC, dK = self.linear.slopes(values)
-        pull = self.load.matrices(values).M @ HEAVE * self.gravity
-        by_pull = self.load.slopes(values).M @ HEAVE * self.gravity
+        pull = self.load.matrices(values).weight * self.gravity
+        by_pull = self.load.slopes(values).weight * self.gravity
         G = self.forces.rows.at(values)
         by_row = np.moveaxis(self.forces.rows.slopes, 1, 0)
         driving = np.hstack([K, C, G.T, pull[:, None]])
@@ -213,24 +218,26 @@ class NonlinearModel:
             The second with a leading axis of the parameters.
         """
         rows, slopes = self.accelerations(values)
-        inputs = rows.shape[1] - 14
-        size = 14 + 2 * inputs
+        n = len(rows)
+        inputs = rows.shape[1] - 2 * n
+        held, size = 2 * n + inputs, 2 * (n + inputs)
         # The inputs run straight over the step: their rises over it are states of their own.
         generator = np.zeros((size, size))
-        generator[:7, 7:14] = time * np.eye(7)
-        generator[7:14, : 14 + inputs] = time * rows
-        generator[14 : 14 + inputs, 14 + inputs :] = np.eye(inputs)
+        generator[:n, n : 2 * n] = time * np.eye(n)
+        generator[n : 2 * n, :held] = time * rows
+        generator[2 * n : held, held:] = np.eye(inputs)
         moved = np.zeros((len(slopes), size, size))
-        moved[:, 7:14, : 14 + inputs] = time * slopes
+        moved[:, n : 2 * n, :held] = time * slopes
         # The exponential of [[Z, dZ], [0, Z]] has that of Z, and its derivative beside it.
         both = np.zeros((len(slopes), 2 * size, 2 * size))
         both[:, :size, :size] = both[:, size:, size:] = generator
         both[:, :size, size:] = moved
         found = np.asarray(expm(both))
-        return _taken_apart(found[0, :14, :size], inputs), _taken_apart(found[:, :14, size:], inputs)
+        return _taken_apart(found[0, : 2 * n, :size]), _taken_apart(found[:, : 2 * n, size:])
 
 
-def _taken_apart(rows: Array, inputs: int) -> Step:
-    held, rising = rows[..., 14 : 14 + inputs], rows[..., 14 + inputs :]
+def _taken_apart(rows: Array) -> Step:
+    state = rows.shape[-2]
+    held, rising = np.split(rows[..., state:], 2, axis=-1)
     before, after = held - rising, rising
-    return Step(rows[..., :14], before[..., :-1], after[..., :-1], held[..., -1])
+    return Step(rows[..., :state], before[..., :-1], after[..., :-1], held[..., -1])

@@ -75,6 +75,10 @@ PARAMETERS: Mapping[str, Parameter] = {
     "m_xr": Parameter(
         "kg", "what rolls with a rigid rear axle beside its unsprung masses, as a mass at each wheel", True, False, True
     ),
+    "m_e": Parameter("kg", "engine that moves on its mounts, a part of the sprung mass", True, False),
+    "k_e": Parameter("N/m", "engine mounts, all together", True),
+    "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
+    "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
     "F_f": Parameter("N", "dry friction, each front wheel", True, False),
     "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
     "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
@@ -98,6 +102,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "anti-roll": ("k_af", "k_ar"),
     "tyre-damping": ("c_tf", "c_tr"),
     "gravity": ("w_h",),
+    "engine": ("m_e", "k_e", "c_e", "x_e"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
     "progressive": ("p_f", "p_r"),
@@ -107,7 +112,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 """The parameters that each extra may bring; which of them, where places of springs and dampers differ, says `brought_by`."""
 
-_INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br"})
+_INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e"})
 """Parameters of extras that do not matter where the extra does nothing."""
 
 _FACTORS = frozenset({"r_f", "r_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})

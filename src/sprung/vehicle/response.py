@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class Motion(NamedTuple):
-    """Displacements, velocities and accelerations of the seven coordinates, each of shape (7, time), SI."""
+    """Displacements, velocities and accelerations of the coordinates, each of shape (coordinate, time), SI."""
 
     displacement: Array
     velocity: Array
@@ -69,7 +69,7 @@ def free_decay(matrices: Matrices, state: ArrayLike, step: float, samples: int) 
     matrices
         M, C and K.
     state
-        {X, Ẋ} at the first sample, shape (14,), m, rad, m/s, rad/s.
+        {X, Ẋ} at the first sample, shape (2n,) with n coordinates, m, rad, m/s, rad/s.
     step
         Sampling interval, s.
     samples
@@ -86,9 +86,9 @@ def free_decay(matrices: Matrices, state: ArrayLike, step: float, samples: int) 
     >>> bool(np.isclose(free_decay(unit, np.eye(14)[0], 0.25, 5).displacement[0, 4], 1.0))
     True
     """
-    A = matrices.state
-    states = affine_response(A, np.zeros(14), state, step, samples)
-    return Motion(states[:7], states[7:], (A @ states)[7:])
+    A, n = matrices.state, len(matrices.M)
+    states = affine_response(A, np.zeros(2 * n), state, step, samples)
+    return Motion(states[:n], states[n:], (A @ states)[n:])
 
 
 def half_sine_bump(
@@ -127,10 +127,10 @@ def half_sine_bump(
     Motion
         From the start of the bump on.
     ndarray
-        State {X, Ẋ} at the end of the bump, shape (14,): where the free decay starts.
+        State {X, Ẋ} at the end of the bump, shape (2n,): where the free decay starts.
     """
-    omega = np.pi / duration
-    force = np.zeros(7, dtype=complex)
+    omega, n = np.pi / duration, len(matrices.M)
+    force = np.zeros(n, dtype=complex)
     for station in wheels:
         stiffness, damping = tyre_rates[station]
         force[3 + WHEELS.index(station)] = height * (stiffness + 1j * omega * damping)
@@ -143,13 +143,15 @@ def half_sine_bump(
     transient = -orbit.imag
     times = step * np.arange(during)
     forced = (orbit[:, None] * np.exp(1j * omega * times)).imag + affine_response(
-        A, np.zeros(14), transient, step, during
+        A, np.zeros(2 * n), transient, step, during
     )
     at_end = (orbit * np.exp(1j * omega * duration)).imag + expm(A * duration) @ transient
     after = expm(A * (during * step - duration)) @ at_end
-    states = np.hstack([forced, affine_response(A, np.zeros(14), after, step, max(samples - during, 1))])[:, :samples]
+    states = np.hstack([forced, affine_response(A, np.zeros(2 * n), after, step, max(samples - during, 1))])[
+        :, :samples
+    ]
 
-    acceleration = (A @ states)[7:]
+    acceleration = (A @ states)[n:]
     ground = (force[:, None] * np.exp(1j * omega * times)).imag
     acceleration[:, :during] += np.linalg.solve(matrices.M, ground)
-    return Motion(states[:7], states[7:], acceleration), at_end
+    return Motion(states[:n], states[n:], acceleration), at_end

@@ -20,7 +20,7 @@ from sprung.vehicle.laws import Felt
 from sprung.vehicle.load import Load
 from sprung.vehicle.nonlinear import NonlinearModel
 from sprung.vehicle.response import Motion
-from sprung.vehicle.rows import WHEELS, Wheel
+from sprung.vehicle.rows import WHEELS, WHEELS_AT, Wheel
 from sprung.vehicle.stepping import Stepper
 from sprung.vehicle.vehicle import Vehicle
 
@@ -79,17 +79,18 @@ def drops_with_forces(
     Returns
     -------
     list of Motion
-        Displacement from where the vehicle rests with its load, velocity and acceleration, each (7, samples).
+        Displacement from where the vehicle rests with its load, velocity and acceleration, each (coordinate, samples).
     """
     names, values = tuple(vehicle.parameters), np.array(list(vehicle.parameters.values()))
     on_ground = ground_forces(vehicle.extras)
     loads = list({block.load.name: block.load for block in blocks}.values())
     models = [_model(vehicle, names, on_ground, load, gravity) for load in loads]
     kind = np.array([[load.name for load in loads].index(block.load.name) for block in blocks])
-    begin = np.zeros((len(blocks), 14))
+    n = len(models[0].sag(values))
+    begin = np.zeros((len(blocks), 2 * n))
     for state, block, which in zip(begin, blocks, kind, strict=True):
         rest = Ground.under(vehicle, block.load, gravity).rest(_heights(block)) + models[which].sag(values)
-        state[:7] = _at_rest(models[which], values, rest, _heights(block))
+        state[:n] = _at_rest(models[which], values, rest, _heights(block))
     return _sampled(models, kind, values, begin, step, samples, start)
 
 
@@ -105,7 +106,7 @@ def decays_with_forces(
     loads
         What is on it each time.
     states
-        {X, Ẋ} from where it rests with its load, shape (decay, 14); friction holds nothing at first.
+        {X, Ẋ} from where it rests with its load, shape (decay, 2n); friction holds nothing at first.
     step
         Sampling interval, s.
     samples
@@ -115,8 +116,8 @@ def decays_with_forces(
     different = list({load.name: load for load in loads}.values())
     models = [_model(vehicle, names, (), load, STANDARD_GRAVITY) for load in different]
     kind = np.array([[load.name for load in different].index(load.name) for load in loads])
-    begin = states.copy()
-    begin[:, :7] += np.array([model.sag(values) for model in models])[kind]
+    begin, sag = states.copy(), np.array([model.sag(values) for model in models])[kind]
+    begin[:, : sag.shape[1]] += sag
     return _sampled(models, kind, values, begin, step, samples, 0.0)
 
 
@@ -133,11 +134,12 @@ def _heights(block: Block) -> Array:
 
 
 def _at_rest(model: NonlinearModel, values: Array, rest: Array, heights: Array) -> Array:
-    """Find how a vehicle rests on blocks, X from the empty one at rest on the ground; shape (7,)."""
+    """Find how a vehicle rests on blocks, X from the empty one at rest on the ground; shape (coordinate,)."""
     forces, K = model.forces, model.linear.matrices(values).K
     G, offsets = forces.rows.at(values), model.offsets(values)[0]
     tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
-    pull = -K @ model.sag(values) - np.append(np.zeros(3), tyres * heights)
+    pull = -K @ model.sag(values)
+    pull[WHEELS_AT] -= tyres * heights
     lifted = np.zeros(forces.number)
     lifted[-4:] = heights
     X = rest
@@ -173,5 +175,6 @@ def _sampled(
         states, forces = path.states[::every, drop].T, path.forces[::every, drop].T
         rows = models[which].accelerations(values)[0]
         acceleration = rows @ np.vstack([states, forces, np.ones((1, states.shape[1]))])
-        motions.append(Motion(states[:7] - models[which].sag(values)[:, None], states[7:], acceleration))
+        sag = models[which].sag(values)[:, None]
+        motions.append(Motion(states[: len(sag)] - sag, states[len(sag) :], acceleration))
     return motions

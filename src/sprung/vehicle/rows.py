@@ -1,14 +1,15 @@
 """Rows: which displacement an element, a load or a sensor feels, as a linear function of the vehicle's coordinates.
 
 Coordinates are the paper's, X = [z_s, θ, φ, z_uA, z_uB, z_uC, z_uD]: sprung-mass bounce, pitch (positive nose down),
-roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right. A row g says that
-something feels g·X. Every row is affine in the geometric parameters (a, b and the half-distances), so a row is its
-constant part and one slope per parameter; derivatives with respect to geometry need nothing else.
+roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right; z_e of an engine on
+its mounts is one more, which only a vehicle with such an engine has. A row g says that something feels g·X. Every row is
+affine in the geometric parameters (a, b and the half-distances), so a row is its constant part and one slope per
+parameter; derivatives with respect to geometry need nothing else.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
@@ -24,12 +25,16 @@ WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
 AXLES: tuple[tuple[Wheel, Wheel], ...] = (("fl", "fr"), ("rl", "rr"))
 """Left and right wheel of each axle, front first."""
 
-COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD")
+COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD", "z_e")
+"""All that rows are over; the last is a coordinate only of a vehicle whose engine moves on its mounts."""
 
-HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
-"""Everything moving up by one unit, in the coordinates: gravity is the generalised force -M g HEAVE."""
+WHEELS_AT = slice(3, 7)
+"""Where the wheels are among the coordinates."""
 
-_Z, _THETA, _PHI = np.eye(7)[:3]
+HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
+"""Everything moving up by one unit, in the coordinates."""
+
+_Z, _THETA, _PHI, *_WHEELS, _ENGINE = np.eye(len(COORDINATES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,9 +44,9 @@ class Row:
     Attributes
     ----------
     constant
-        Shape (7,): the part of g that depends on no parameter.
+        Shape (coordinate,): the part of g that depends on no parameter.
     slopes
-        For each geometric parameter the change of g per metre, shape (7,).
+        For each geometric parameter the change of g per metre, shape (coordinate,).
     """
 
     constant: NDArray[np.float64]
@@ -50,7 +55,7 @@ class Row:
     def __sub__(self, other: Row) -> Row:
         """Give the row of the difference of two displacements."""
         names = self.slopes.keys() | other.slopes.keys()
-        nothing = np.zeros(7)
+        nothing = np.zeros_like(self.constant)
         return Row(
             self.constant - other.constant,
             {name: self.slopes.get(name, nothing) - other.slopes.get(name, nothing) for name in names},
@@ -67,10 +72,27 @@ class Row:
             a + b, m.
         """
         # z_s is z above the front axle plus a θ, and b is what a leaves of the wheelbase.
-        by_b = self.slopes.get("b", np.zeros(7))
-        by_a = self.slopes.get("a", np.zeros(7)) + self.constant[0] * _THETA - by_b
+        nothing = np.zeros_like(self.constant)
+        by_b = self.slopes.get("b", nothing)
+        by_a = self.slopes.get("a", nothing) + self.constant[0] * _THETA - by_b
         rest = {name: slope for name, slope in self.slopes.items() if name not in ("a", "b")}
         return Row(self.constant + wheelbase * by_b, rest | ({"a": by_a} if by_a.any() else {}))
+
+
+def coordinates(names: Collection[str]) -> tuple[str, ...]:
+    """Name the coordinates of a vehicle.
+
+    Parameters
+    ----------
+    names
+        Its parameters.
+
+    Returns
+    -------
+    tuple of str
+        The paper's seven, and the engine's where it has one that moves on its mounts.
+    """
+    return COORDINATES if "m_e" in names else COORDINATES[:-1]
 
 
 def body_point(x: float, y: float) -> Row:
@@ -112,7 +134,7 @@ def side(station: Wheel) -> float:
 
 def wheel(station: Wheel) -> Row:
     """Vertical displacement of one wheel."""
-    return Row(np.eye(7)[3 + WHEELS.index(station)])
+    return Row(_WHEELS[WHEELS.index(station)])
 
 
 def corner(station: Wheel, half_distance: str) -> Row:
@@ -127,6 +149,16 @@ def corner(station: Wheel, half_distance: str) -> Row:
     """
     along = {"a": -_THETA} if station[0] == "f" else {"b": _THETA}
     return Row(_Z, {**along, half_distance: side(station) * _PHI})
+
+
+def engine() -> Row:
+    """Vertical displacement of an engine on its mounts."""
+    return Row(_ENGINE)
+
+
+def engine_bay() -> Row:
+    """Vertical displacement of the body where its engine is carried, on the centreline, x_e forward of the front axle."""
+    return Row(_Z, {"a": -_THETA, "x_e": -_THETA})
 
 
 def on_axle(station: Wheel, share: str) -> Row:

@@ -33,7 +33,7 @@ class Path(NamedTuple):
     Attributes
     ----------
     states
-        {X, Ẋ}, SI, shape (step + 1, drop, 14).
+        {X, Ẋ}, SI, shape (step + 1, drop, 2n) with n coordinates.
     forces
         N, shape (step + 1, drop, force).
     memories
@@ -53,7 +53,7 @@ class Changes(NamedTuple):
     first
         The step at which they begin.
     states, forces
-        Shapes (step, drop, 14, unknown) and (step, drop, force, unknown).
+        Shapes (step, drop, 2n, unknown) and (step, drop, force, unknown).
     """
 
     first: int
@@ -96,7 +96,7 @@ class Stepper:
 
     @cached_property
     def _travel(self) -> Array:
-        """The rows of the forces, shape (force, 7)."""
+        """The rows of the forces, shape (force, coordinate)."""
         return self.forces.rows.at(self.values)
 
     def follow(self, states: Array, memories: Array, steps: int) -> Path:
@@ -105,7 +105,7 @@ class Stepper:
         Parameters
         ----------
         states
-            {X, Ẋ} of each, SI, shape (drop, 14).
+            {X, Ẋ} of each, SI, shape (drop, 2n).
         memories
             Of the forces that remember, shape (drop, memory).
         steps
@@ -116,44 +116,44 @@ class Stepper:
         Path
             Not finite from where a motion runs away.
         """
-        rows, count, values = self._travel, self.forces.number, self.values
-        feel = np.zeros((2 * count, 14))
-        feel[:count, :7] = feel[count:, 7:] = rows
+        rows, values = self._travel, self.values
+        count, n = rows.shape
+        feel = np.kron(np.eye(2), rows)
         at = self.kind
         # One product gives where a step ends without the force at its end, and travel and rate there.
         whole = np.concatenate([self.steps.transition, self.steps.before, self.steps.constant[:, :, None]], axis=2)
         whole = np.concatenate([whole, feel @ whole], axis=1)[at]
-        whole[:, 14 : 14 + count, -1] += self.offsets
+        whole[:, 2 * n : 2 * n + count, -1] += self.offsets
         after = self.steps.after[at]
         yields = (feel @ self.steps.after)[at]
         path = Path(
-            np.empty((steps + 1, len(at), 14)),
+            np.empty((steps + 1, len(at), 2 * n)),
             np.empty((steps + 1, len(at), count)),
             np.zeros((steps + 1, len(at), count)),
         )
         path.states[0] = states
         path.memories[0][:, self.forces.remembering] = memories
-        travel = states[:, :7] @ rows.T + self.offsets
-        at_rest = Felt(travel, states[:, 7:] @ rows.T, np.zeros_like(travel), path.memories[0])
+        travel = states[:, :n] @ rows.T + self.offsets
+        at_rest = Felt(travel, states[:, n:] @ rows.T, np.zeros_like(travel), path.memories[0])
         path.forces[0] = self.forces.answer(values, at_rest).force
-        now = np.ones((len(at), 15 + count))
+        now = np.ones((len(at), 2 * n + count + 1))
         # What a force does to its own travel and rate: what it does to the others' within a step is less still.
         spot = np.arange(count)
         own_travel, own_rate = yields[:, spot, spot], yields[:, count + spot, spot]
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(steps):
-                now[:, :14], now[:, 14:-1] = path.states[k], path.forces[k]
+                now[:, : 2 * n], now[:, 2 * n : -1] = path.states[k], path.forces[k]
                 ahead = np.matmul(whole, now[:, :, None])[:, :, 0]
                 memory, force = path.memories[k], path.forces[k]
                 for correction in range(_CORRECTIONS):
-                    felt = ahead[:, 14:] + np.matmul(yields, force[:, :, None])[:, :, 0]
+                    felt = ahead[:, 2 * n :] + np.matmul(yields, force[:, :, None])[:, :, 0]
                     there = felt[:, :count]
                     found = self.forces.answer(values, Felt(there, felt[:, count:], there - travel, memory))
                     if correction < _CORRECTIONS - 1:
                         along, over = _slopes(found)
                         force = force + (found.force - force) / (1.0 - along * own_travel - over * own_rate)
                 path.forces[k + 1], path.memories[k + 1], travel = found.force, found.memory, there
-                path.states[k + 1] = ahead[:, :14] + np.matmul(after, found.force[:, :, None])[:, :, 0]
+                path.states[k + 1] = ahead[:, : 2 * n] + np.matmul(after, found.force[:, :, None])[:, :, 0]
         return path
 
     def changes(self, path: Path) -> Iterator[Changes]:
@@ -170,12 +170,9 @@ class Stepper:
             Of a chunk of steps, one after the other, from the start on.
         """
         parameters, remembering = len(self.values), self.forces.remembering
-        steps, drops = len(path.states), len(self.kind)
-        unknown = parameters + 14 + len(remembering)
-        states, memories = np.zeros((drops, 14, unknown)), np.zeros((drops, len(remembering), unknown))
-        states[:, :, parameters : parameters + 14] = np.eye(14)
-        memories[:, :, parameters + 14 :] = np.eye(len(remembering))
-        own = np.concatenate([states, memories], axis=1)
+        steps, drops, state = path.states.shape
+        own = np.zeros((drops, state + len(remembering), parameters + state + len(remembering)))
+        own[:, :, parameters:] = np.eye(state + len(remembering))
         for first in range(0, steps, _CHUNK):
             last = min(first + _CHUNK, steps)
             followed = np.empty((last - first, *own.shape))
@@ -187,15 +184,15 @@ class Stepper:
                     if first + k < steps - 1:
                         own = matrices[k] @ own
                         own[..., :parameters] += drive[k]
-            yield Changes(first, followed[:, :, :14], self._of_forces(path, first, followed))
+            yield Changes(first, followed[:, :, :state], self._of_forces(path, first, followed))
 
     def _answers(self, path: Path, first: int, last: int) -> tuple[Answer, Felt]:
         """Give the answers of the steps that end at each of first..last, and what they answered."""
-        travel, rate = path.states[first:last, :, :7] @ self._travel.T, path.states[first:last, :, 7:] @ self._travel.T
-        travel += self.offsets
+        X, V = np.split(path.states, 2, axis=-1)
+        travel, rate = X[first:last] @ self._travel.T + self.offsets, V[first:last] @ self._travel.T
         earlier = np.arange(first, last) - 1
         earlier[earlier < 0] = 0
-        way = travel - (path.states[earlier, :, :7] @ self._travel.T + self.offsets)
+        way = travel - (X[earlier] @ self._travel.T + self.offsets)
         asked = Felt(travel, rate, way, path.memories[earlier])
         return self.forces.answer(self.values, asked), asked
 
@@ -204,20 +201,21 @@ class Stepper:
         last, parameters = first + len(followed), len(self.values)
         answer, asked = self._answers(path, first, last)
         rows, by_row = self._travel, self._by_row
-        along, over = followed[:, :, :7], followed[:, :, 7:14]
+        n = rows.shape[1]
+        along, over = followed[:, :, :n], followed[:, :, n : 2 * n]
         forces = answer.by_travel[..., None] * (rows @ along) + answer.by_rate[..., None] * (rows @ over)
         memory = np.zeros_like(forces)
-        memory[:, :, self.forces.remembering] = followed[:, :, 14:]
+        memory[:, :, self.forces.remembering] = followed[:, :, 2 * n :]
         forces += answer.by_memory[..., None] * memory
         forces[..., :parameters] += self.forces.sensitivity(self.values, asked).force
-        X, V = path.states[first:last, :, :7], path.states[first:last, :, 7:]
+        X, V = np.split(path.states[first:last], 2, axis=-1)
         forces[..., :parameters] += answer.by_travel[..., None] * (_moved(X, by_row) + self.by_offset)
         forces[..., :parameters] += answer.by_rate[..., None] * _moved(V, by_row)
         return forces
 
     @cached_property
     def _by_row(self) -> Array:
-        """Give what turns X into the change of the travels with the parameters: shape (force, 7, parameter) as a stack."""
+        """Give what turns X into the change of the travels with the parameters: shape (force, n, parameter) as a stack."""
         return np.ascontiguousarray(np.moveaxis(self.forces.rows.slopes, 1, 2))
 
     def _linearised(self, path: Path, first: int, last: int) -> tuple[Array, Array]:
@@ -226,33 +224,34 @@ class Stepper:
         Returns
         -------
         matrices
-            Shape (step, drop, 14 + memory, 14 + memory).
+            Shape (step, drop, 2n + memory, 2n + memory).
         drive
-            Shape (step, drop, 14 + memory, parameter).
+            Shape (step, drop, 2n + memory, parameter).
         """
         rows, by_row, memories = self._travel, self._by_row, self.forces.remembering
         now, now_asked = self._answers(path, first, last)
         then, then_asked = self._answers(path, first + 1, last + 1)
         of_now = self.forces.sensitivity(self.values, now_asked).force
         of_then = self.forces.sensitivity(self.values, then_asked)
+        n = rows.shape[1]
         x, y = path.states[first:last], path.states[first + 1 : last + 1]
 
         # The force at the start: by the state and by the memory there, each beside what geometry does.
         feel = _beside(now.by_travel, rows, now.by_rate)
         start = (
             of_now
-            + now.by_travel[..., None] * (_moved(x[..., :7], by_row) + self.by_offset)
-            + now.by_rate[..., None] * _moved(x[..., 7:], by_row)
+            + now.by_travel[..., None] * (_moved(x[..., :n], by_row) + self.by_offset)
+            + now.by_rate[..., None] * _moved(x[..., n:], by_row)
         )
         # The force at the end: by the state there, and by state and memory at the start.
         held = then.by_memory * then.memory_by_travel
         feels = _beside(then.by_travel + held, rows, then.by_rate)
         back = -_beside(held, rows, np.zeros_like(held))
         kept = then.by_memory * then.memory_by_memory
-        ways = _moved(y[..., :7] - x[..., :7], by_row)
+        ways = _moved(y[..., :n] - x[..., :n], by_row)
         end = of_then.force + then.by_memory[..., None] * of_then.memory
-        end += then.by_travel[..., None] * (_moved(y[..., :7], by_row) + self.by_offset) + held[..., None] * ways
-        end += then.by_rate[..., None] * _moved(y[..., 7:], by_row)
+        end += then.by_travel[..., None] * (_moved(y[..., :n], by_row) + self.by_offset) + held[..., None] * ways
+        end += then.by_rate[..., None] * _moved(y[..., n:], by_row)
 
         at = self.kind
         transition, before, after = (one[at] for one in self.steps[:3])
@@ -267,34 +266,36 @@ class Stepper:
         all_in = np.concatenate([from_x, from_m[..., memories], drive], axis=-1)
         all_in += spread @ (feels @ all_in)
 
-        size, parameters = 14 + len(memories), len(self.values)
+        state, size, parameters = 2 * n, 2 * n + len(memories), len(self.values)
         matrices = np.zeros((*x.shape[:2], size, size))
         drives = np.zeros((*x.shape[:2], size, parameters))
-        matrices[..., :14, :] = all_in[..., :size]
-        drives[..., :14, :] = all_in[..., size:]
+        matrices[..., :state, :] = all_in[..., :size]
+        drives[..., :state, :] = all_in[..., size:]
         if len(memories):
             slope = then.memory_by_travel[..., memories, None]
-            way = rows[memories] @ all_in[..., :7, :]
-            way[..., :7] -= rows[memories]
-            matrices[..., 14:, :] = slope * way[..., :size]
+            way = rows[memories] @ all_in[..., :n, :]
+            way[..., :n] -= rows[memories]
+            matrices[..., state:, :] = slope * way[..., :size]
             spot = np.arange(len(memories))
-            matrices[..., 14 + spot, 14 + spot] += then.memory_by_memory[..., memories]
-            drives[..., 14:, :] = slope * (way[..., size:] + ways[..., memories, :]) + of_then.memory[..., memories, :]
+            matrices[..., state + spot, state + spot] += then.memory_by_memory[..., memories]
+            drives[..., state:, :] = (
+                slope * (way[..., size:] + ways[..., memories, :]) + of_then.memory[..., memories, :]
+            )
         return matrices, drives
 
     def _by_step(self, x: Array, before: Array, after: Array) -> Array:
-        """Give what parameters do to the step itself, (step, drop, 14, parameter)."""
+        """Give what parameters do to the step itself, (step, drop, 2n, parameter)."""
         slopes = np.concatenate(
             [self.slopes.transition, self.slopes.before, self.slopes.after, self.slopes.constant[..., None]], axis=-1
         )
         inputs = np.concatenate([x, before, after, np.ones((*x.shape[:2], 1))], axis=-1)
-        parameters = slopes.shape[1]
-        found = np.empty((*x.shape[:2], 14, parameters))
+        parameters, state = slopes.shape[1:3]
+        found = np.empty((*x.shape[:2], state, parameters))
         for kind, own in enumerate(slopes):
             mine = np.flatnonzero(self.kind == kind)
             if mine.size:
-                moved = inputs[:, mine] @ own.reshape(parameters * 14, -1).T
-                found[:, mine] = np.swapaxes(moved.reshape(len(x), len(mine), parameters, 14), 2, 3)
+                moved = inputs[:, mine] @ own.reshape(parameters * state, -1).T
+                found[:, mine] = np.swapaxes(moved.reshape(len(x), len(mine), parameters, state), 2, 3)
         return found
 
 
@@ -304,11 +305,11 @@ def _slopes(answer: Answer) -> tuple[Array, Array]:
 
 
 def _beside(by_travel: Array, rows: Array, by_rate: Array) -> Array:
-    """Give forces by the state {X, Ẋ}, shape (..., force, 14)."""
+    """Give forces by the state {X, Ẋ}, shape (..., force, 2n)."""
     return np.concatenate([by_travel[..., None] * rows, by_rate[..., None] * rows], axis=-1)
 
 
 def _moved(X: Array, by_row: Array) -> Array:
-    """Give what geometry does to travels at X of shape (..., 7): shape (..., force, parameter)."""
+    """Give what geometry does to travels at X of shape (..., n): shape (..., force, parameter)."""
     moved: Array = np.einsum("...i,fip->...fp", X, by_row, optimize=True)
     return moved

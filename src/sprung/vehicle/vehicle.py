@@ -58,6 +58,9 @@ class Vehicle:
     m_xf, m_xr
         What rolls with a rigid axle beside its unsprung masses, as a mass at each wheel, kg: with the wheels T from the
         middle, the axle's roll inertia is 2 T² (m_u + m_x).
+    m_e, k_e, c_e, x_e
+        Engine on mounts of its own, kg, a part of the sprung mass and of its inertias; its mounts' rate, N/m, and damping,
+        N s/m; and where it is, m forward of the front axle.
     cg_height, wheel_height, roll_axis_height
         Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
     name
@@ -128,6 +131,10 @@ class Vehicle:
     n_r2: float | None = None
     m_xf: float = 0.0
     m_xr: float = 0.0
+    m_e: float = 0.0
+    k_e: float = 1e6
+    c_e: float = 0.0
+    x_e: float = 0.0
     cg_height: float | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
@@ -153,6 +160,13 @@ class Vehicle:
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0):
                 problems.add(f"vehicle {self.name}: {name}", repr(value), "a positive number, m", "Correct it.")
+        if not problems and self.m_e * (1 / self.m_s + (self.a + self.x_e) ** 2 / self.I_yy) >= 1:
+            problems.add(
+                f"vehicle {self.name}: m_e",
+                f"an engine of {self.m_e:g} kg, {self.a + self.x_e:g} m ahead of the centre of gravity",
+                "one that leaves the body some mass and pitch inertia, of which it is a part",
+                "Correct m_e and x_e, or m_s and I_yy, which include the engine.",
+            )
         problems.raise_if_any()
 
     def _resolve_places(self, letter: str, axle: str, usual: float | None, problems: Problems) -> None:

@@ -92,7 +92,7 @@ class Trial:
         return self._at(decays).misfit(self.summit.point.weights)[0]
 
     def states_of(self, decays: Sequence[Decay]) -> Real:
-        """Give {X, Ẋ} of this vehicle at the start of other decays, SI, shape (decay, 14)."""
+        """Give {X, Ẋ} of this vehicle at the start of other decays, SI, shape (decay, state)."""
         return self._at(decays).states(self.summit.point.weights)
 
     def _at(self, decays: Sequence[Decay]) -> Place:

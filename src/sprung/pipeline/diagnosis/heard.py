@@ -41,7 +41,7 @@ class Heard:
     decays
         With the channel in them.
     states
-        {X, Ẋ} of the vehicle at the start of each, SI, shape (decay, 14).
+        {X, Ẋ} of the vehicle at the start of each, SI, shape (decay, state).
     """
 
     trial: Trial
@@ -61,7 +61,7 @@ class Heard:
 
     @cached_property
     def motion(self) -> Real:
-        """Accelerations of the seven coordinates, shape (7, sample)."""
+        """Accelerations of the coordinates, shape (coordinate, sample)."""
         return self.moved(0.0)[0]
 
     @cached_property
@@ -83,21 +83,21 @@ class Heard:
         waves = []
         for decay, state in zip(self.decays, self.states, strict=True):
             poles, right = solved[decay.load]
-            amplitudes = right[7:] * (poles * np.linalg.solve(right, state.astype(np.complex128)))
+            amplitudes = right[len(poles) // 2 :] * (poles * np.linalg.solve(right, state.astype(np.complex128)))
             waves.append((poles, amplitudes, np.exp(poles[:, None] * (np.arange(decay.samples) / decay.rate))))
         return waves
 
     def moved(self, late: float) -> tuple[Real, Real]:
-        """Give the accelerations as they come to a channel that is late, s, and their derivatives; each (7, sample)."""
+        """Give the accelerations as they come to a channel that is late, s, and their slopes; each (coordinate, sample)."""
         parts = []
         for poles, amplitudes, waves in self._waves:
             turned = amplitudes * np.exp(-poles * late)
             parts.append(_centred((np.concatenate([turned, turned * poles]) @ waves).real))
-        whole = np.hstack(parts)
-        return whole[:7], whole[7:]
+        felt, changed = np.split(np.hstack(parts), 2)
+        return felt, changed
 
     def row(self, sensor: Sensor) -> Real:
-        """Give the row of the motion that a sensor feels, shape (7,)."""
+        """Give the row of the motion that a sensor feels, shape (coordinate,)."""
         of_sensor: Real = Rows.of([sensor.row], self.trial.summit.names).at(self.trial.summit.values)[0]
         return of_sensor
 

@@ -1,0 +1,106 @@
+"""An engine on its mounts: one more coordinate, a part of the body, and found without being asked for."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import sprung
+from sprung.errors import InputError
+from sprung.modal import modes_of
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, drop_from_blocks, static_wheel_loads
+
+HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held
+
+WITH_ENGINE = replace(
+    TABLE_1_CAR, m_e=160.0, k_e=160.0 * HANGING**2, c_e=0.14 * 160.0 * HANGING, x_e=0.1, name="car with an engine"
+)
+
+BALLAST = Load.model_validate({"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
+
+
+def test_the_matrices_are_those_of_a_body_and_an_engine_of_their_own() -> None:
+    # Written out: the body that is left has its own centre of gravity, towards the rear, and its own pitch inertia about it.
+    car = WITH_ENGINE
+    ahead = car.a + car.x_e  # of the centre of gravity of both
+    rest = car.m_s - car.m_e
+    behind = car.m_e * ahead / rest
+    inertia = car.I_yy - car.m_e * ahead**2 - rest * behind**2
+    M, _, K = car.matrices()
+    z, theta, e = np.eye(8)[[0, 1, 7]]
+    own = z + behind * theta  # what is behind the centre of gravity rises with the nose going down
+    expected = rest * np.outer(own, own) + inertia * np.outer(theta, theta) + car.m_e * np.outer(e, e)
+    chosen = np.ix_([0, 1, 7], [0, 1, 7])
+    assert_allclose(M[chosen], expected[chosen], rtol=1e-12, atol=1e-9)
+    mount = z - ahead * theta - e
+    assert_allclose(K - TABLE_1_CAR_K_BESIDE, car.k_e * np.outer(mount, mount), rtol=1e-9, atol=1e-6)
+
+
+TABLE_1_CAR_K_BESIDE = np.pad(TABLE_1_CAR.matrices().K, (0, 1))
+
+
+def test_an_engine_that_is_bolted_down_is_none() -> None:
+    bolted = replace(WITH_ENGINE, k_e=1e10, c_e=1e6)
+    ours, plain = (drop_from_blocks(car, wheels=("fl", "rr")).motion(0.002, 400) for car in (bolted, TABLE_1_CAR))
+    assert_allclose(ours.displacement[:7], plain.displacement, atol=1e-6 * np.abs(plain.displacement).max())
+
+
+def test_it_weighs_what_it_weighed_before() -> None:
+    assert_allclose(static_wheel_loads(WITH_ENGINE, BALLAST), static_wheel_loads(TABLE_1_CAR, BALLAST), rtol=1e-12)
+
+
+def test_in_the_air_only_gravity_moves_the_whole_vehicle() -> None:
+    fall = drop_from_blocks(WITH_ENGINE, height=0.08)
+    flight = fall.motion(1e-4, int(fall.events[4].time / 1e-4))
+    M = WITH_ENGINE.matrices().M
+    weight = WITH_ENGINE.total_mass * 9.80665
+    assert_allclose(np.ones(8) * (np.arange(8) % 7 != 1) * (np.arange(8) != 2) @ M @ flight.acceleration, -weight)
+
+
+def test_its_mode_has_its_name() -> None:
+    named = {mode.name: mode for mode in modes_of(WITH_ENGINE.matrices())}
+    assert len(coordinates(WITH_ENGINE.parameters)) == 8
+    # On a body that gives way it swings faster than on one that is held.
+    assert named["engine bounce"].frequency == pytest.approx(10.87, abs=0.01)
+    assert named["body bounce"].frequency < 1.5
+
+
+def test_an_engine_that_leaves_nothing_of_the_body_is_refused() -> None:
+    with pytest.raises(InputError, match="leaves the body some mass and pitch inertia"):
+        replace(WITH_ENGINE, m_e=800.0)
+
+
+@pytest.mark.parametrize("vehicle", [WITH_ENGINE, replace(WITH_ENGINE, x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2)])
+def test_found_without_being_asked_for(vehicle: Vehicle) -> None:
+    campaign = sprung.simulate(vehicle, loads=[BALLAST], noise=0.02, seed=1)
+    result = sprung.identify(campaign)
+    assert result.fit.model == ("engine",)
+    assert result.verdict.state == "accept"
+    for name, value in vehicle.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - value) < 4 * found.std
+        assert found.std < 0.02 * max(abs(value), 1.0)
+    assert len(result.modes["empty"]) == 8
+
+
+def test_wanted() -> None:
+    campaign = sprung.simulate(WITH_ENGINE, loads=[BALLAST], noise=0.02, seed=1, duration=1.6)
+    assert sprung.identify(campaign, extras=["engine"]).fit.model == ("engine",)
+
+
+def test_beside_friction() -> None:
+    rubbing = replace(WITH_ENGINE, F_f=80.0, F_r=80.0, s_f=4e5, s_r=4e5)
+    drops = [
+        {"wheels": wheels, "load": load} for wheels in (["fl", "fr"], ["rl", "rr"]) for load in ("empty", "ballast")
+    ]
+    campaign = sprung.simulate(rubbing, loads=[BALLAST], drops=drops, noise=0.02, seed=1, rate=250, duration=1.6)
+    result = sprung.identify(campaign, extras=["engine", "friction"])
+    assert result.verdict.state == "accept"
+    for name in ("m_e", "k_e", "x_e", "F_f", "F_r", "m_s", "k_sf"):
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - rubbing.parameters[name]) < 4 * found.std
