@@ -86,6 +86,15 @@ def test_found_without_being_asked_for(vehicle: Vehicle) -> None:
     assert len(result.modes["empty"]) == 8
 
 
+def test_frequencies_are_told_where_no_mass_is() -> None:
+    # Without a load only ratios are determined, and every frequency follows from ratios.
+    result = sprung.identify(sprung.simulate(WITH_ENGINE, noise=0.02, seed=1), extras=["engine"])
+    assert result.parameters["m_e"].value is None
+    (engine,) = [mode for mode in result.modes["empty"] if mode.name == "engine bounce"]
+    assert engine.frequency_std is not None
+    assert engine.frequency_std < 0.002
+
+
 def test_wanted() -> None:
     campaign = sprung.simulate(WITH_ENGINE, loads=[BALLAST], noise=0.02, seed=1, duration=1.6)
     assert sprung.identify(campaign, extras=["engine"]).fit.model == ("engine",)

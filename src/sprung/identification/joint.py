@@ -97,10 +97,14 @@ class Fit:
 
     def moved(self, step: Real) -> Real:
         """Give parameter values, SI, a step of the coordinates away, shape (parameter,)."""
-        logarithmic = np.array([PARAMETERS[name].positive for name in self.names])
-        return np.where(
-            logarithmic, self.values * np.exp(np.where(logarithmic, step, 0.0)), self.values + self.slopes * step
+        logarithmic, scales = np.array([(PARAMETERS[name].positive, PARAMETERS[name].scales) for name in self.names]).T
+        # What scales everything is taken apart: it multiplies those that are not fitted by their logarithms as well.
+        alike = float(step @ self.scaling) / max(float(self.scaling @ self.scaling), np.finfo(float).tiny)
+        rest = step - alike * self.scaling
+        moved = np.where(
+            logarithmic, self.values * np.exp(np.where(logarithmic, rest, 0.0)), self.values + self.slopes * rest
         )
+        return np.where(scales, moved * np.exp(alike), moved)
 
     def only(self, names: Sequence[str]) -> Fit:
         """Give what the fit says of some of its parameters, whatever the others are."""
