@@ -63,20 +63,20 @@ def test_words(check: Check) -> None:
     assert f"to {drop.end:.3f} s: the recording ends" in said
     assert all(channel.name in said for channel in drop.channels)
     assert "left out: flat" in said
-    assert f"clipped: {check.seen[0].marks[0].samples.size}" in said
+    assert f"clipped: {check.recorded[0].marks[0].samples.size}" in said
 
 
 def panels(check: Check) -> tuple[Axes, Axes]:
-    whole, close = figure_of(check.drops[0], check.seen[0], check.recordings[0]).axes
+    whole, close = figure_of(check.drops[0], check.recorded[0]).axes
     return whole, close
 
 
 def test_signals(check: Check) -> None:
     """Each lane holds its channel, the first on top, with what its ticks say."""
     whole, _ = panels(check)
-    recording = check.seen[0].recording
+    recording = check.recorded[0]
     signals = [line for line in whole.lines if len(np.asarray(line.get_xdata())) == recording.values.shape[1]]
-    assert len(signals) == len(recording.channels)
+    assert len(signals) == len(check.drops[0].channels)
     low, *_, high = list(zip(whole.get_yticks(), whole.get_yticklabels(), strict=True))[-3:]  # of the lowest lane
     bottom, top = (float(label.get_text().replace("\N{MINUS SIGN}", "-")) for _, label in (low, high))
     drawn = (np.asarray(signals[-1].get_ydata(), dtype=float) - low[0]) / (high[0] - low[0]) * (top - bottom) + bottom
@@ -92,13 +92,13 @@ def test_signals(check: Check) -> None:
 
 def test_events_and_marks_are_where_they_were(check: Check) -> None:
     whole, close = panels(check)
-    drop, seen = check.drops[0], check.seen[0]
+    drop, seen = check.drops[0], check.recorded[0]
     for axes in (whole, close):
         [shade] = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
         assert (shade.get_x(), shade.get_x() + shade.get_width()) == pytest.approx((drop.start, drop.end))
         marked = [np.asarray(line.get_xdata(), dtype=float) for line in axes.lines if line.get_marker() == "."]
         times = np.concatenate(marked)
-        np.testing.assert_allclose(np.unique(times), seen.recording.time[seen.marks[0].samples])
+        np.testing.assert_allclose(np.unique(times), seen.time[seen.marks[0].samples])
     places = [np.asarray(line.get_xdata(), dtype=float) for line in close.lines]
     upright = {float(place[0]) for place in places if np.ptp(place) == 0}
     assert upright >= {drop.release, drop.landing, drop.start}
@@ -175,7 +175,7 @@ NAMES = [
 def test_names_of_every_kind(check: Check, tmp_path: Path) -> None:
     drops = tuple(replace(check.drops[0], file=name, load="<&>$x$") for name in NAMES)
     count = len(NAMES)
-    many = Check(drops, (), check.seen * count, check.recordings * count)
+    many = Check(drops, (), check.recorded * count)
     written = write_check(many, tmp_path / "check")
     assert len({path.name.lower() for path in written}) == len(NAMES)
     assert all(path.parent == tmp_path / "check" for path in written)

@@ -37,6 +37,9 @@ class ModeEstimate:
         Hz.
     damping_ratio, damping_ratio_std
         -re/|pole|; 1 for a real pole.
+    motion
+        How the seven coordinates of the paper move, z_s, θ, φ and the wheels A to D: real and imaginary part of each, the
+        largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
     """
 
     name: str
@@ -46,6 +49,7 @@ class ModeEstimate:
     damped_frequency: float
     damping_ratio: float
     damping_ratio_std: float | None
+    motion: tuple[tuple[float, float], ...] = ()
 
 
 def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
@@ -103,4 +107,5 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
         damped_frequency=mode.damped_frequency,
         damping_ratio=mode.damping_ratio,
         damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
+        motion=tuple((float(part.real), float(part.imag)) for part in mode.shape),
     )

@@ -2,47 +2,28 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from sprung.errors import Fault, Problem, ResultFileError
 from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
+from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
+from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
 from sprung.pipeline.extras import Attempt
+from sprung.pipeline.series import Recorded, Series, arrays_of, packed, read_series
+from sprung.pipeline.setup import Setup
 from sprung.recording import write_whole
+from sprung.tables import escaped
 from sprung.validation import DropValidation, Verdict
 
 SCHEMA: Literal[1] = 1
 """Version of results.json; a change that an old reader would misread raises it."""
-
-
-@dataclass(frozen=True, eq=False)
-class Series:
-    """What the figures draw of one drop.
-
-    Attributes
-    ----------
-    channels
-        Channel names.
-    time
-        On the file's own clock, s, shape (time,).
-    measured, fitted
-        m/s², positive up, shape (channel, time); NaN in channels that were left out.
-    """
-
-    channels: tuple[str, ...]
-    time: NDArray[np.float64]
-    measured: NDArray[np.float64]
-    fitted: NDArray[np.float64]
 
 
 class _Frozen(BaseModel):
@@ -141,8 +122,14 @@ class Result(_Frozen):
         older sprung wrote the result.
     next_step
         What to measure next, in a sentence; None where the verdict is reject, or an older sprung wrote the result.
+    setup
+        What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
+    amplitude
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
     series
-        By drop name: what the figures draw.
+        By drop name: what was fitted.
+    recordings
+        By drop name, of all drops: the whole recording.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, populate_by_name=True)
@@ -162,7 +149,21 @@ class Result(_Frozen):
     faults: tuple[Fault, ...]
     validation: dict[str, DropValidation] = Field(default_factory=dict)
     next_step: str | None = None
+    setup: Setup | None = None
+    amplitude: Amplitudes = ()
     series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
+    recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
+
+    def _repr_html_(self) -> str:
+        """Show the verdict, the parameters and the modes in a notebook."""
+        parts = [
+            self.verdict._repr_html_(),
+            parameters_table(self.vehicle.name, {**self.parameters, **self.derived}).html(),
+        ]
+        parts += [f"<p>Not determined: {escaped(one.text)}.</p>\n" for one in self.unidentifiable]
+        if not self.scale.known and self.scale.per_total_mass:
+            parts.append(ratios_table(self.scale.per_total_mass).html())
+        return "".join([*parts, *(modes_table(load, modes).html() for load, modes in self.modes.items())])
 
     def to_json(self) -> str:
         """Write the contract's results.json as text."""
@@ -187,21 +188,13 @@ class Result(_Frozen):
         InputError
             If the folder cannot be written.
         """
-        arrays: dict[str, NDArray[Any]] = {}
-        for name, series in self.series.items():
-            arrays[f"{name}/channels"] = np.array(series.channels)
-            arrays[f"{name}/time"] = series.time
-            arrays[f"{name}/measured"] = series.measured
-            arrays[f"{name}/fitted"] = series.fitted
-        write_whole(Path(folder), {"series.npz": packed(arrays), "results.json": self.to_json().encode()})
+        write_whole(Path(folder), self.files())
         return Path(folder)
 
-
-def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Give the bytes of an .npz file of arrays by name."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
-    return buffer.getvalue()
+    def files(self) -> dict[str, bytes]:
+        """Give series.npz and results.json, the latter last, as bytes by name."""
+        series = packed(arrays_of(self.series, self.recordings))
+        return {"series.npz": series, "results.json": self.to_json().encode()}
 
 
 def load(folder: str | Path) -> Result:
@@ -235,7 +228,7 @@ def load(folder: str | Path) -> Result:
     if isinstance(newer, int) and newer > SCHEMA:
         raise _refuse(path, f"schema {newer}", f"schema {SCHEMA} or older", "Update sprung to read this result.")
     try:
-        return Result.model_validate({**document, "series": _read_series(path.with_name("series.npz"))})
+        return Result.model_validate({**document, **_read_series(path.with_name("series.npz"))})
     except (ValidationError, TypeError) as error:
         what = error.errors()[0] if isinstance(error, ValidationError) else {"loc": (), "msg": str(error)}
         place = ".".join(str(part) for part in what["loc"])
@@ -244,19 +237,9 @@ def load(folder: str | Path) -> Result:
         ) from error
 
 
-def _read_series(path: Path) -> dict[str, Series]:
+def _read_series(path: Path) -> dict[str, Any]:
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            names = sorted({key.rpartition("/")[0] for key in archive.files})
-            return {
-                name: Series(
-                    tuple(archive[f"{name}/channels"].tolist()),
-                    archive[f"{name}/time"],
-                    archive[f"{name}/measured"],
-                    archive[f"{name}/fitted"],
-                )
-                for name in names
-            }
+        return read_series(path)._asdict()
     except (OSError, ValueError, KeyError, EOFError) as error:
         raise _refuse(path, str(error), "the series of a saved result", "Run the identification again.") from error
 

@@ -34,8 +34,8 @@ def draw_check(check: Check) -> dict[str, str]:
         If matplotlib, which draws, is not installed.
     """
     figure = drawer("figure")
-    drawn = zip(_names(check), check.drops, check.seen, check.recordings, strict=True)
-    return {name: figure.svg_of(drop, seen, recording) for name, drop, seen, recording in drawn}
+    drawn = zip(_names(check), check.drops, check.recorded, strict=True)
+    return {name: figure.svg_of(drop, recorded) for name, drop, recorded in drawn}
 
 
 def drawer(module: str) -> Any:

@@ -13,9 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from sprung.pipeline import DropReport
-from sprung.prepare import Seen
-from sprung.recording import Recording
+from sprung.pipeline import DropReport, Recorded
 from sprung.report.ink import AMBER, BLUE, FAINT, ORANGE, QUIET, SIGNAL, TEXT, svg_text
 from sprung.report.lanes import Lane, lanes_of, plain, thinned
 
@@ -36,33 +34,31 @@ _ROW = 0.17
 """inches from one line of labels to the next."""
 
 
-def svg_of(drop: DropReport, seen: Seen, as_read: Recording) -> str:
+def svg_of(drop: DropReport, recorded: Recorded) -> str:
     """Draw one drop.
 
     Parameters
     ----------
     drop
         What is said of it.
-    seen
-        What its recording shows.
-    as_read
-        Its recording as it was read, for channels of which nothing else is left.
+    recorded
+        Its whole recording.
 
     Returns
     -------
     str
         The same for the same input.
     """
-    return svg_text(lambda: figure_of(drop, seen, as_read), f"{drop.file}: {drop.kind}, {drop.load}")
+    return svg_text(lambda: figure_of(drop, recorded), f"{drop.file}: {drop.kind}, {drop.load}")
 
 
-def figure_of(drop: DropReport, seen: Seen, as_read: Recording) -> Figure:
+def figure_of(drop: DropReport, recorded: Recorded) -> Figure:
     """Draw one drop into a figure of its own."""
-    lanes = lanes_of(drop, seen, as_read)
+    lanes = lanes_of(drop, recorded)
     height = _ABOVE + _LANE * len(lanes) + _BELOW
     figure = Figure(figsize=(_WIDTH, height))
     _head(figure, drop, height)
-    time = seen.recording.time
+    time = recorded.time
     near = _near(drop, time)
     left = min(0.45 + 0.07 * max(len(lane.name) for lane in lanes), _LEFT) / _WIDTH
     inside = (_BELOW / height, _LANE * len(lanes) / height)
