@@ -3,9 +3,12 @@
 from sprung.report.check import check_view
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
+from sprung.report.folder import write_report, write_results
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
+from sprung.report.page import page_of
 from sprung.report.paper import paper_view
+from sprung.report.paper_copy import pdf_of
 from sprung.report.plan import plan_view
 from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
@@ -16,11 +19,15 @@ __all__ = [
     "draw_check",
     "draw_validation",
     "modes_view",
+    "page_of",
     "paper_view",
+    "pdf_of",
     "plan_view",
     "result_view",
     "text_of",
     "validation_view",
     "write_check",
+    "write_report",
+    "write_results",
     "write_validation",
 ]

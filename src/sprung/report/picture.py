@@ -1,0 +1,270 @@
+"""What a picture shows, apart from how it is drawn: panels one above the other, with curves, points and lines in them.
+
+A page draws it as SVG (`sprung.report.svg`), a notebook with matplotlib (`sprung.plot`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+Role = Literal[
+    "measured",
+    "simulated",
+    "left",
+    "signal",
+    "unused",
+    "release",
+    "landing",
+    "fault",
+    "mode",
+    "first",
+    "second",
+    "quiet",
+]
+"""What something drawn stands for; its colour follows."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A line through points; it parts where a value is NaN.
+
+    Attributes
+    ----------
+    x, y
+        Shape (point,).
+    role
+        What it stands for.
+    label
+        For the legend; empty for none.
+    width
+        Of the line, 1 for the usual.
+    dashed
+        Whether it is.
+    """
+
+    x: Real
+    y: Real
+    role: Role
+    label: str = ""
+    width: float = 1.0
+    dashed: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Single points, with bars where there are uncertainties.
+
+    Attributes
+    ----------
+    x, y
+        Shape (point,).
+    role
+        What they stand for.
+    label
+        For the legend; empty for none.
+    hollow
+        Whether they are rings.
+    bars
+        Half-lengths of bars along y, shape (point,); none without.
+    size
+        Radius, 1 for the usual.
+    """
+
+    x: Real
+    y: Real
+    role: Role
+    label: str = ""
+    hollow: bool = False
+    bars: Real | None = None
+    size: float = 1.0
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A line across a panel, at some x, or at some y where it lies.
+
+    Attributes
+    ----------
+    at
+        Where.
+    role
+        What it stands for.
+    label
+        Written at it in the first panel, or in the legend where it lies; empty for none.
+    lying
+        Whether it is at some y.
+    dashed
+        Whether it is.
+    """
+
+    at: float
+    role: Role
+    label: str = ""
+    lying: bool = False
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class Band:
+    """A stretch of x that is shaded: the decay."""
+
+    low: float
+    high: float
+
+
+Mark: TypeAlias = Curve | Points | Rule | Band
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An axis.
+
+    Attributes
+    ----------
+    label
+        What it shows, with the unit.
+    low, high
+        Its ends.
+    log
+        Whether it is logarithmic.
+    falling
+        Whether it runs from high to low.
+    ticks
+        Values and how they are written; empty for round ones.
+    """
+
+    label: str
+    low: float
+    high: float
+    log: bool = False
+    falling: bool = False
+    ticks: tuple[tuple[float, str], ...] = ()
+
+    def at(self, values: Real) -> Real:
+        """Place values along the axis, 0 at its beginning and 1 at its end."""
+        low, high = np.log([self.low, self.high]) if self.log else (self.low, self.high)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = ((np.log(values) if self.log else np.asarray(values, dtype=float)) - low) / (high - low)
+        return 1 - part if self.falling else part
+
+    @property
+    def marked(self) -> tuple[tuple[float, str], ...]:
+        """Its ticks, round ones where none were given."""
+        return self.ticks or tuple(round_ticks(self.low, self.high, self.log))
+
+
+@dataclass(frozen=True, eq=False)
+class Panel:
+    """One pair of axes.
+
+    Attributes
+    ----------
+    y
+        Its vertical axis.
+    marks
+        What is drawn, the hindmost first.
+    height
+        Beside the other panels of the picture.
+    note
+        What is written into it, upper right.
+    wrong
+        What is written below the note, as a fault.
+    name
+        Written on its left instead of the axis' label, as channels have.
+    """
+
+    y: Axis
+    marks: tuple[Mark, ...]
+    height: float = 1.0
+    note: str = ""
+    wrong: str = ""
+    name: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """Panels one above the other on one horizontal axis.
+
+    Attributes
+    ----------
+    title
+        What it shows, for its head.
+    x
+        The horizontal axis.
+    panels
+        The first on top.
+    told
+        What there is to see, in a sentence, for who cannot.
+    """
+
+    title: str
+    x: Axis
+    panels: tuple[Panel, ...]
+    told: str = ""
+
+    @property
+    def legend(self) -> Iterator[Curve | Points]:
+        """What has a label, each once."""
+        said: set[str] = set()
+        for panel in self.panels:
+            for mark in panel.marks:
+                if isinstance(mark, Curve | Points) and mark.label and mark.label not in said:
+                    said.add(mark.label)
+                    yield mark
+
+
+def round_ticks(low: float, high: float, log: bool = False, most: int = 6) -> Iterator[tuple[float, str]]:
+    """Give round values between two, and how they are written.
+
+    Parameters
+    ----------
+    low, high
+        The values.
+    log
+        Whether the axis is logarithmic.
+    most
+        How many at the most.
+
+    Examples
+    --------
+    >>> [text for _, text in round_ticks(-0.7, 1.2)]
+    ['−0.5', '0', '0.5', '1']
+    """
+    if log:
+        decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+        for digits in ((1, 2, 5), (1, 3), (1,)):
+            found = [digit * 10.0**decade for decade in decades for digit in digits]
+            found = [value for value in found if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
+            if len(found) <= most + 1:
+                break
+    else:
+        power = 10.0 ** np.floor(np.log10((high - low) / most))
+        step = next(size * power for size in (1, 2, 5, 10) if (high - low) / (size * power) <= most)
+        found = (step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1) + 0.0).tolist()
+    yield from ((value, f"{value:.6g}".replace("-", "\N{MINUS SIGN}")) for value in found)
+
+
+def room(*values: Real, least: float = 0.0, margin: float = 0.06) -> tuple[float, float]:
+    """Give ends of an axis on which values fit.
+
+    Parameters
+    ----------
+    values
+        Any shape; NaN counts nothing.
+    least
+        Length of the axis at the least.
+    margin
+        Part of their span beyond them on either side.
+    """
+    finite = np.concatenate([np.ravel(one)[np.isfinite(np.ravel(one))] for one in values])
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (-1.0, 1.0)
+    span = max(high - low, least, 1e-12 * max(abs(low), abs(high)), np.finfo(float).tiny ** 0.5)
+    middle = (low + high) / 2
+    return middle - span * (0.5 + margin), middle + span * (0.5 + margin)

@@ -1,0 +1,41 @@
+"""The stabilisation diagram: poles over the order of a model, and what stays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sprung.modal import Diagram
+from sprung.report.picture import Axis, Panel, Picture, Points, Rule
+
+
+def stability_picture(load: str, diagram: Diagram) -> Picture:
+    """Show a stabilisation diagram.
+
+    Parameters
+    ----------
+    load
+        Whose decays it is of.
+    diagram
+        The diagram.
+    """
+    vibrating = [one for one in diagram.poles if one.pole.imag > 0]
+    frequency = np.array([abs(one.pole) for one in vibrating]) / (2 * np.pi)
+    order = np.array([one.order for one in vibrating], dtype=float)
+    stable = np.array([one.stable for one in vibrating], dtype=bool)
+    rules = tuple(
+        Rule(abs(one.pole) / (2 * np.pi), "mode", f"{abs(one.pole) / (2 * np.pi):.4g}", dashed=True)
+        for one in diagram.chosen
+        if one.pole.imag > 0
+    )
+    points = (
+        Points(frequency[~stable], order[~stable], "quiet", "new at this order", hollow=True, size=0.8),
+        Points(frequency[stable], order[stable], "simulated", "at the order before too"),
+    )
+    low, high = (frequency.min() / 1.15, frequency.max() * 1.15) if frequency.size else (0.5, 20.0)
+    most = max(diagram.orders, default=2)
+    panel = Panel(Axis("order of the model", 0, most + 2), (*rules, *points), height=1.9)
+    x = Axis("natural frequency, Hz", float(low), float(high), log=True)
+    told = (
+        f"Poles of models of order 2 to {most}; lines where poles stay: {', '.join(rule.label for rule in rules)} Hz."
+    )
+    return Picture(f"Stabilisation, {load}", x, (panel,), told)
