@@ -107,5 +107,11 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
         damped_frequency=mode.damped_frequency,
         damping_ratio=mode.damping_ratio,
         damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
-        motion=tuple((float(part.real), float(part.imag)) for part in mode.shape),
+        motion=_largest_one(mode.shape),
     )
+
+
+def _largest_one(shape: NDArray[np.complex128]) -> tuple[tuple[float, float], ...]:
+    """Turn and scale a shape so that its largest entry is 1; real and imaginary part of each."""
+    scaled = shape / shape[np.argmax(np.abs(shape))]
+    return tuple((float(part.real), float(part.imag)) for part in scaled)

@@ -53,8 +53,6 @@ def _lines(pairs: Sequence[tuple[int, int]], places: Real) -> str:
 
 
 def _said(mode: ModeEstimate) -> str:
-    if mode.frequency_std is None:
-        return "not determined by these drops"
     if mode.pole[1] == 0:
         return "overdamped: it creeps back"
     told = (

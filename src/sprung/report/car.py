@@ -23,7 +23,7 @@ _TRACK = 0.27
 _AWAY = (0.42, 0.30)
 """How far to the right and up on the picture what is away from who looks is drawn."""
 
-_SWING = 0.2
+_SWING = 0.15
 """Largest displacement on the picture, part of the wheelbase."""
 
 BODY_EDGES = ((0, 1), (1, 3), (3, 2), (2, 0), (4, 5), (5, 7), (7, 6), (6, 4), (0, 4), (1, 5), (2, 6), (3, 7))
@@ -73,8 +73,9 @@ class WireCar:
         """
         shape = np.array([complex(*part) for part in motion])
         moved: NDArray[np.complex128] = self.rows @ shape
-        largest = float(np.abs(moved).max())
-        return moved * (_SWING * self._wheelbase / largest) if largest > 0 else moved
+        # In the phase in which what moves most is furthest up.
+        largest = moved[np.argmax(np.abs(moved))]
+        return moved * (_SWING * self._wheelbase / largest) if largest else moved
 
     @property
     def _wheelbase(self) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import NamedTuple, get_args
 
@@ -53,13 +54,12 @@ def page_of(result: Result, unfolded: bool = False) -> str:
     str
         HTML; the same for the same result.
     """
-    few = unfolded or len(result.drops) <= _FEW
     page = _ENVIRONMENT.get_template("page.html")
     return page.render(
         result=result,
         verdict=verdict_words(result),
         facts=facts_of(result),
-        sections=list(_sections(result, few, unfolded)),
+        sections=list(_sections(result, unfolded)),
         light=LIGHT,
         dark=DARK,
         roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
@@ -73,7 +73,16 @@ def role_rules() -> Iterator[str]:
         yield f"{kinds} {{ stroke: var(--{role}); }}"
 
 
-def _sections(result: Result, few: bool, unfolded: bool) -> Iterator[Section]:
+def alone_style() -> str:
+    """Give the style of a picture that stands alone, or where that of its page does not reach: the light one."""
+    rules = "\n".join([*role_rules(), _ENVIRONMENT.get_template("picture.css").render()])
+    light = re.sub(r"var\(--(\w+)\)", lambda found: LIGHT[found[1]], rules)
+    return f"<style>{light}</style>"
+
+
+def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
+    few = unfolded or len(result.drops) <= _FEW
+    style = alone_style() if unfolded else ""
     parts = (
         ("parameters", "Parameters", "parameters.html", sections.parameters(result)),
         ("known", "What was known, and what was found", "known.html", sections.known(result)),
@@ -88,12 +97,12 @@ def _sections(result: Result, few: bool, unfolded: bool) -> Iterator[Section]:
         ("settings", "Settings, versions and files", "settings.html", sections.settings(result)),
         ("literature", "Literature", "literature.html", sections.literature(result)),
     )
+
+    def draw(picture: Picture) -> Markup:
+        return Markup(svg_of(picture, style))  # noqa: S704 (it escapes its words)
+
     macros = _ENVIRONMENT.get_template("macros.html").module
     for anchor, title, template, context in parts:
         if context is not None:
-            body = _ENVIRONMENT.get_template(template).render(macros=macros, draw=_drawn, **context)
+            body = _ENVIRONMENT.get_template(template).render(macros=macros, draw=draw, style=Markup(style), **context)  # noqa: S704 (made here)
             yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)
-
-
-def _drawn(picture: Picture) -> Markup:
-    return Markup(svg_of(picture))  # noqa: S704 (it escapes its words)

@@ -55,7 +55,7 @@ def parameters(result: Result) -> Context:
     half = half_width(found)
     rows = [_parameter(name, one, half) for name, one in found.items()]
     profiled = [name for name, one in found.items() if one.interval_from == "profile"]
-    left = not result.scale.known and bool(result.scale.per_total_mass)
+    left = not result.scale.known and bool(result.scale.per_total_mass) and result.verdict.state != "reject"
     return {
         "rows": rows,
         "half": f"{half:g}",
@@ -218,17 +218,22 @@ def modes(result: Result) -> Context:
     """Show the modes of the identified vehicle, moving, and their tables."""
     load, first = next(iter(result.modes.items()), ("", ()))
     car = wire_car(result)
-    why = _NOT_KEPT.rstrip(".")
     if result.verdict.state == "reject":
-        first, why = (), "the numbers of a vehicle that was rejected are worth nothing, and so are its shapes"
-    shaped = [mode for mode in first if mode.motion]
+        return {"why_not": "the numbers of a vehicle that was rejected are worth nothing, and so are its modes"}
+    if not any(mode.motion for mode in first):
+        return {"why_not": "an older sprung wrote this result, without the shapes", "tables": _mode_tables(result)}
+    shaped = [mode for mode in first if mode.frequency_std is not None]
     return {
         "cars": list(cars_of(car, shaped)),
         "wire": wire_json(car),
         "load": load,
-        "why_not": why[0].lower() + why[1:],
-        "tables": [modes_table(name, of_load) for name, of_load in result.modes.items()],
+        "missing": ", ".join(mode.name for mode in first if mode.frequency_std is None),
+        "tables": _mode_tables(result),
     }
+
+
+def _mode_tables(result: Result) -> list[Table]:
+    return [modes_table(load, modes) for load, modes in result.modes.items()]
 
 
 def motions(result: Result, few: bool) -> Context | None:

@@ -58,18 +58,20 @@ class _Box:
         return self.top + self.height
 
 
-def svg_of(picture: Picture) -> str:
+def svg_of(picture: Picture, style: str = "") -> str:
     """Draw a picture.
 
     Parameters
     ----------
     picture
         What it shows.
+    style
+        Rules of style to go with it, for where it stands alone; in a page those of the page hold.
 
     Returns
     -------
     str
-        An ``svg`` element; the same for the same picture. Its style is that of `sprung.report.page`.
+        An ``svg`` element; the same for the same picture.
     """
     longest = max((len(panel.name[:_NAME]) for panel in picture.panels), default=0)
     left = max(_LEFT, 34 + longest * _LETTER)
@@ -91,7 +93,7 @@ def svg_of(picture: Picture) -> str:
     told = f"<desc>{escaped(picture.told)}</desc>" if picture.told else ""
     return (
         f'<svg class="picture" viewBox="0 0 {WIDTH} {height:.0f}" role="img" aria-label="{escaped(picture.title)}">'
-        f"{title}{told}{''.join(parts)}</svg>"
+        f"{title}{told}{style}{''.join(parts)}</svg>"
     )
 
 

@@ -75,7 +75,7 @@ def facts_of(result: Result) -> Iterator[tuple[str, str]]:
         yield "Left unexplained", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
     predicted = [drop.predicted_residual for drop in result.validation.values() if drop.predicted_residual is not None]
     if predicted:
-        yield "By the others' prediction", f"{min(predicted):.2f} to {max(predicted):.2f} times the noise"
+        yield "Left by the others' prediction", f"{min(predicted):.2f} to {max(predicted):.2f} times the noise"
 
 
 def _model(result: Result) -> str:
