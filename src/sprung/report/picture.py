@@ -5,14 +5,17 @@ A page draws it as SVG (`sprung.report.svg`), a notebook with matplotlib (`sprun
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
+
+_LIKE_ONE = 0.015
+"""Part of an axis by which two lines may be apart and look like one."""
 
 Role = Literal[
     "measured",
@@ -218,6 +221,28 @@ class Picture:
                 if isinstance(mark, Curve | Points) and mark.label and mark.label not in said:
                     said.add(mark.label)
                     yield mark
+
+
+def labelled_together(rules: Sequence[Rule], axis: Axis) -> tuple[Rule, ...]:
+    """Write the labels of lines that look like one at the first of them.
+
+    Parameters
+    ----------
+    rules
+        Lines at some x, each with a label.
+    axis
+        The horizontal one.
+    """
+    found: list[Rule] = []
+    lead = 0
+    for rule in sorted(rules, key=lambda one: one.at):
+        if found and abs(float(axis.at(np.array(rule.at)) - axis.at(np.array(found[lead].at)))) < _LIKE_ONE:
+            found[lead] = replace(found[lead], label=f"{found[lead].label}, {rule.label}")
+            found.append(replace(rule, label=""))
+        else:
+            lead = len(found)
+            found.append(rule)
+    return tuple(found)
 
 
 def round_ticks(low: float, high: float, log: bool = False, most: int = 6) -> Iterator[tuple[float, str]]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sprung.identification import ModeEstimate
 from sprung.report.decays import LoadDecays
-from sprung.report.picture import Axis, Curve, Panel, Picture, Rule
+from sprung.report.picture import Axis, Curve, Panel, Picture, Rule, labelled_together
 
 Real = NDArray[np.float64]
 
@@ -40,6 +40,8 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
     powers = [_power(records, length) for records in (decays.measured, decays.fitted)]
     highest = max((mode.damped_frequency for mode in told), default=20.0)
     shown = (frequency >= _LOW) & (frequency <= min(_BEYOND * highest, rate / 2))
+    x = Axis("frequency, Hz", _LOW, float(frequency[shown][-1]), log=True)
+    rules = labelled_together([Rule(mode.damped_frequency, "mode", mode.name, dashed=True) for mode in told], x)
     panels = []
     for part, name in ((decays.on_body, "sensors on the body"), (~decays.on_body, "sensors at the wheels")):
         if not part.any():
@@ -51,10 +53,8 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
             Curve(frequency[shown], sizes[0], "measured", "measured", 2.2),
             Curve(frequency[shown], sizes[1], "simulated", "fitted vehicle"),
         )
-        rules = tuple(Rule(mode.damped_frequency, "mode", mode.name, dashed=True) for mode in told)
         axis = Axis("m/s² per √Hz", max(float(sizes[0].min(initial=top)), _FLOOR * top), top, log=True)
         panels.append(Panel(axis, (*rules, *curves), note=name))
-    x = Axis("frequency, Hz", _LOW, float(frequency[shown][-1]), log=True)
     return Picture(
         f"Spectra, {decays.load}", x, tuple(panels), "Spectra of the decays, with lines at the identified modes."
     )
