@@ -24,6 +24,7 @@ from sprung.report.pictures import (
     whole_picture,
 )
 from sprung.report.plan import plan_view
+from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
@@ -58,6 +59,7 @@ __all__ = [
     "result_view",
     "spectra_picture",
     "stability_picture",
+    "svg_of",
     "text_of",
     "validation_view",
     "whole_picture",
