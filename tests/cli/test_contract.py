@@ -219,7 +219,7 @@ def test_without_a_report_none_is_left(folder: Folder) -> None:
     assert run("identify", folder.path).status == 0
     (results / "report.pdf").write_bytes(b"of that result")
     said = run("identify", folder.path, "--no-report")
-    assert "report" not in said.out
+    assert "report.html" not in said.out
     assert sorted(path.name for path in results.iterdir()) == ["results.json", "series.npz"]
     document = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert document["amplitude"] == {}  # nothing is spent on figures

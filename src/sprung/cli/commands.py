@@ -124,13 +124,9 @@ def validate(
         found = sprung.validate(sprung.read(campaign), progress=progress)
     written: tuple[Path, ...] = ()
     if output is not None:
-        drawings: dict[str, str] = {}
-        try:
-            with working("drawing"):
-                drawings = sprung.report.draw_validation(found)
-        except InputError as error:
-            complain(f"No drawings: {error}")
-        written = sprung.report.write_validation(found, output.resolve(), drawings)
+        with working("drawing"):
+            drawings = sprung.report.draw_validation(found)
+            written = sprung.report.write_validation(found, output.resolve(), drawings)
     if as_json:
         say_json(found.document())
     else:

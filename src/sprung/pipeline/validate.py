@@ -123,7 +123,8 @@ def validate(
     True
     """
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
-    result = result_of(fitted, (), progress)
+    asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
+    result = result_of(fitted, progress=progress, options=asked)
     progress("following the modes of the body through the decays")
     motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
     amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)

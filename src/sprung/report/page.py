@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
-from typing import NamedTuple, get_args
+from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
@@ -12,7 +11,8 @@ from markupsafe import Markup
 from sprung.pipeline import Result
 from sprung.report import sections
 from sprung.report.palette import DARK, LIGHT
-from sprung.report.picture import Picture, Role
+from sprung.report.picture import Picture
+from sprung.report.style import alone_style, role_rules
 from sprung.report.svg import svg_of
 from sprung.report.words import facts_of, verdict_words
 
@@ -64,20 +64,6 @@ def page_of(result: Result, unfolded: bool = False) -> str:
         dark=DARK,
         roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
     )
-
-
-def role_rules() -> Iterator[str]:
-    """Give the rules of style by which what is drawn has the colour of what it stands for."""
-    for role in get_args(Role):
-        kinds = ", ".join(f".picture .{kind}.{role}" for kind in ("curve", "points", "rule", "bars"))
-        yield f"{kinds} {{ stroke: var(--{role}); }}"
-
-
-def alone_style() -> str:
-    """Give the style of a picture that stands alone, or where that of its page does not reach: the light one."""
-    rules = "\n".join([*role_rules(), _ENVIRONMENT.get_template("picture.css").render()])
-    light = re.sub(r"var\(--(\w+)\)", lambda found: LIGHT[found[1]], rules)
-    return f"<style>{light}</style>"
 
 
 def _sections(result: Result, unfolded: bool) -> Iterator[Section]:

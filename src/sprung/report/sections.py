@@ -28,7 +28,7 @@ from sprung.report.pictures import (
     stability_picture,
     whole_picture,
 )
-from sprung.report.validation import COLUMNS, amplitude_table, validation_table
+from sprung.report.validation import AMPLITUDES, COLUMNS, amplitude_table, validation_table
 from sprung.report.words import symbol as parts_of
 from sprung.tables import Table, unit_text, value_cells
 
@@ -262,10 +262,8 @@ def amplitude(result: Result) -> Context | None:
         return None
     load = result.amplitude[0].load
     said = (
-        f"Body modes, {load}: a damped sinusoid fitted to one and a half periods of a record at a time (symbols, with two "
-        "standard uncertainties), the same of the simulated drops (thin lines), and a free decay of the fitted vehicle in this "
-        "mode alone (thick line); dashed its linear part. A linear vehicle has one frequency at every amplitude; where "
-        "springs rub, the frequency rises as the motion dies."
+        f"Body modes, {load}. {AMPLITUDES} A linear vehicle has one frequency at every amplitude; where springs rub, the "
+        "frequency rises as the motion dies."
     )
     pictures = amplitude_pictures(result.amplitude)
     return {"said": said, "pictures": pictures, "tables": [amplitude_table(load, result.amplitude)]}

@@ -66,12 +66,36 @@ def svg_of(picture: Picture, style: str = "") -> str:
     picture
         What it shows.
     style
-        Rules of style to go with it, for where it stands alone; in a page those of the page hold.
+        Rules of style to go with it, for where those of a page do not reach.
 
     Returns
     -------
     str
         An ``svg`` element; the same for the same picture.
+    """
+    parts, height = drawn(picture)
+    title = f"<title>{escaped(picture.title)}</title>"
+    told = f"<desc>{escaped(picture.told)}</desc>" if picture.told else ""
+    return (
+        f'<svg class="picture" viewBox="0 0 {WIDTH} {height:.0f}" role="img" aria-label="{escaped(picture.title)}">'
+        f"{title}{told}{style}{parts}</svg>"
+    )
+
+
+def drawn(picture: Picture) -> tuple[str, float]:
+    """Draw what is in a picture.
+
+    Parameters
+    ----------
+    picture
+        What it shows.
+
+    Returns
+    -------
+    parts
+        SVG elements in a frame `WIDTH` units wide.
+    height
+        Of the frame, units.
     """
     longest = max((len(panel.name[:_NAME]) for panel in picture.panels), default=0)
     left = max(_LEFT, 34 + longest * _LETTER)
@@ -88,13 +112,7 @@ def svg_of(picture: Picture, style: str = "") -> str:
         parts += _panel(panel, box)
     parts += _rule_labels(labels, levels, boxes[0])
     parts += _across(picture.x, boxes)
-    height = boxes[-1].bottom + _BELOW
-    title = f"<title>{escaped(picture.title)}</title>"
-    told = f"<desc>{escaped(picture.told)}</desc>" if picture.told else ""
-    return (
-        f'<svg class="picture" viewBox="0 0 {WIDTH} {height:.0f}" role="img" aria-label="{escaped(picture.title)}">'
-        f"{title}{told}{style}{''.join(parts)}</svg>"
-    )
+    return "".join(parts), boxes[-1].bottom + _BELOW
 
 
 def _panel(panel: Panel, box: _Box) -> Iterator[str]:

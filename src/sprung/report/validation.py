@@ -10,8 +10,10 @@ from rich.text import Text
 
 from sprung.pipeline import Validation
 from sprung.recording import write_whole
-from sprung.report.drawing import drawer, file_names
+from sprung.report.drawing import file_names
 from sprung.report.layout import figures, hanging, laid_out
+from sprung.report.pictures import amplitude_pictures, motion_picture
+from sprung.report.sheet import sheet
 from sprung.report.terminal import fault_list, verdict_view
 from sprung.tables import Table
 from sprung.validation import DropValidation, ModeAmplitude, Trace
@@ -21,6 +23,13 @@ COLUMNS = (
     "channel what is left repeats itself, how much, and after what time."
 )
 """What the columns of the table of drops say."""
+
+AMPLITUDES = (
+    "A damped sinusoid fitted to one and a half periods of a record at a time (symbols, with two standard uncertainties), the "
+    "same of the simulated drops (thin lines), and a free decay of the fitted vehicle in this mode alone (thick line); dashed "
+    "its linear part."
+)
+"""How modes against amplitude are to be read."""
 
 _COLOURED = 6.0
 """Standard deviations from which a channel's residuals are said not to be white."""
@@ -130,23 +139,26 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     -------
     dict
         SVG text by file name; the same for the same recordings.
-
-    Raises
-    ------
-    InputError
-        If matplotlib, which draws, is not installed.
     """
-    motion, amplitude = drawer("motion"), drawer("amplitude")
     result = validation.result
     drawn = {}
-    if validation.amplitudes:
+    if pictures := amplitude_pictures(validation.amplitudes):
         title = f"{result.vehicle.name}, {validation.load}: modes of the body against amplitude"
-        drawn["amplitude.svg"] = amplitude.svg_of_amplitudes(validation.amplitudes, title)
-    names = file_names(["amplitude", *(one.name for one in validation.motions)])
+        drawn["amplitude.svg"] = sheet(title, [(AMPLITUDES, False)], pictures)
+    names = file_names(["amplitude", *result.series])
     next(names)  # taken by the drawing above
-    for name, one in zip(names, validation.motions, strict=True):
-        drawn[name] = motion.svg_of_motion(one, result.validation[one.name])
+    for name, (drop, series) in zip(names, result.series.items(), strict=True):
+        picture = motion_picture(drop, series, result.validation[drop])
+        if picture is not None:
+            drawn[name] = sheet(drop, [(_said(result.validation[drop]), False)], [picture])
     return drawn
+
+
+def _said(drop: DropValidation) -> str:
+    text = f"all channels: error {100 * drop.fitted:.1f} % of the signal, {drop.residual:.2f} times the noise"
+    if drop.predicted is not None and drop.predicted_residual is not None:
+        text += f"; predicted by the other drops: {100 * drop.predicted:.1f} %, {drop.predicted_residual:.2f} times"
+    return text
 
 
 def write_validation(validation: Validation, folder: Path, drawings: Mapping[str, str]) -> tuple[Path, ...]:
@@ -159,7 +171,7 @@ def write_validation(validation: Validation, folder: Path, drawings: Mapping[str
     folder
         Made if it does not exist. Files of the same names in it are replaced.
     drawings
-        From `draw_validation`; none without matplotlib.
+        From `draw_validation`.
 
     Returns
     -------
