@@ -38,8 +38,8 @@ class ModeEstimate:
     damping_ratio, damping_ratio_std
         -re/|pole|; 1 for a real pole.
     motion
-        How the seven coordinates of the paper move, z_s, θ, φ and the wheels A to D: real and imaginary part of each, the
-        largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
+        How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
+        imaginary part of each, the largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
     """
 
     name: str

@@ -93,8 +93,10 @@ class _Mode(_Strict):
 
 
 def _understood(document: Any) -> Any:
-    if not isinstance(document, Mapping):
+    if isinstance(document, tuple) and all(isinstance(one, ModeAmplitude) for one in document):
         return document
+    if not isinstance(document, Mapping):
+        raise ValueError("curves by mode are expected")
     modes = {name: _Mode.model_validate(entry) for name, entry in document.items()}
     return tuple(
         ModeAmplitude(

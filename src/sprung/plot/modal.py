@@ -13,7 +13,6 @@ from sprung.pipeline import LoadModes, Result
 from sprung.plot.drawing import chosen, drawn, single
 from sprung.report import (
     BODY_EDGES,
-    HUBS,
     LIGHT,
     STRUTS,
     LoadDecays,
@@ -87,7 +86,7 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     result
         From `sprung.identify` or `sprung.load`.
     name
-        One of the paper's seven, such as ``body bounce``.
+        Such as ``body bounce``.
     load
         On the vehicle; the first one unless given.
     phase
@@ -122,8 +121,9 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     for i, j in STRUTS:
         axes.plot(*moved[[i, j]].T, color=LIGHT["simulated"], lw=1.6)
     around = np.linspace(0, 2 * np.pi, 60)
-    for x, y in moved[list(HUBS)]:
-        axes.plot(x + car.wheel * np.cos(around), y + car.wheel * np.sin(around), color=LIGHT["left"], lw=1.4)
+    for node, radius in car.circles:
+        x, y = moved[node]
+        axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), color=LIGHT["left"], lw=1.4)
     axes.set_aspect("equal")
     axes.set(xlim=(0, car.width), ylim=(car.height, 0))
     axes.set_axis_off()

@@ -1,6 +1,6 @@
 """Everything people look at; reads every result, and nothing below reads it."""
 
-from sprung.report.car import BODY_EDGES, HUBS, STRUTS, wire_car
+from sprung.report.car import BODY_EDGES, STRUTS, wire_car
 from sprung.report.check import check_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
@@ -30,7 +30,6 @@ from sprung.report.validation import draw_validation, validation_view, write_val
 
 __all__ = [
     "BODY_EDGES",
-    "HUBS",
     "LIGHT",
     "STRUTS",
     "Band",

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sprung.identification import ModeEstimate
-from sprung.report.car import BODY_EDGES, HUBS, STRUTS, WireCar
+from sprung.report.car import BODY_EDGES, STRUTS, WireCar
 from sprung.report.picture import Real
 
 
@@ -35,8 +35,9 @@ def cars_of(car: WireCar, modes: Sequence[ModeEstimate]) -> Iterator[dict[str, A
             "rest": _lines(BODY_EDGES, car.places),
             "edges": _lines(BODY_EDGES, moved),
             "struts": _lines(STRUTS, moved),
-            "wheels": [(f"{x:.1f}", f"{y:.1f}") for x, y in moved[list(HUBS)].tolist()],
-            "radius": f"{car.wheel:.1f}",
+            "circles": [
+                (*(f"{part:.1f}" for part in moved[node].tolist()), f"{radius:.1f}") for node, radius in car.circles
+            ],
             "said": _said(mode),
             "told": f"{mode.name}: a small car of wire in the shape of this mode",
         }
@@ -45,7 +46,10 @@ def cars_of(car: WireCar, modes: Sequence[ModeEstimate]) -> Iterator[dict[str, A
 def wire_json(car: WireCar) -> str:
     """Give the wire car at rest for the page's script."""
     places = [[round(x, 1), round(y, 1)] for x, y in car.places.tolist()]
-    return json.dumps({"places": places, "edges": BODY_EDGES, "struts": STRUTS, "hubs": HUBS}, separators=(",", ":"))
+    return json.dumps(
+        {"places": places, "edges": BODY_EDGES, "struts": STRUTS, "circles": [node for node, _ in car.circles]},
+        separators=(",", ":"),
+    )
 
 
 def _lines(pairs: Sequence[tuple[int, int]], places: Real) -> str:

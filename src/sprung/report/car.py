@@ -1,4 +1,4 @@
-"""A small car of wire whose nodes move with the seven coordinates: how a mode is shown."""
+"""A small car of wire whose nodes move with the coordinates of the vehicle: how a mode is shown."""
 
 from __future__ import annotations
 
@@ -35,6 +35,9 @@ STRUTS = ((12, 8), (13, 9), (14, 10), (15, 11))
 HUBS = (12, 13, 14, 15)
 """Nodes that are wheels: A front left, B front right, C rear left, D rear right."""
 
+_ENGINE = 0.4
+"""Radius of an engine beside a wheel's."""
+
 
 @dataclass(frozen=True, eq=False)
 class WireCar:
@@ -43,9 +46,10 @@ class WireCar:
     Attributes
     ----------
     places
-        Of its nodes at rest: to the right and down, units, shape (node, 2).
+        Of its nodes at rest: to the right and down, units, shape (node, 2). The last is an engine on its mounts, if there
+        is one.
     rows
-        How far each node rises with each of the seven coordinates, units, shape (node, 7).
+        How far each node rises with each coordinate, the engine's the last, units, shape (node, 8).
     wheel
         Radius of a wheel, units.
     width, height
@@ -64,7 +68,7 @@ class WireCar:
         Parameters
         ----------
         motion
-            Of the seven coordinates, real and imaginary parts.
+            Of the vehicle's coordinates, real and imaginary parts.
 
         Returns
         -------
@@ -72,10 +76,16 @@ class WireCar:
             Units, shape (node,).
         """
         shape = np.array([complex(*part) for part in motion])
-        moved: NDArray[np.complex128] = self.rows @ shape
+        moved: NDArray[np.complex128] = self.rows[:, : len(shape)] @ shape
         # In the phase in which what moves most is furthest up.
         largest = moved[np.argmax(np.abs(moved))]
         return moved * (_SWING * self._wheelbase / largest) if largest else moved
+
+    @property
+    def circles(self) -> tuple[tuple[int, float], ...]:
+        """Nodes that are drawn as circles, and their radii, units: the wheels, and an engine."""
+        engine = range(HUBS[-1] + 1, len(self.places))
+        return (*((hub, self.wheel) for hub in HUBS), *((node, _ENGINE * self.wheel) for node in engine))
 
     @property
     def _wheelbase(self) -> float:
@@ -104,11 +114,13 @@ def wire_car(result: Result, width: float = 220.0) -> WireCar:
     corners = [(x, y) for x in (front, rear) for y in (half, -half)]
     roof = [(x, y) for x in (0.5 * front, 0.94 * rear) for y in (inner, -inner)]
     stations = [(x, y) for x in (a, -b) for y in (half, -half)]
-    flat = np.array([*corners, *roof, *stations, *stations])
-    heights = length * np.repeat([_DECK, _ROOF, _DECK, _HUB], 4)
-    rows = np.zeros((16, 7))
+    engine = [(a + told["x_e"], 0.0)] if "x_e" in told else []
+    flat = np.array([*corners, *roof, *stations, *stations, *engine])
+    heights = length * np.array([*np.repeat([_DECK, _ROOF, _DECK, _HUB], 4), *([_DECK] * len(engine))])
+    rows = np.zeros((len(flat), 8))
     rows[:12, 0], rows[:12, 1], rows[:12, 2] = 1, -flat[:12, 0], flat[:12, 1]
     rows[HUBS, range(3, 7)] = 1
+    rows[16:, 7] = 1
     across, up = flat[:, 0] + _AWAY[0] * flat[:, 1], heights + _AWAY[1] * flat[:, 1]
     radius = _HUB * length
     scale = (width - 12) / (np.ptp(across) + 1e-9)

@@ -5,11 +5,11 @@
 
   const held = document.getElementById("wire-car");
   if (!held) return;
-  const { places, edges, struts, hubs } = JSON.parse(held.textContent);
+  const { places, edges, struts, circles } = JSON.parse(held.textContent);
   const cars = [...document.querySelectorAll("svg.car")].map((svg) => ({
     edges: svg.querySelector(".edges"),
     struts: svg.querySelector(".struts"),
-    wheels: [...svg.querySelectorAll(".wheel")],
+    circles: [...svg.querySelectorAll(".wheel")],
     swing: svg.dataset.swing.split(" ").map((part) => part.split(",").map(Number)),
     creeps: "creeps" in svg.dataset,
   }));
@@ -23,7 +23,7 @@
       const y = places.map((place, i) => (place[1] - car.swing[i][0] * turn[0] + car.swing[i][1] * turn[1]).toFixed(1));
       car.edges.setAttribute("d", lines(edges, y));
       car.struts.setAttribute("d", lines(struts, y));
-      car.wheels.forEach((wheel, k) => wheel.setAttribute("cy", y[hubs[k]]));
+      car.circles.forEach((circle, k) => circle.setAttribute("cy", y[circles[k]]));
     }
   }
 
