@@ -6,7 +6,6 @@ The results shown are real ones, kept as JSON beside their displays, so that a d
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Literal
@@ -17,7 +16,7 @@ from rich.console import Console
 import sprung
 from sprung.errors import Fault
 from sprung.estimate import Estimate
-from sprung.pipeline import ChannelReport, Check, DropReport, Result
+from sprung.pipeline import ChannelReport, Check, DropReport
 from sprung.recording import Campaign
 from sprung.report import check_view, modes_view, result_view, text_of
 from sprung.vehicle import TABLE_1_CAR, WHEELS
@@ -69,7 +68,7 @@ def test_a_result(name: str, regenerate: bool) -> None:
     path = HERE / f"{name}.json"
     if regenerate:
         path.write_text(sprung.identify(RESULTS[name]()).to_json(), encoding="utf-8")
-    result = Result.model_validate(json.loads(path.read_text(encoding="utf-8")))
+    result = sprung.load(path, series=False)
     compare(name, text_of(result_view(result), CONSOLE), regenerate)
 
 
@@ -87,7 +86,7 @@ def test_the_displays_show_what_their_names_say(name: str) -> None:
 
 def test_intervals_from_profiles(regenerate: bool) -> None:
     """Open to one side, to the other, far from even, of a derived quantity; and residuals that are coloured."""
-    result = Result.model_validate(json.loads((HERE / "accept.json").read_text(encoding="utf-8")))
+    result = sprung.load(HERE / "accept.json", series=False)
     limits = {"k_sf": (16821.3, 17352.9), "k_tf": (188123.0, None), "c_sf": (None, 1515.2), "t_f": (0.00123, 0.7452)}
     parameters = dict(result.parameters)
     for name, interval in limits.items():
