@@ -75,7 +75,9 @@ def _document(path: Path) -> dict[str, Any]:
     try:
         document = json.loads(path.read_text(encoding="utf-8"), parse_constant=_no_number)
     except OSError as error:
-        _refuse(path, error.strerror or str(error), "a saved result", "Name the folder given to save.", error)
+        inside = path.parent / "results"
+        do = f"Did you mean {inside}?" if (inside / "results.json").is_file() else "Name the folder given to save."
+        _refuse(path, (error.strerror or str(error)).lower(), "a saved result", do, error)
     except (ValueError, RecursionError) as error:
         found = f"no valid JSON ({error}): cut off or changed by hand"
         _refuse(path, found, "a whole results.json", _AGAIN, error)
