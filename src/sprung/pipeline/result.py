@@ -82,7 +82,7 @@ class FitReport(_Frozen):
     iterations, converged, starts, starts_agreeing
         Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
     inflation
-        By how much coloured residuals, or drops that contradict each other, enlarged every variance; 1 for neither.
+        By how much coloured residuals, or drops that contradict each other, enlarged every variance: a factor, 1 for neither.
     inflated_by
         Which of them; None where an older sprung wrote the result.
     most_coloured

@@ -72,6 +72,11 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     ----------
     comparison
         From `sprung.compare`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts: list[RenderableType] = [*_verdicts(comparison), Text()]
     labels = tuple(one.name for one in comparison.results)

@@ -34,6 +34,11 @@ def result_view(result: Result) -> RenderableType:
     ----------
     result
         The result.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts: list[RenderableType] = [parameter_table(result), Text()]
     if profiles := _profiles(result):

@@ -51,7 +51,7 @@ class Difference:
     interval95
         Within which the difference is, in the quantity's unit: one that is outside would have been seen.
     percent
-        Of the first's value; None where that is 0.
+        The same in percent of the first's value; None where that is 0.
     z
         In standard uncertainties, dimensionless.
     p, p_holm
