@@ -13,6 +13,7 @@ import textwrap
 import typing
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from types import ModuleType
 from typing import Any
 
@@ -119,11 +120,16 @@ def complaints(name: str, value: object) -> list[str]:
 
 def _of_constant(module: str, name: str) -> Iterator[str]:
     """Look for the text below a constant, where it is defined."""
+    if name not in _constants_with_text(module):
+        yield ": no text below it"
+
+
+@cache
+def _constants_with_text(module: str) -> frozenset[str]:
     room = importlib.import_module(module)
     inside = (found.name for found in pkgutil.walk_packages(getattr(room, "__path__", ()), f"{module}."))
     trees = (ast.parse(inspect.getsource(importlib.import_module(place))) for place in (module, *inside))
-    if not any(name in _texts_below(tree.body) for tree in trees):
-        yield ": no text below it"
+    return frozenset(name for tree in trees for name in _texts_below(tree.body))
 
 
 def _of_class(value: type) -> Iterator[str]:

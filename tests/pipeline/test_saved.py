@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 import sprung
 from sprung.errors import ResultFileError
@@ -163,3 +166,21 @@ def test_one_array_is_no_series(copy: Path) -> None:
         np.save(file, np.arange(3.0))
     with pytest.raises(ResultFileError, match=r"series\.npz"):
         sprung.load(copy)
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.sampled_from(["results.json", "series.npz"]), st.floats(0, 1, exclude_max=True), st.booleans(), st.integers(0, 7)
+)
+def test_a_changed_bit_is_refused_or_means_nothing(
+    folder: Path, copy: Path, file: str, place: float, at_ends: bool, bit: int
+) -> None:
+    """An archive's own bookkeeping is at its ends; a bit there may mean nothing, as an upper case letter in a number does."""
+    content = bytearray((folder / file).read_bytes())
+    within = 1000 if at_ends else len(content)
+    position = int(place * within) - within // 2 if at_ends else int(place * within)
+    content[position] ^= 1 << bit
+    (copy / file).write_bytes(content)
+    with suppress(ResultFileError):
+        assert sprung.load(copy).to_json() == sprung.load(folder).to_json()
+    (copy / file).write_bytes((folder / file).read_bytes())

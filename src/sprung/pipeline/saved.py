@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import struct
+import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
@@ -23,6 +25,12 @@ from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 _AGAIN = "Run the identification again, or take the file from where it was copied."
 _ROUNDING = 1e-6
 """By which a correlation may exceed 1 or differ from its mirror image."""
+
+_UNREADABLE = (
+    *(OSError, ValueError, LookupError, EOFError, TypeError, ArithmeticError, MemoryError, RuntimeError, SyntaxError),
+    *(zipfile.BadZipFile, zlib.error, struct.error, tokenize.TokenError),
+)
+"""What NumPy and zipfile raise of archives in which bytes have been changed."""
 
 
 def load(folder: str | Path, *, series: bool = True) -> Result:
@@ -146,7 +154,7 @@ def _arrays(path: Path, seal: object) -> dict[str, NDArray[Any]]:
             arrays = {key: archive[key] for key in archive.files}
     except FileNotFoundError as error:
         _refuse(path, "no such file", "the series of the result beside it", "Copy the whole results folder.", error)
-    except (OSError, ValueError, KeyError, EOFError, TypeError, zipfile.BadZipFile, zlib.error) as error:
+    except _UNREADABLE as error:
         _refuse(path, f"no series ({error}): cut off or spoilt", "the series of a saved result", _AGAIN, error)
     if seal is not None and seal != arrays_seal(arrays):
         found = "series that do not belong to this result (their checksum is another)"
