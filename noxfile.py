@@ -71,5 +71,16 @@ def picture(session: nox.Session) -> None:
 def studies(session: nox.Session) -> None:
     """Write the pages of docs/studies anew: thousands of campaigns, an hour or so; `-- --campaigns 40` for a look."""
     session.install(".[all,peers]", "matplotlib")
-    for study in ("at_the_bound", "coloured", "no_guess", "faults", "loggers", "friction", "engine", "fall", "differences", "modal"):
+    for study in (
+        "at_the_bound",
+        "coloured",
+        "no_guess",
+        "faults",
+        "loggers",
+        "friction",
+        "engine",
+        "fall",
+        "differences",
+        "modal",
+    ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))
