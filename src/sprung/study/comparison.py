@@ -178,7 +178,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     Notes
     -----
     Errors of different results are taken to be independent. What they have in common (the same weighing, the same misplaced
-    sensor) moves both alike, so that a difference is then surer than is said here, never less sure. Chances are corrected by
+    sensor) moves both alike, so that a difference is then surer than is said here. Chances are corrected by
     Holm's method, those of the parameters and those of the modes each as one table: between two tests of the same vehicle a
     table holds any difference that is called likely or certain in at most 5 of 100 cases.
 
