@@ -18,7 +18,7 @@ from sprung.errors import Fault
 from sprung.estimate import Estimate
 from sprung.pipeline import ChannelReport, Check, DropReport
 from sprung.recording import Campaign
-from sprung.report import check_view, modes_view, result_view, text_of
+from sprung.report import check_view, comparison_view, modes_view, result_view, text_of
 from sprung.vehicle import TABLE_1_CAR, WHEELS
 
 HERE = Path(__file__).parent
@@ -95,6 +95,32 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     fit = result.fit.model_copy(update={"inflated_by": "coloured residuals", "most_coloured": "wheel_rl"})
     changed = result.model_copy(update={"parameters": parameters, "derived": derived, "fit": fit})
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
+
+
+def changed(result: sprung.Result, name: str, by: float) -> sprung.Result:
+    """The same with one parameter larger by so many of its standard uncertainties, and of another vehicle."""
+    one = result.parameters[name]
+    assert one.value is not None
+    assert one.std is not None
+    moved = {**result.parameters, name: dataclasses.replace(one, value=one.value + by * one.std)}
+    return result.model_copy(update={"parameters": moved})
+
+
+def test_two_results_beside_each_other(regenerate: bool) -> None:
+    """With dampers of which one is 8 standard uncertainties, and so 5.7 of the difference, stronger."""
+    first = sprung.load(HERE / "accept.json", series=False)
+    found = sprung.compare([first, changed(first, "c_sf", 8.0)], names=["before", "after"])
+    compare("comparison", text_of(comparison_view(found), CONSOLE), regenerate)
+
+
+def test_many_results_beside_each_other(regenerate: bool) -> None:
+    """Eight alike, one that stands out, and one that was rejected."""
+    first = sprung.load(HERE / "accept.json", series=False)
+    alike = [changed(first, "k_sf", by) for by in (0.0, 0.5, -0.5, 1.0, -1.0, 0.2, -0.2, 0.7)]
+    others = [changed(first, "c_sf", 30.0), sprung.load(HERE / "reject.json", series=False)]
+    names = [*(f"car {i + 1}" for i in range(len(alike))), "worn", "bus"]
+    found = sprung.compare([*alike, *others], names=names)
+    compare("comparisons", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
 def test_a_check(regenerate: bool) -> None:

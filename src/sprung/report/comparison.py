@@ -174,13 +174,13 @@ def _not_compared(rows: Mapping[str, Quantity], i: int) -> Iterator[RenderableTy
     reasons: dict[str, list[str]] = {}
     for name, row in rows.items():
         one = row.differences[i]
-        if one.finding == "not comparable":
-            reasons.setdefault(one.why.replace(f" {name}:", ":"), []).append(name)
+        if one.finding == "not comparable" and one.why:
+            reasons.setdefault(one.why, []).append(name)
         elif one.finding == "given":
             same = "the same" if one.value == 0 else "not the same"
             reasons.setdefault(f"known beforehand in both, {same}", []).append(name)
     for why, names in reasons.items():
-        yield hanging("", f"Not compared: {', '.join(names)} ({why}).")
+        yield Text(f"Not compared: {', '.join(names)} ({why}).")
 
 
 def scatter_table(comparison: Comparison) -> RenderableType:
@@ -197,7 +197,7 @@ def scatter_table(comparison: Comparison) -> RenderableType:
         rows.append([_short(name), *_scatter_cells(one), unit_text(row.unit), f"{one.furthest}{' !' * one.stands_out}"])
     headers = ("", "mean", "±", "spread", "%", "chance", "unit", "furthest")
     shown = table(
-        f"Scatter of {len(comparison.results)} results beyond their uncertainties",
+        f"Scatter of {max(len(one.names) for one in comparison.scatter.values())} results beyond their uncertainties",
         headers,
         rows,
         headers[1:6],

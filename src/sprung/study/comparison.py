@@ -20,6 +20,7 @@ LIKELY, CERTAIN = 0.05, 0.001
 Finding = Literal["none", "likely", "certain", "given", "not comparable"]
 
 _PER_MASS = " / total mass"
+_ABSENT = "has another model"
 _ABOUT_AXES = ("I_xx", "I_yy")
 
 
@@ -61,7 +62,7 @@ class Difference:
         ``none`` to be seen, ``likely`` (`p_holm` up to 0.05) or ``certain`` (up to 0.001); ``given`` where both were known
         beforehand; ``not comparable``.
     why
-        Why nothing can be compared; empty where it can.
+        Why nothing can be compared; empty where it can, and where neither has the quantity.
     """
 
     value: float | None = None
@@ -273,7 +274,7 @@ def _told(result: Result, name: str, per_mass: bool) -> Told:
         return Told(None, None, "was rejected")
     found = result.parameters.get(name) or result.derived.get(name)
     if found is None:
-        return Told(None, None, f"has no {name}: another model")
+        return Told(None, None, _ABSENT)
     if per_mass:
         ratio = result.scale.per_total_mass.get(name)
         return Told(ratio.value, ratio.std) if ratio is not None else Told(None, None, "does not determine it")
@@ -299,6 +300,8 @@ def _contradiction(first: Result, second: Result, name: str) -> str:
 
 
 def _difference(first: Told, second: Told, labels: Sequence[str], i: int, contradiction: str) -> Difference:
+    if first.why_not == second.why_not == _ABSENT:
+        return Difference()
     silent = [f"{label} {one.why_not}" for label, one in ((labels[0], first), (labels[i], second)) if one.why_not]
     if silent or contradiction:
         return Difference(why="; ".join((*silent, *((contradiction,) if contradiction else ()))))
