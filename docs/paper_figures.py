@@ -39,7 +39,7 @@ def main() -> None:
     plt.rcParams.update(DRAWN)
     drops = [{"wheels": wheels, "height": 0.06} for wheels, _ in MOTIONS.values()]
     known = {"total_mass": SCHOOL_BUS.total_mass, "a": SCHOOL_BUS.a, "b": SCHOOL_BUS.b}
-    usual: dict[str, Any] = {"drops": drops, "noise": 0.02, "seed": 1, "duration": 4.0}
+    usual: dict[str, Any] = {"drops": drops, "noise": 0.02, "seed": 1, "duration": 4.0, "rate": 250}
     spectra(sprung.simulate(SCHOOL_BUS, **usual, known=known))
     decays(sprung.simulate(RUBBING, **usual, known=known))
 
