@@ -36,7 +36,7 @@ class ModeEstimate:
     damped_frequency
         Hz.
     damping_ratio, damping_ratio_std
-        -re/|pole|; 1 for a real pole.
+        -re/|pole|, dimensionless; 1 for a real pole.
     """
 
     name: str

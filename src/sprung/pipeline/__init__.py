@@ -6,7 +6,8 @@ from sprung.pipeline.identify import identify
 from sprung.pipeline.modes import FoundMode, LoadModes, modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.recordings import is_recordings, modes_of_recordings
-from sprung.pipeline.result import FitReport, Result, Series, load
+from sprung.pipeline.result import FitReport, Result, Series
+from sprung.pipeline.saved import load
 from sprung.pipeline.validate import Validation, validate
 
 __all__ = [

@@ -11,13 +11,14 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
-from sprung.errors import Fault, Problem, ResultFileError
+from sprung.errors import Fault
 from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.check import DropReport
 from sprung.pipeline.extras import Attempt
+from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.recording import write_whole
 from sprung.validation import DropValidation, Verdict
 
@@ -81,7 +82,7 @@ class FitReport(_Frozen):
     iterations, converged, starts, starts_agreeing
         Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
     inflation
-        By how much coloured residuals, or drops that contradict each other, enlarged every variance; 1 for neither.
+        By how much coloured residuals, or drops that contradict each other, enlarged every variance: a factor, 1 for neither.
     inflated_by
         Which of them; None where an older sprung wrote the result.
     most_coloured
@@ -165,9 +166,10 @@ class Result(_Frozen):
     series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
 
     def to_json(self) -> str:
-        """Write the contract's results.json as text."""
+        """Write the contract's results.json as text, with the checksums by which `sprung.load` knows that nobody changed it."""
         document = self.model_dump(mode="json", by_alias=True)
-        return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        seals = {"document": document_seal(document), "series": arrays_seal(self._arrays())}
+        return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
     def save(self, folder: str | Path) -> Path:
         """Write results.json and series.npz, whole or not at all.
@@ -187,14 +189,17 @@ class Result(_Frozen):
         InputError
             If the folder cannot be written.
         """
+        write_whole(Path(folder), {"series.npz": packed(self._arrays()), "results.json": self.to_json().encode()})
+        return Path(folder)
+
+    def _arrays(self) -> dict[str, NDArray[Any]]:
         arrays: dict[str, NDArray[Any]] = {}
         for name, series in self.series.items():
             arrays[f"{name}/channels"] = np.array(series.channels)
             arrays[f"{name}/time"] = series.time
             arrays[f"{name}/measured"] = series.measured
             arrays[f"{name}/fitted"] = series.fitted
-        write_whole(Path(folder), {"series.npz": packed(arrays), "results.json": self.to_json().encode()})
-        return Path(folder)
+        return arrays
 
 
 def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
@@ -202,64 +207,3 @@ def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
-
-
-def load(folder: str | Path) -> Result:
-    """Give back a saved result.
-
-    Parameters
-    ----------
-    folder
-        As given to `Result.save`, or its results.json.
-
-    Returns
-    -------
-    Result
-
-    Raises
-    ------
-    ResultFileError
-        If the files are missing, cut off, edited into something else, or written by a newer sprung.
-    """
-    folder = Path(folder)
-    path = folder if folder.suffix == ".json" else folder / "results.json"
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise _refuse(path, error.strerror or str(error), "a saved result", "Name the folder given to save.") from error
-    except ValueError as error:
-        raise _refuse(
-            path, f"no valid JSON ({error})", "a whole results.json", "Run the identification again."
-        ) from error
-    newer = document.get("schema") if isinstance(document, dict) else None
-    if isinstance(newer, int) and newer > SCHEMA:
-        raise _refuse(path, f"schema {newer}", f"schema {SCHEMA} or older", "Update sprung to read this result.")
-    try:
-        return Result.model_validate({**document, "series": _read_series(path.with_name("series.npz"))})
-    except (ValidationError, TypeError) as error:
-        what = error.errors()[0] if isinstance(error, ValidationError) else {"loc": (), "msg": str(error)}
-        place = ".".join(str(part) for part in what["loc"])
-        raise _refuse(
-            path, f"{place}: {what['msg']}", "a result as sprung wrote it", "Run the identification again."
-        ) from error
-
-
-def _read_series(path: Path) -> dict[str, Series]:
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            names = sorted({key.rpartition("/")[0] for key in archive.files})
-            return {
-                name: Series(
-                    tuple(archive[f"{name}/channels"].tolist()),
-                    archive[f"{name}/time"],
-                    archive[f"{name}/measured"],
-                    archive[f"{name}/fitted"],
-                )
-                for name in names
-            }
-    except (OSError, ValueError, KeyError, EOFError) as error:
-        raise _refuse(path, str(error), "the series of a saved result", "Run the identification again.") from error
-
-
-def _refuse(path: Path, found: str, expected: str, do: str) -> ResultFileError:
-    return ResultFileError([Problem(str(path), found, expected, do)])

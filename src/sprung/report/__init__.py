@@ -1,6 +1,7 @@
 """Everything people look at; reads every result, and nothing below reads it."""
 
 from sprung.report.check import check_view
+from sprung.report.comparison import comparison_view
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
 from sprung.report.layout import text_of
@@ -12,6 +13,7 @@ from sprung.report.validation import draw_validation, validation_view, write_val
 
 __all__ = [
     "check_view",
+    "comparison_view",
     "draft_view",
     "draw_check",
     "draw_validation",

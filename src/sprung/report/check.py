@@ -24,6 +24,11 @@ def check_view(check: Check) -> RenderableType:
     ----------
     check
         From `sprung.check`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts = [_drops(check.drops)]
     if reasons := list(_reasons(check.drops)):

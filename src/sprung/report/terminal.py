@@ -15,7 +15,7 @@ from sprung.report.layout import hanging, table
 from sprung.report.plan import next_line
 from sprung.vehicle import PARAMETERS
 
-_COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
+COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
 
 _FINEST = 6
 """Decimal places beyond which a frequency in Hz or a damping ratio means nothing to anybody."""
@@ -34,6 +34,11 @@ def result_view(result: Result) -> RenderableType:
     ----------
     result
         The result.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts: list[RenderableType] = [parameter_table(result), Text()]
     if profiles := _profiles(result):
@@ -57,7 +62,7 @@ def result_view(result: Result) -> RenderableType:
 def verdict_view(result: Result) -> RenderableType:
     """Show the verdict and its reasons."""
     verdict = result.verdict
-    head = Text.assemble(("Verdict: ", "bold"), (verdict.state, f"bold {_COLOURS[verdict.state]}"))
+    head = Text.assemble(("Verdict: ", "bold"), (verdict.state, f"bold {COLOURS[verdict.state]}"))
     return Group(head, *(hanging("  - ", reason) for reason in verdict.reasons))
 
 
@@ -72,7 +77,7 @@ def parameter_table(result: Result) -> RenderableType:
 
 def interval_table(profiles: Mapping[str, Estimate]) -> RenderableType:
     """Show the intervals that follow from profiles of the likelihood, by name."""
-    rows = [[name, *_interval_cells(found), _unit(found.unit)] for name, found in profiles.items()]
+    rows = [[name, *_interval_cells(found), unit_text(found.unit)] for name, found in profiles.items()]
     shown = table("95 % intervals from the whole likelihood", ("parameter", "from", "to", "unit"), rows, ("from", "to"))
     if any(found.interval95 is not None and None in found.interval95 for found in profiles.values()):
         return Group(shown, Text("< or >: open to the other side, where the recordings set no limit."))
@@ -99,7 +104,7 @@ def _limit(limit: float, std: float | None) -> str:
 
 
 def _value_cells(estimate: Estimate) -> list[str]:
-    unit = _unit(estimate.unit)
+    unit = unit_text(estimate.unit)
     if estimate.value is None or estimate.std is None:
         return ["-", "-", "-", unit, estimate.status]
     value, std = round_by_uncertainty(estimate.value, estimate.std)
@@ -113,7 +118,8 @@ def _percent(percent: float) -> str:
     return f"{percent:.2f}" if percent >= 0.01 else f"{percent:.1g}"
 
 
-def _unit(unit: str) -> str:
+def unit_text(unit: str) -> str:
+    """Write a unit as people do: nothing for 1, powers raised."""
     return "" if unit == "1" else unit.translate(_SUPERSCRIPT)
 
 
@@ -122,7 +128,7 @@ def ratio_table(result: Result) -> RenderableType:
     rows = []
     for name, ratio in result.scale.per_total_mass.items():
         value, std = round_by_uncertainty(ratio.value, ratio.std)
-        rows.append([name, value, std, _unit(ratio.unit)])
+        rows.append([name, value, std, unit_text(ratio.unit)])
     title = "Divided by the empty vehicle's total mass"
     return table(title, ("parameter", "value", "±", "unit"), rows, ("value", "±"))
 

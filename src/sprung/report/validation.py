@@ -26,6 +26,11 @@ def validation_view(validation: Validation) -> RenderableType:
     ----------
     validation
         From `sprung.validate`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     result = validation.result
     parts: list[RenderableType] = [drop_table(result.vehicle.name, result.validation), Text()]
