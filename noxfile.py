@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import nox
 
-nox.options.sessions = ["tests", "style", "types", "imports"]
+nox.options.sessions = ["tests", "style", "types", "imports", "docs"]
 PYTHONS = ["3.11", "3.12", "3.13"]
 
 
@@ -53,15 +53,34 @@ def bench(session: nox.Session) -> None:
 
 
 @nox.session
+def docs(session: nox.Session) -> None:
+    """Build the documentation into build/docs; a warning is an error."""
+    session.install(".[docs]")
+    session.run("sphinx-build", "-W", "--keep-going", "-b", "html", "docs", "build/docs")
+
+
+@nox.session
 def picture(session: nox.Session) -> None:
-    """Draw the README's picture."""
+    """Draw the README's picture, and the figures of the page about the paper."""
     session.install(".[dev,all]", "matplotlib")
     session.run("python", "docs/picture.py")
+    session.run("python", "docs/paper_figures.py")
 
 
 @nox.session
 def studies(session: nox.Session) -> None:
     """Write the pages of docs/studies anew: thousands of campaigns, an hour or so; `-- --campaigns 40` for a look."""
     session.install(".[all,peers]", "matplotlib")
-    for study in ("at_the_bound", "coloured", "no_guess", "faults", "loggers", "friction", "engine", "fall", "modal"):
+    for study in (
+        "at_the_bound",
+        "coloured",
+        "no_guess",
+        "faults",
+        "loggers",
+        "friction",
+        "engine",
+        "fall",
+        "differences",
+        "modal",
+    ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

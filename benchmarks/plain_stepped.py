@@ -15,8 +15,11 @@ from ten_drops import FrictionTask
 
 Real = NDArray[np.float64]
 
-_STEP = 1e-6
-"""Relative step of the differences."""
+_STEP = 1e-3
+"""Step of the differences, as a part of what is moved: with a shorter one the solver's own error drowns them."""
+
+_SIZES = np.repeat([0.01, 0.1, 1.0], [7, 7, 4])
+"""Of an initial state: m, m/s, and memories of friction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +102,9 @@ class PlainSteppedFit:
             own = slice(drop * size, (drop + 1) * size)
             for i in range(18):
                 moved = start.copy()
-                moved[i] += _STEP
-                found[own, count + 18 * drop + i] = (self.of_drop(values, moved, drop) - here[own]) / _STEP
+                moved[i] += _STEP * _SIZES[i]
+                change = self.of_drop(values, moved, drop) - here[own]
+                found[own, count + 18 * drop + i] = change / (_STEP * _SIZES[i])
         return found
 
     def fit(self, away: float = 0.02) -> OptimizeResult:

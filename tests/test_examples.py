@@ -5,14 +5,15 @@ from __future__ import annotations
 import doctest
 import importlib
 import pkgutil
-import re
 from pathlib import Path
 
 import pytest
 
 import sprung
+from documents import blocks_of, indented_code, run_page
 
-README = Path(__file__).resolve().parents[1] / "README.md"
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = ("README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")))
 MODULES = ["sprung", *(module.name for module in pkgutil.walk_packages(sprung.__path__, "sprung."))]
 
 
@@ -33,12 +34,31 @@ def test_there_are_examples() -> None:
         assert examples_of(name)
 
 
-def test_readme(capsys: pytest.CaptureFixture[str]) -> None:
-    blocks = re.findall(r"^```python\n(.*?)^```", README.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
-    assert blocks
-    for block in blocks:
-        exec(compile(block, str(README), "exec"), {"__name__": "readme"})  # noqa: S102 (our own text)
-    # The README's car has springs of 17000 N/m: what it prints must be that, and be accepted.
-    printed = re.fullmatch(r"(\d+) ± (\d+) N/m, accept\n", capsys.readouterr().out)
-    assert printed is not None
-    assert abs(int(printed[1]) - 17000) < 5 * int(printed[2]) < 1000
+@pytest.mark.parametrize("page", PAGES)
+def test_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every block of a page runs, in order, in an empty folder; what is shown below it is what it prints."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert indented_code(text) == []
+    monkeypatch.chdir(tmp_path)
+    run_page(text)
+
+
+def test_there_are_pages_that_run_something() -> None:
+    running = [name for name in PAGES if any(one.language in ("sh", "python") for one in blocks_of(read(name)))]
+    assert {"README.md", "docs/tutorial.md", "docs/results.md"} <= set(running)
+
+
+def read(page: str) -> str:
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+def test_a_page_that_says_something_else_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = "```python\nprint('k_sf', 17000.0)\nprint('more')\nprint('end')\n```\n\n```text\n{}\n```\n"
+    run_page(page.format("k_sf 17100.0\n...\nend"))
+    for wrong in ("k_sf 18000.0", "k_sr 17000.0", "end\n...\nmore", "k_sf 17000.0\nend"):
+        with pytest.raises(AssertionError, match="but what was printed is"):
+            run_page(page.format(wrong))
+    with pytest.raises(AssertionError, match="nobody knows how to run"):
+        run_page("```basic\n10 PRINT\n```\n")
+    assert indented_code("Text\n\n    sprung demo\n") == ["    sprung demo"]

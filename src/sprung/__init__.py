@@ -34,16 +34,19 @@ if TYPE_CHECKING:
     )
     from sprung.recording import Campaign, Drop, read, schema_text, to_sep005, write
     from sprung.simulation import simulate, simulate_file
+    from sprung.study import Comparison, compare
     from sprung.vehicle import Load, Sensor, Vehicle
 
 __all__ = [
     "Campaign",
+    "Comparison",
     "Drop",
     "Load",
     "Result",
     "Sensor",
     "Vehicle",
     "check",
+    "compare",
     "draft",
     "identify",
     "is_recordings",
@@ -66,12 +69,14 @@ __version__ = version("sprung")
 
 _HOME = {
     "Campaign": "recording",
+    "Comparison": "study",
     "Drop": "recording",
     "Load": "vehicle",
     "Result": "pipeline",
     "Sensor": "vehicle",
     "Vehicle": "vehicle",
     "check": "pipeline",
+    "compare": "study",
     "draft": "pipeline",
     "identify": "pipeline",
     "is_recordings": "pipeline",

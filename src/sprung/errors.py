@@ -103,7 +103,7 @@ class Problems:
         return iter(self._found)
 
     def add(self, where: str, found: str, expected: str, do: str) -> None:
-        """Note one more problem."""
+        """Note one more problem: where it is, what was found there, what is expected, and what to do about it."""
         self._found.append(Problem(where, found, expected, do))
 
     @contextmanager

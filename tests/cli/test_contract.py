@@ -12,7 +12,19 @@ import pytest
 import sprung
 from command_line import SEDAN, Folder, Identified, Run, run
 
-COMMANDS = ("demo", "paper", "check", "modal", "identify", "report", "validate", "plan", "simulate", "schema")
+COMMANDS = (
+    "demo",
+    "paper",
+    "check",
+    "modal",
+    "identify",
+    "report",
+    "validate",
+    "compare",
+    "plan",
+    "simulate",
+    "schema",
+)
 # The contract's results.json.
 KEYS = {
     "schema",

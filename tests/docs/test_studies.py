@@ -120,3 +120,13 @@ def test_no_guess(tmp_path: Path) -> None:
         assert abs(vehicle["gain_over_start_at_truth"]) < 0.01
         assert vehicle["verdict"] in VERDICTS
         assert 0 < vehicle["worst_error_over_stated"] < 6
+
+
+def test_differences(tmp_path: Path) -> None:
+    page, numbers = study("differences.py", tmp_path, "--campaigns", "1")
+    assert "Of a vehicle that nobody touched" in page
+    assert len(numbers["cases"]) == 10
+    for case in numbers["cases"]:
+        assert 0.2 < case["z_rms"] < (3 if case["change"] == 0 else 30)
+    # 75 N s/m of 1500, told to 8 or so.
+    assert [case["damper_seen"] for case in numbers["cases"] if case["change"] == 0.05] == [1.0, 1.0]

@@ -114,26 +114,6 @@ def test_saved_and_loaded_results_are_the_same(sedan: sprung.Result, tmp_path: P
         np.testing.assert_array_equal(again.series[name].fitted, series.fitted)
 
 
-@pytest.mark.parametrize(
-    ("spoil", "reason"),
-    [
-        (lambda text: text[: len(text) // 2], "no valid JSON"),
-        (lambda text: text.replace('"schema": 1', '"schema": 2'), "schema 2"),
-        (lambda text: text.replace('"state": "accept"', '"state": "perfect"'), "verdict"),
-        (lambda _: "[]", "results.json"),
-    ],
-)
-def test_a_spoilt_result_is_refused_with_the_reason(
-    sedan: sprung.Result, tmp_path: Path, spoil: object, reason: str
-) -> None:
-    folder = sedan.save(tmp_path)
-    path = folder / "results.json"
-    assert callable(spoil)
-    path.write_text(spoil(path.read_text()))
-    with pytest.raises(InputError, match=reason):
-        sprung.load(folder)
-
-
 def test_without_load_or_weighing_the_scale_is_unknown() -> None:
     result = sprung.identify(sprung.simulate(TABLE_1_CAR, noise=0.02, seed=1))
     assert not result.scale.known

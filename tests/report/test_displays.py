@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import dataclasses
 import html
-import json
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
@@ -22,7 +21,7 @@ from sprung.errors import Fault
 from sprung.estimate import Estimate, Known
 from sprung.pipeline import ChannelReport, Check, DropReport, Result
 from sprung.recording import Campaign
-from sprung.report import check_view, modes_view, page_of, result_view, text_of
+from sprung.report import check_view, comparison_view, modes_view, page_of, result_view, text_of
 from sprung.vehicle import TABLE_1_CAR, WHEELS
 
 HERE = Path(__file__).parent
@@ -78,12 +77,12 @@ def test_a_result(name: str, regenerate: bool) -> None:
     path = HERE / f"{name}.json"
     if regenerate:
         path.write_text(sprung.identify(RESULTS[name]()).to_json(), encoding="utf-8")
-    result = Result.model_validate(json.loads(path.read_text(encoding="utf-8")))
+    result = sprung.load(path, series=False)
     compare(name, text_of(result_view(result), CONSOLE), regenerate)
 
 
 def read(name: str) -> Result:
-    return Result.model_validate(json.loads((HERE / f"{name}.json").read_text(encoding="utf-8")))
+    return sprung.load(HERE / f"{name}.json", series=False)
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -117,7 +116,7 @@ def test_the_displays_show_what_their_names_say(name: str) -> None:
 
 def test_intervals_from_profiles(regenerate: bool) -> None:
     """Open to one side, to the other, far from even, of a derived quantity; and residuals that are coloured."""
-    result = Result.model_validate(json.loads((HERE / "accept.json").read_text(encoding="utf-8")))
+    result = sprung.load(HERE / "accept.json", series=False)
     limits = {"k_sf": (16821.3, 17352.9), "k_tf": (188123.0, None), "c_sf": (None, 1515.2), "t_f": (0.00123, 0.7452)}
     parameters = dict(result.parameters)
     for name, interval in limits.items():
@@ -126,6 +125,32 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     fit = result.fit.model_copy(update={"inflated_by": "coloured residuals", "most_coloured": "wheel_rl"})
     changed = result.model_copy(update={"parameters": parameters, "derived": derived, "fit": fit})
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
+
+
+def changed(result: sprung.Result, name: str, by: float) -> sprung.Result:
+    """The same with one parameter larger by so many of its standard uncertainties, and of another vehicle."""
+    one = result.parameters[name]
+    assert one.value is not None
+    assert one.std is not None
+    moved = {**result.parameters, name: dataclasses.replace(one, value=one.value + by * one.std)}
+    return result.model_copy(update={"parameters": moved})
+
+
+def test_two_results_beside_each_other(regenerate: bool) -> None:
+    """With dampers of which one is 8 standard uncertainties, and so 5.7 of the difference, stronger."""
+    first = sprung.load(HERE / "accept.json", series=False)
+    found = sprung.compare([first, changed(first, "c_sf", 8.0)], names=["before", "after"])
+    compare("comparison", text_of(comparison_view(found), CONSOLE), regenerate)
+
+
+def test_many_results_beside_each_other(regenerate: bool) -> None:
+    """Eight alike, one that stands out, and one that was rejected."""
+    first = sprung.load(HERE / "accept.json", series=False)
+    alike = [changed(first, "k_sf", by) for by in (0.0, 0.5, -0.5, 1.0, -1.0, 0.2, -0.2, 0.7)]
+    others = [changed(first, "c_sf", 30.0), sprung.load(HERE / "reject.json", series=False)]
+    names = [*(f"car {i + 1}" for i in range(len(alike))), "worn", "bus"]
+    found = sprung.compare([*alike, *others], names=names)
+    compare("comparisons", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
 def test_a_check(regenerate: bool) -> None:

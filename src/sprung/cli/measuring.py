@@ -51,6 +51,26 @@ def check(
             say(f"\nDrawn: {len(drawn)} drop{'s' * (len(drawn) > 1)} in {drawn[0].parent}\n")
 
 
+@app.command(epilog="Example: [bold]sprung compare before/results after/results[/bold]")
+def compare(
+    results: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RESULTS...", help="Two results folders or more, or their results.json; the first is the reference."
+        ),
+    ],
+    as_json: Json = False,
+) -> None:
+    """Put results side by side, with the significance of each difference: before and after, left and right of a line."""
+    found = sprung.compare(results)
+    if as_json:
+        say_json(found.document())
+    else:
+        say(sprung.report.text_of(sprung.report.comparison_view(found)))
+    if found.rejected:
+        raise typer.Exit(REJECTED)
+
+
 @app.command(epilog="Example: [bold]sprung modal campaign.toml --method svm[/bold]")
 def modal(
     campaign: Annotated[

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 Status = Literal["estimated", "known", "unidentifiable"]
+"""Where a value comes from: see `Estimate`."""
+
 IntervalFrom = Literal["curvature", "profile"]
+"""What an interval follows from: see `Estimate`."""
 
 NORMAL_95 = 1.959963984540054
 """Half-width of the central 95 % of a normal distribution, in standard deviations."""
@@ -50,7 +53,15 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class Ratio:
-    """A quantity per total mass: what is left to say when the absolute scale is not determined."""
+    """A quantity per total mass: what is left to say when the absolute scale is not determined.
+
+    Attributes
+    ----------
+    value, std
+        In the unit; the latter its standard uncertainty.
+    unit
+        SI, such as ``1/s^2``.
+    """
 
     value: float
     std: float

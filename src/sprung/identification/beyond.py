@@ -120,7 +120,7 @@ def prospects(
     values
         Its parameters where it equals the fitted one, SI, by name.
     states
-        {X, Ẋ} of each drop there, shape (drop, state).
+        {X, Ẋ} of each drop there, SI, shape (drop, state).
     together
         The directions of the fitted model: parameters that move together in it.
     candidates

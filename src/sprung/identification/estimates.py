@@ -65,7 +65,15 @@ class Scale:
 
 @dataclass(frozen=True)
 class Correlation:
-    """Correlation of the estimated parameters; `matrix` has one row for each of `names`."""
+    """Correlation of the estimated parameters.
+
+    Attributes
+    ----------
+    names
+        The parameters.
+    matrix
+        Correlation coefficients, one row for each name.
+    """
 
     names: tuple[str, ...]
     matrix: tuple[tuple[float, ...], ...]
@@ -73,7 +81,19 @@ class Correlation:
 
 @dataclass(frozen=True)
 class Estimates:
-    """Everything that may be said about the parameters."""
+    """Everything that may be said about the parameters.
+
+    Attributes
+    ----------
+    parameters
+        By name.
+    scale
+        The absolute scale, and what is left without it.
+    unidentifiable
+        Combinations that the data do not determine.
+    correlation
+        Of the estimated parameters.
+    """
 
     parameters: dict[str, Estimate]
     scale: Scale

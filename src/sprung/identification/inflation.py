@@ -36,7 +36,8 @@ def of_colour(
     span
         s over which means are taken: as long as what correlates the residuals, and a small part of a record.
     counted
-        Part of the samples that the fit counts, of each channel; fewer than there are where some were interpolated.
+        Part of the samples that the fit counts, shape (channel,) or one for all; fewer than there are where some were
+        interpolated.
 
     Returns
     -------

@@ -45,25 +45,26 @@ class Fit:
         Derivative of each value by the coordinate it is fitted in: the value itself for those that must be positive,
         which are fitted by their logarithms; shape (parameter,).
     relative_covariance
-        Covariance of the fit's coordinates; directions without information have a very large variance in it.
+        Covariance of the fit's coordinates, dimensionless, shape (parameter, parameter); directions without information have a
+        very large variance in it.
     covariance
         Of the values, SI, shape (parameter, parameter).
     undetermined
-        Directions of the coordinates that neither data nor knowledge determine, shape (parameter, direction).
+        Directions of the coordinates that neither data nor knowledge determine, dimensionless, shape (parameter, direction).
     noise
         Noise level of each channel, m/s², shape (channel,).
     residual
         Residual sums of squares, (m/s²)², shape (drop, channel).
     inflation
-        By how much coloured residuals, or drops that contradict each other, have enlarged the variances; 1 where
-        neither is significant.
+        By how much coloured residuals, or drops that contradict each other, have enlarged the variances: a factor, 1
+        where neither is significant.
     fitted
         What the model makes of every record, its mean taken off; each of shape (channel, time).
     contradictions
         For each known quantity by how many standard uncertainties the recordings and everything else that is known would
         rather have another value; not for quantities of which they say nothing.
     loglikelihood
-        Up to a constant.
+        Dimensionless, up to a constant.
     iterations
         Steps taken from the winning start.
     converged
@@ -151,9 +152,9 @@ class Fit:
         Parameters
         ----------
         direction
-            Its gradient by the coordinates, shape (parameter,).
+            Its gradient by the coordinates, in its own unit, shape (parameter,).
         value
-            Its value.
+            Its value, in its own unit.
 
         Returns
         -------
@@ -242,6 +243,11 @@ def inflation_of(summit: Summit, decays: Sequence[Decay]) -> float:
         Where the fit ended.
     decays
         What was fitted.
+
+    Returns
+    -------
+    float
+        Factor on every variance, dimensionless; 1 where neither is significant.
     """
     fitted = summit.point.place.fitted(summit.point.weights)
     return max(float(_colours(summit, fitted, decays).max()), summit.disagreement)

@@ -44,7 +44,7 @@ class Coordinates:
     """Fitted coordinates of the parameters: logarithms of those that must be positive, multiples of the others.
 
     In logarithms every rate and mass is of order one, positive by construction, and scaling them all together, which
-    no acceleration can see, is one straight line.
+    no acceleration can see, is one straight line. Coordinates u are dimensionless, shape (parameter,), or (..., parameter).
 
     Attributes
     ----------
@@ -90,6 +90,8 @@ class Coordinates:
 @dataclass(frozen=True, eq=False)
 class Knowledge:
     """Statements about parameters and derived quantities.
+
+    Coordinates u, and steps and directions of them, are those of `Coordinates`: dimensionless, shape (parameter,).
 
     Attributes
     ----------

@@ -114,7 +114,7 @@ class Likelihood:
         return max(float((run.samples * run.step[run.group]).max()) for run in self.records.runs)
 
     def beginning(self, states: Real) -> Likelihood:
-        """Give itself: initial states are eliminated, whatever one starts from."""
+        """Give itself: initial states, {X, Ẋ}, SI, shape (drop, state), are eliminated, whatever one starts from."""
         return self
 
     def at(self, values: Real) -> Place:
@@ -219,7 +219,7 @@ class Place:
         Parameters
         ----------
         weights
-            1/σ².
+            1/σ², s⁴/m², shape (channel,).
         more
             What the other changes do to the response of each load.
 
@@ -265,7 +265,7 @@ class Place:
         Parameters
         ----------
         weights
-            1/σ².
+            1/σ², s⁴/m², shape (channel,).
         covariance
             Of the parameters, SI, shape (parameter, parameter).
 
@@ -287,7 +287,7 @@ class Place:
         Parameters
         ----------
         weights
-            1/σ².
+            1/σ², s⁴/m², shape (channel,).
         shifts
             s, shape (shift,): what is tried beside what is expected of each clock.
 
@@ -314,7 +314,7 @@ class Place:
         return self.likelihood.records.in_order(found)
 
     def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
-        """Follow one drop from some samples before its first one to some after it: {X, Ẋ}, SI, shape (state, time)."""
+        """Follow the drop at a position, from samples before its first to samples after: {X, Ẋ}, SI, shape (state, time)."""
         run, group = self.run_of(position)
         poles, shapes = self.modes.poles[run.load[group]], self.modes.right[run.load[group]]
         exponent = poles[:, None] * np.arange(-before, after) * run.step[group]
@@ -329,7 +329,7 @@ class Place:
         return run, int(run.group[np.flatnonzero(run.order == position)[0]])
 
     def slopes_of(self, position: int) -> Complex:
-        """Give σ and τ of one drop beside each other, τ per sample; shape (channel, parameter, 2 mode)."""
+        """Give σ and τ of the drop at a position beside each other, τ per sample; shape (channel, parameter, 2 mode)."""
         run, group = self.run_of(position)
         slopes: Complex = self._slopes[[one is run for one in self.likelihood.records.runs].index(True)][group]
         return slopes

@@ -36,7 +36,7 @@ class ModeEstimate:
     damped_frequency
         Hz.
     damping_ratio, damping_ratio_std
-        -re/|pole|; 1 for a real pole.
+        -re/|pole|, dimensionless; 1 for a real pole.
     motion
         How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
         imaginary part of each, the largest 1; empty where an older sprung wrote the result, or the records alone told the mode.

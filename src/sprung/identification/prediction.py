@@ -33,7 +33,7 @@ class Prediction:
     Attributes
     ----------
     fitted, squares
-        Sum of the squares of all residuals, each over its channel's variance, in the joint fit and as predicted.
+        Sum of the squares of all residuals, each over its channel's variance, dimensionless, in the joint fit and as predicted.
     by_chance
         By how much noise alone makes the sum of the squares, over their variances, larger than in the joint fit: what it is
         on average, and its standard deviation.

@@ -53,6 +53,11 @@ def force_scores(
     -------
     dict
         What each would gain in twice the log-likelihood, to second order; 0 where modal coordinates do not exist.
+
+    Raises
+    ------
+    TypeError
+        If the summit is not that of a linear fit.
     """
     place, knowledge = summit.point.place, summit.climb.knowledge
     if not isinstance(place, Place):

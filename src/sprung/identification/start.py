@@ -51,10 +51,21 @@ class Mounting(NamedTuple):
 
 
 USUAL_MOUNTING = Mounting()
+"""The one from which a start begins where nothing says another."""
 
 
 def mountings_of(wheelbase: float) -> list[Mounting]:
-    """Give how engines are usually mounted: above either axle of a vehicle with a wheelbase in m."""
+    """Give how engines are usually mounted: above either axle.
+
+    Parameters
+    ----------
+    wheelbase
+        m.
+
+    Returns
+    -------
+    list of Mounting
+    """
     return [Mounting(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
 
 

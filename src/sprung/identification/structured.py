@@ -44,7 +44,7 @@ class StructuredFit:
     values
         SI, shape (parameter,).
     covariance
-        Shape (parameter, parameter); zero for what was known.
+        SI, shape (parameter, parameter); zero for what was known.
     misfit
         Root mean square of the weighted residuals: relative to the size of A's rows where no standard deviations
         were given, about 1 where they were given and the model holds.

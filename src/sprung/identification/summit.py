@@ -110,7 +110,7 @@ class Summit:
         return self.point.place.states(self.point.weights)
 
     def after(self, before: Summit) -> Summit:
-        """Give this summit with the history of the one from which it was reached."""
+        """Give this summit with the history of the one before, from which it was reached."""
         steps = before.steps + self.steps
         return replace(self, steps=steps, starts=before.starts, starts_agreeing=before.starts_agreeing)
 

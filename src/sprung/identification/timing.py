@@ -219,7 +219,18 @@ def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]
 
 
 def told_alone(decay: Decay) -> Decay:
-    """Leave out the channels of loggers that the release did not tell."""
+    """Leave out the channels of loggers that the release did not tell.
+
+    Parameters
+    ----------
+    decay
+        Of several loggers.
+
+    Returns
+    -------
+    Decay
+        With those channels NaN.
+    """
     untold = [channel for clock in decay.clocks if clock.std > _UNTOLD for channel in clock.channels]
     values = decay.values.copy()
     values[untold] = np.nan

@@ -93,6 +93,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 """The methods, by the name that `identify_modes` takes; the first is the one it takes unless told otherwise."""
 
 DEFAULT = next(iter(METHODS))
+"""The method that is taken unless another is named."""
 
 APPROXIMATE = frozenset({"peaks", "emd"})
 """Those that are not exact, not even without noise."""

@@ -47,7 +47,7 @@ class Mode:
     pole
         1/s, imaginary part not negative.
     shape
-        How far each channel or coordinate moves, its largest entry 1; shape (channel,).
+        How far each channel or coordinate moves, dimensionless, its largest entry 1; shape (channel,).
     name
         One of `sprung.modal.MODE_NAMES`; None where nothing was said about what moves.
     spread

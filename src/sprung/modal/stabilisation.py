@@ -34,9 +34,9 @@ class Criteria:
     frequency, damping
         Of its frequency and damping ratio, as a part of them.
     similarity
-        Least modal assurance criterion of its shape with the one before.
+        Least modal assurance criterion of its shape with the one before, dimensionless.
     coherence
-        Least extended modal amplitude coherence.
+        Least extended modal amplitude coherence, dimensionless.
     orders
         Part of the orders, from its first one on, at which it must be there.
     """

@@ -74,7 +74,7 @@ def gram(exponent: Complex, samples: Index, group: Index | None = None, secular:
     Parameters
     ----------
     exponent
-        λ of each group of records, shape (group, mode).
+        λ of each group of records per sample, dimensionless, shape (group, mode).
     samples
         N of each record, shape (record,).
     group
@@ -118,14 +118,14 @@ def blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
     Parameters
     ----------
     values
-        Shape (channel, time).
+        Of any one unit, shape (channel, time).
     usable
         Which channels are used, shape (channel,); the others become zero.
 
     Returns
     -------
     ndarray
-        Shape (block, channel, BLOCK).
+        In the unit of the values, shape (block, channel, BLOCK).
     """
     channels, samples = values.shape
     count, rest = divmod(samples, BLOCK)
@@ -145,11 +145,12 @@ def correlate(blocked: Real, counts: Index, exponent: Complex, group: Index, sec
     Parameters
     ----------
     blocked
-        Records cut by `blocks`, one after the other, those of one group beside each other, shape (block, channel, BLOCK).
+        Records cut by `blocks`, one after the other, those of one group beside each other, of any one
+        unit, shape (block, channel, BLOCK).
     counts
         How many blocks each record has, shape (record,).
     exponent
-        λ of each group, shape (group, mode).
+        λ of each group per sample, dimensionless, shape (group, mode).
     group
         Which group each record belongs to, ascending, shape (record,).
     secular
@@ -158,7 +159,8 @@ def correlate(blocked: Real, counts: Index, exponent: Complex, group: Index, sec
     Returns
     -------
     ndarray
-        Σ conj(e^{λk}) y_k and, if wanted, Σ k conj(e^{λk}) y_k; shape (record, channel, 1 or 2, mode).
+        Σ conj(e^{λk}) y_k and, if wanted, Σ k conj(e^{λk}) y_k, in the unit of the records; shape
+        (record, channel, 1 or 2, mode).
     """
     ends = np.cumsum(counts)
     of_block = np.concatenate([np.arange(count) for count in counts])
@@ -179,7 +181,20 @@ def correlate(blocked: Real, counts: Index, exponent: Complex, group: Index, sec
 
 
 def waves(exponent: Complex, samples: int = BLOCK) -> Complex:
-    """Give e^{λk}, as products of a few exponentials; λ of shape (mode,), the result of shape (samples, mode)."""
+    """Give e^{λk}, as products of a few exponentials.
+
+    Parameters
+    ----------
+    exponent
+        λ per sample, dimensionless, shape (mode,).
+    samples
+        How many.
+
+    Returns
+    -------
+    ndarray
+        Dimensionless, shape (samples, mode).
+    """
     width = 1 << (samples.bit_length() // 2)
     across = np.exp(exponent * (width * np.arange(-(-samples // width))[:, None]))
     product = across[:, None] * np.exp(exponent * np.arange(width)[:, None])

@@ -28,7 +28,7 @@ class StateVariables:
     poles
         λ of eq. (11), 1/s; shape (2n,), complex ones with their conjugates.
     shapes
-        Φ of eq. (11) at the channels, as columns; shape (n, 2n).
+        Φ of eq. (11) at the channels, as columns, dimensionless; shape (n, 2n).
     """
 
     transition: Real

@@ -7,7 +7,8 @@ from sprung.pipeline.identify import identify
 from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.recordings import is_recordings, modes_of_recordings
-from sprung.pipeline.result import FitReport, Result, load
+from sprung.pipeline.result import FitReport, Result
+from sprung.pipeline.saved import load
 from sprung.pipeline.series import Recorded, Series
 from sprung.pipeline.setup import Before, Setup
 from sprung.pipeline.validate import Validation, validate

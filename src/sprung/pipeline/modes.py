@@ -48,7 +48,7 @@ class FoundMode(ModeEstimate):
     shape, shape_std
         At the channels, largest entry 1: real and imaginary part of each, and their standard uncertainties.
     collinearity
-        Modal phase collinearity of the shape: 1 where all channels move in phase or in opposition.
+        Modal phase collinearity of the shape, dimensionless: 1 where all channels move in phase or in opposition.
     status
         "resolved", or "unresolved" where the records do not determine the mode on its own.
     amplitudes

@@ -27,7 +27,17 @@ _STEADY = 0.01
 
 
 def is_recordings(path: str | os.PathLike[str]) -> bool:
-    """Say whether a path is a recording or a folder of them, and no campaign."""
+    """Say whether a path is a recording or a folder of them, and no campaign.
+
+    Parameters
+    ----------
+    path
+        A file or a folder.
+
+    Returns
+    -------
+    bool
+    """
     place = Path(path)
     return bool(recordings_in(place)) and not (place / FILE).exists()
 

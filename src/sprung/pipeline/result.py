@@ -5,18 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
-from sprung.errors import Fault, Problem, ResultFileError
+from sprung.errors import Fault
 from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
 from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
 from sprung.pipeline.extras import Attempt
-from sprung.pipeline.series import Recorded, Series, arrays_of, packed, read_series
+from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
+from sprung.pipeline.series import Recorded, Series, arrays_of, packed
 from sprung.pipeline.setup import Setup
 from sprung.recording import write_whole
 from sprung.tables import escaped
@@ -62,7 +63,7 @@ class FitReport(_Frozen):
     iterations, converged, starts, starts_agreeing
         Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
     inflation
-        By how much coloured residuals, or drops that contradict each other, enlarged every variance; 1 for neither.
+        By how much coloured residuals, or drops that contradict each other, enlarged every variance: a factor, 1 for neither.
     inflated_by
         Which of them; None where an older sprung wrote the result.
     most_coloured
@@ -166,9 +167,10 @@ class Result(_Frozen):
         return "".join([*parts, *(modes_table(load, modes).html() for load, modes in self.modes.items())])
 
     def to_json(self) -> str:
-        """Write the contract's results.json as text."""
+        """Write the contract's results.json as text, with the checksums by which `sprung.load` knows that nobody changed it."""
         document = self.model_dump(mode="json", by_alias=True)
-        return json.dumps(document, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
+        return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
     def save(self, folder: str | Path) -> Path:
         """Write results.json and series.npz, whole or not at all.
@@ -192,57 +194,12 @@ class Result(_Frozen):
         return Path(folder)
 
     def files(self) -> dict[str, bytes]:
-        """Give series.npz and results.json, the latter last, as bytes by name."""
+        """Give what `save` writes, by file name: series.npz and, last, results.json.
+
+        Returns
+        -------
+        dict
+            Content by name.
+        """
         series = packed(arrays_of(self.series, self.recordings))
         return {"series.npz": series, "results.json": self.to_json().encode()}
-
-
-def load(folder: str | Path) -> Result:
-    """Give back a saved result.
-
-    Parameters
-    ----------
-    folder
-        As given to `Result.save`, or its results.json.
-
-    Returns
-    -------
-    Result
-
-    Raises
-    ------
-    ResultFileError
-        If the files are missing, cut off, edited into something else, or written by a newer sprung.
-    """
-    folder = Path(folder)
-    path = folder if folder.suffix == ".json" else folder / "results.json"
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise _refuse(path, error.strerror or str(error), "a saved result", "Name the folder given to save.") from error
-    except ValueError as error:
-        raise _refuse(
-            path, f"no valid JSON ({error})", "a whole results.json", "Run the identification again."
-        ) from error
-    newer = document.get("schema") if isinstance(document, dict) else None
-    if isinstance(newer, int) and newer > SCHEMA:
-        raise _refuse(path, f"schema {newer}", f"schema {SCHEMA} or older", "Update sprung to read this result.")
-    try:
-        return Result.model_validate({**document, **_read_series(path.with_name("series.npz"))})
-    except (ValidationError, TypeError) as error:
-        what = error.errors()[0] if isinstance(error, ValidationError) else {"loc": (), "msg": str(error)}
-        place = ".".join(str(part) for part in what["loc"])
-        raise _refuse(
-            path, f"{place}: {what['msg']}", "a result as sprung wrote it", "Run the identification again."
-        ) from error
-
-
-def _read_series(path: Path) -> dict[str, Any]:
-    try:
-        return read_series(path)._asdict()
-    except (OSError, ValueError, KeyError, EOFError) as error:
-        raise _refuse(path, str(error), "the series of a saved result", "Run the identification again.") from error
-
-
-def _refuse(path: Path, found: str, expected: str, do: str) -> ResultFileError:
-    return ResultFileError([Problem(str(path), found, expected, do)])

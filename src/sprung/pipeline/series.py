@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +16,11 @@ from sprung.recording import Recording
 Real = NDArray[np.float64]
 Drawn = NDArray[np.float32]
 
+_FITTED = ("channels", "time", "measured", "fitted")
+_BODY = ("body_measured", "body_simulated")
+_WHOLE = ("recording", "clock")
 _MARKS = "marks "
+"""What stands behind a drop's name: of the fit, of the body, of its recording, and of each mark."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,40 +139,52 @@ def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, Recorded]) 
     return arrays
 
 
-def read_series(path: Path) -> Everything:
-    """Read series.npz.
+def everything_in(arrays: Mapping[str, NDArray[Any]]) -> Everything:
+    """Give back what `arrays_of` made arrays of.
 
     Parameters
     ----------
-    path
-        The file.
+    arrays
+        By name: ``drop/what``.
+
+    Returns
+    -------
+    Everything
 
     Raises
     ------
-    OSError, ValueError, KeyError, EOFError
-        If it is missing, cut off or of other content.
+    ValueError
+        If something is left over or missing.
     """
-    with np.load(path, allow_pickle=False) as archive:
-        held: dict[str, list[str]] = {}
-        for key in archive.files:
-            name, _, what = key.rpartition("/")
-            held.setdefault(name, []).append(what)
-        series, recordings = {}, {}
-        for name, whats in held.items():
-            found = {what: archive[f"{name}/{what}"] for what in whats}
-            if "clock" in found:
-                start, rate = found["clock"].tolist()
-                recordings[name] = Recorded(start, rate, found["recording"], tuple(_marks(found)))
-            if set(found) - {"clock", "recording"} - {what for what in found if what.startswith(_MARKS)}:
-                series[name] = Series(
-                    tuple(found["channels"].tolist()),
-                    found["time"],
-                    found["measured"],
-                    found["fitted"],
-                    found.get("body_measured"),
-                    found.get("body_simulated"),
-                )
+    held: dict[str, dict[str, NDArray[Any]]] = {}
+    for key, array in arrays.items():
+        name, _, what = key.rpartition("/")
+        held.setdefault(name, {})[what] = array
+    wrong = sorted(f"{name}/{what}" for name, found in held.items() for what in _wrong(found))
+    if wrong:
+        raise ValueError(f"{', '.join(wrong[:3])} left over or missing")
+    series, recordings = {}, {}
+    for name, found in held.items():
+        if "clock" in found:
+            start, rate = found["clock"].tolist()
+            recordings[name] = Recorded(start, rate, found["recording"], tuple(_marks(found)))
+        if "channels" in found:
+            channels = tuple(found["channels"].tolist())
+            series[name] = Series(channels, **{what: found[what] for what in (*_FITTED[1:], *_BODY) if what in found})
     return Everything(series, recordings)
+
+
+def _wrong(found: Iterable[str]) -> set[str]:
+    """Name what is left over or missing of one drop: what belongs together is there together."""
+    marks = {what for what in found if what.startswith(_MARKS)}
+    there = set(found) - marks
+    whole = set(_WHOLE) if marks else set()
+    for together in (_FITTED, _BODY, _WHOLE):
+        if there.intersection(together):
+            whole.update(together)
+    if there.intersection(_BODY):
+        whole.update(_FITTED)
+    return there ^ whole
 
 
 def _marks(found: Mapping[str, NDArray[Any]]) -> Iterator[Mark]:

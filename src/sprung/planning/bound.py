@@ -30,7 +30,7 @@ class Bound:
     subject
         What is tested.
     information
-        Of drops and knowledge together, in the subject's free directions, shape (direction, direction).
+        Of drops and knowledge together, in the subject's free directions, dimensionless, shape (direction, direction).
     percents
         Smallest standard uncertainty in percent of each parameter that is not known exactly beforehand, those of extras in
         percent of the front spring or damper rate; None where there is no bound below the value itself.
@@ -125,6 +125,15 @@ def _size(percent: float | None) -> float:
 
 def two_figures(percent: float | None) -> str:
     """Write a percentage to two figures, or a dash for none.
+
+    Parameters
+    ----------
+    percent
+        %.
+
+    Returns
+    -------
+    str
 
     Examples
     --------

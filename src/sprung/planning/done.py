@@ -38,6 +38,10 @@ def subject_of_fit(
         How high things are, as far as it is known.
     name
         The vehicle's.
+
+    Returns
+    -------
+    Subject
     """
     found = dict(zip(fit.names, fit.values.tolist(), strict=True))
     vehicle = Vehicle.nearest(found, name=name, **heights.by_key)
@@ -55,6 +59,10 @@ def campaign_of_fit(subject: Subject, fit: Fit, drops: Sequence[PlannedDrop]) ->
         The fit.
     drops
         What was dropped.
+
+    Returns
+    -------
+    PlannedTest
     """
     # The fit's covariance holds what was known beforehand, which is taken out again: no repeat makes that any better.
     covariance = subject.free.T @ fit.relative_covariance @ subject.free

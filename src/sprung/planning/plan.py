@@ -158,6 +158,10 @@ def next_step(test: PlannedTest, wanted: float = 1.0) -> NextStep:
         The test, planned or done.
     wanted
         Percent that no parameter is to exceed.
+
+    Returns
+    -------
+    NextStep
     """
     return _choose(test, wanted, tuple(alternatives(test)))
 

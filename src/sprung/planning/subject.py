@@ -79,7 +79,7 @@ class Subject:
     duration
         Of the recording after the release, s.
     inflation
-        By how much the records tell less than they would with white residuals.
+        By how many times less the records tell than they would with white residuals.
     """
 
     vehicle: Vehicle
@@ -204,7 +204,7 @@ class PlannedTest:
     drops
         The drops, each done once.
     recorded
-        What they have told already, if they are done: shape (direction, direction).
+        What they have told already, if they are done: information, dimensionless, shape (direction, direction).
     """
 
     subject: Subject

@@ -100,7 +100,18 @@ def by_corner(decay: Decay) -> Real:
 
 
 def coupled(decay: Decay) -> NDArray[np.bool_]:
-    """Say of which channels the rest admits that they are AC-coupled, shape (channel,)."""
+    """Say of which channels the rest admits that they are AC-coupled.
+
+    Parameters
+    ----------
+    decay
+        With what its recording shows at rest.
+
+    Returns
+    -------
+    ndarray
+        Truth values, shape (channel,).
+    """
     return np.asarray(decay.usable & (np.abs(np.nan_to_num(decay.rest.level, nan=np.inf)) < SILENT))
 
 

@@ -109,7 +109,7 @@ class Decay:
 
 
 def rounding(decays: Sequence[Decay]) -> NDArray[np.float64]:
-    """Give the mean square of rounding to each channel's resolution at its worst, (m/s²)², shape (channel,).
+    """Give the mean square of rounding to each channel's resolution at its worst.
 
     Where a slow signal stays between two steps, the error is not spread evenly over a step but nearer to its ends.
 
@@ -117,6 +117,11 @@ def rounding(decays: Sequence[Decay]) -> NDArray[np.float64]:
     ----------
     decays
         All decays; those in which a channel is left out say nothing of it.
+
+    Returns
+    -------
+    ndarray
+        (m/s²)², shape (channel,).
     """
     steps = np.array([np.where(decay.usable, decay.resolution, np.inf) for decay in decays]).min(axis=0)
     worst: NDArray[np.float64] = np.where(np.isfinite(steps), steps, 0.0) ** 2 / 6

@@ -176,7 +176,7 @@ def wheel_score(drops: Sequence[FoundDrop]) -> Real:
     Returns
     -------
     ndarray
-        Shape (channel,): above 1 a wheel, below 1 the body; how far from 1 tells how surely.
+        Dimensionless, shape (channel,): above 1 a wheel, below 1 the body; how far from 1 tells how surely.
     """
     if not drops:
         return np.zeros(0)

@@ -62,7 +62,18 @@ class Release(NamedTuple):
 
 
 def no_rest(channels: int) -> Rest:
-    """Give the rest of a recording that shows none."""
+    """Give the rest of a recording that shows none.
+
+    Parameters
+    ----------
+    channels
+        How many there are.
+
+    Returns
+    -------
+    Rest
+        NaN everywhere.
+    """
     return Rest(np.full(channels, np.nan), np.empty((channels, 0)), np.full(channels, np.nan))
 
 

@@ -34,6 +34,10 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
     ----------
     wheels
         Those that fall.
+
+    Returns
+    -------
+    str
     """
     return KINDS.get(frozenset(wheels), " ".join(wheels))
 
@@ -125,6 +129,11 @@ def drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     ----------
     drops
         All of them.
+
+    Returns
+    -------
+    tuple of str
+        In the same order.
     """
     return _told_apart([(drop.name, drop._long_name) for drop in drops])
 

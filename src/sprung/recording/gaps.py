@@ -20,6 +20,10 @@ def gap(what: str) -> str:
     what
         Is to be written there.
 
+    Returns
+    -------
+    str
+
     Examples
     --------
     >>> gap("m, front axle to rear axle")

@@ -136,6 +136,10 @@ def files_named_after(files: Iterable[str], logger: str) -> list[str]:
         The recordings.
     logger
         Its name.
+
+    Returns
+    -------
+    list of str
     """
     stems = {file: PurePath(file).stem.casefold() for file in files}
     name = logger.casefold()

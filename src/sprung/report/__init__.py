@@ -2,6 +2,7 @@
 
 from sprung.report.car import BODY_EDGES, STRUTS, wire_car
 from sprung.report.check import check_view
+from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
@@ -43,6 +44,7 @@ __all__ = [
     "amplitude_pictures",
     "channels_picture",
     "check_view",
+    "comparison_view",
     "decays_by_load",
     "draft_view",
     "draw_check",

@@ -25,6 +25,11 @@ def check_view(check: Check) -> RenderableType:
     ----------
     check
         From `sprung.check`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts = [laid_out(drops_table(check.drops))]
     if reasons := list(_reasons(check.drops)):

@@ -21,6 +21,11 @@ def draft_view(draft: Draft) -> RenderableType:
     ----------
     draft
         From `sprung.draft`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts: list[RenderableType] = [_drops(draft), Text(), _sensors(draft), Text()]
     others = [hanging("  - ", each) for each in _others(draft)]

@@ -57,6 +57,11 @@ def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> 
         By load.
     faults
         Of the recordings.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts: list[RenderableType] = []
     for load, modes in found.items():

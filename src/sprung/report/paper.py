@@ -18,6 +18,11 @@ def paper_view(reproduction: PaperReproduction) -> RenderableType:
     ----------
     reproduction
         From `sprung.study.reproduce`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts = (
         _parameters("Table 2: the simulated car, without noise", reproduction.table2, "paper"),

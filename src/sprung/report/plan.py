@@ -24,6 +24,11 @@ def plan_view(plan: Plan) -> RenderableType:
     ----------
     plan
         From `sprung.plan`, `sprung.plan_campaign` or `sprung.plan_file`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts = [plan_table(plan), Text()]
     reasons = [hanging("  - ", reason) for reason in _reasons(plan)]

@@ -14,7 +14,7 @@ from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
 from sprung.tables import unit_text
 
-_COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
+COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
 
 
 def result_view(result: Result) -> RenderableType:
@@ -24,6 +24,11 @@ def result_view(result: Result) -> RenderableType:
     ----------
     result
         The result.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     parts: list[RenderableType] = [
         laid_out(parameters_table(result.vehicle.name, {**result.parameters, **result.derived})),
@@ -50,7 +55,7 @@ def result_view(result: Result) -> RenderableType:
 def verdict_view(result: Result) -> RenderableType:
     """Show the verdict and its reasons."""
     verdict = result.verdict
-    head = Text.assemble(("Verdict: ", "bold"), (verdict.state, f"bold {_COLOURS[verdict.state]}"))
+    head = Text.assemble(("Verdict: ", "bold"), (verdict.state, f"bold {COLOURS[verdict.state]}"))
     return Group(head, *(hanging("  - ", reason) for reason in verdict.reasons))
 
 

@@ -42,6 +42,11 @@ def validation_view(validation: Validation) -> RenderableType:
     ----------
     validation
         From `sprung.validate`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
     """
     result = validation.result
     parts: list[RenderableType] = [

@@ -59,7 +59,7 @@ def simulate(
     offset
         Standard deviation of the zero-g offset that each channel draws in every drop, m/s².
     known
-        Quantities known beforehand, as in a campaign file. The wheelbase is always known, exactly where not given here.
+        Quantities known beforehand, SI, as in a campaign file. The wheelbase is always known, exactly where not given here.
     model
         What is said about the model to identify.
     gravity

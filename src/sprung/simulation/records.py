@@ -27,6 +27,10 @@ def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
     ----------
     vehicle
         The corners are 0.1 m ahead of its front and behind its rear axle, at the wider of its half-distances.
+
+    Returns
+    -------
+    tuple of Sensor
     """
     corners = []
     for station in WHEELS:
@@ -38,7 +42,17 @@ def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
 
 
 def default_drops(loads: Iterable[Load]) -> tuple[Drop, ...]:
-    """Give the paper's drops of all, front, rear, left and right wheels with each load."""
+    """Give the paper's drops of all, front, rear, left and right wheels with each load.
+
+    Parameters
+    ----------
+    loads
+        All of them, ``empty`` among them where it is wanted.
+
+    Returns
+    -------
+    tuple of Drop
+    """
     return tuple(Drop(load=load.name, wheels=wheels) for load in loads for wheels in FIVE_DROPS)
 
 

@@ -64,7 +64,15 @@ class Setup:
         model: ModelChoice | Mapping[str, Any] | None,
         problems: Problems,
     ) -> Setup:
-        """Put a test together from the arguments of `simulate`; what does not fit is added to the problems."""
+        """Put a test together from the arguments of `simulate`; what does not fit is added to the problems.
+
+        Parameters
+        ----------
+        vehicle, sensors, loads, drops, rate, noise, offset, gravity, known, model
+            As for `simulate`.
+        problems
+            Takes what does not fit.
+        """
         chosen_sensors = default_sensors(vehicle) if sensors is None else records(Sensor, "sensors", sensors, problems)
         given_loads = records(Load, "loads", loads or (), problems)
         all_loads = (EMPTY, *(load for load in given_loads if load != EMPTY))

@@ -31,6 +31,10 @@ def demo_campaign(seed: int = 1) -> Campaign:
     ----------
     seed
         Of the noise.
+
+    Returns
+    -------
+    Campaign
     """
     wheelbase = SCHOOL_BUS.wheelbase
     places = {

@@ -49,9 +49,9 @@ class ParameterRow:
     known
         What was simulated, SI.
     paper
-        What the paper prints as identified.
+        What the paper prints as identified, SI.
     identified
-        What is identified here.
+        What is identified here, SI.
     given
         Whether it was known beforehand, not identified.
     """
@@ -71,7 +71,15 @@ class ParameterRow:
 
 @dataclass(frozen=True, slots=True)
 class ModalValues:
-    """Frequencies in Hz, and the damping ratio."""
+    """Frequencies and damping ratio of a mode.
+
+    Attributes
+    ----------
+    natural_frequency, damped_frequency
+        Hz.
+    damping_ratio
+        Dimensionless.
+    """
 
     natural_frequency: float
     damped_frequency: float
@@ -80,7 +88,17 @@ class ModalValues:
 
 @dataclass(frozen=True, slots=True)
 class ModeRow:
-    """One row of Table 3: what the paper prints and what the model of Tables 4 and 5 has."""
+    """One row of Table 3: what the paper prints and what the model of Tables 4 and 5 has.
+
+    Attributes
+    ----------
+    mode
+        Its name.
+    paper
+        What the paper prints.
+    computed
+        What the model of Tables 4 and 5 has.
+    """
 
     mode: str
     paper: ModalValues

@@ -40,7 +40,7 @@ class BodyMotion:
         Vertical acceleration of the centre of gravity, m/s², pitch and roll acceleration, rad/s², each with its mean taken
         off; shape (3, time). NaN for what the sensors in use do not tell.
     noise
-        What the sensors' noise makes of each at rest, root-mean-square, shape (3,).
+        What the sensors' noise makes of each at rest, m/s² and rad/s² root-mean-square, shape (3,).
     """
 
     name: str

@@ -30,15 +30,15 @@ class DropValidation:
     Attributes
     ----------
     vertical, pitch, roll
-        Normalised error of the body's accelerations: rms of measured minus simulated over rms of measured; None where the
-        sensors do not tell it, or the body did not move that way.
+        Normalised error of the body's accelerations, dimensionless: rms of measured minus simulated over rms of measured;
+        None where the sensors do not tell it, or the body did not move that way.
     fitted
-        The same of all channels, each in units of its noise.
+        The same of all channels, each in units of its noise, dimensionless.
     residual
-        What is left of all channels, over the sensors' noise at rest.
+        What is left of all channels, over the sensors' noise at rest, dimensionless.
     predicted, predicted_residual
-        The last two with the vehicle fitted to all other drops, only the initial state being this one's; None where there
-        are no others.
+        The last two, dimensionless, with the vehicle fitted to all other drops, only the initial state being this one's;
+        None where there are no others.
     unexpected
         Error of the prediction beyond that of the fit and what chance makes of it, as a part of the signal; 0 where it is
         within chance.

@@ -28,7 +28,7 @@ class Misfit:
         For each channel the model error as a part of the signal, both root-mean-square over all drops; 0 where none is
         significant. Shape (channel,).
     ratio
-        For each channel the residual over the noise at rest; NaN where no recording shows a rest. Shape (channel,).
+        For each channel the ratio of residual and noise at rest; NaN where no recording shows a rest. Shape (channel,).
     """
 
     relative: Real

@@ -26,7 +26,17 @@ _CHANCE = 2.0
 
 
 class Moments(NamedTuple):
-    """Variance, covariance of neighbouring samples, (m/s²)², and number of samples of each channel; shape (channel,)."""
+    """Variance and covariance of neighbouring samples of each channel.
+
+    Attributes
+    ----------
+    variance
+        (m/s²)², shape (channel,).
+    neighbour
+        Covariance of neighbouring samples, (m/s²)², shape (channel,).
+    samples
+        How many, shape (channel,).
+    """
 
     variance: Real
     neighbour: Real
@@ -68,6 +78,10 @@ def moments(records: Iterable[Real]) -> Moments:
     ----------
     records
         Each of shape (channel, time).
+
+    Returns
+    -------
+    Moments
     """
     sums = []
     for record in records:

@@ -17,6 +17,7 @@ from sprung.validation.drops import DropValidation
 from sprung.validation.residuals import Misfit
 
 State = Literal["accept", "doubtful", "reject"]
+"""What a verdict may be: see `Verdict`."""
 
 EXPLAINED = 0.01
 """Model error, as a part of a channel's signal, below which the model explains the records."""
@@ -90,6 +91,10 @@ def judge(
         What is probably wrong with the campaign file or an instrument.
     drops
         How well each drop is explained, and predicted by the others, by its name.
+
+    Returns
+    -------
+    Verdict
     """
     worst = int(np.argmax(misfit.relative))
     size = float(misfit.relative[worst])

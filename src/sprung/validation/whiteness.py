@@ -28,7 +28,7 @@ class Remainder:
     residual
         m/s² root-mean-square.
     over_noise
-        The same over the sensor's noise: at rest where a recording shows it, else what is left in all drops.
+        The ratio of that and the sensor's noise: at rest where a recording shows it, else what is left in all drops.
     correlation, lag
         The largest correlation of residuals with themselves within a quarter of a second, and how far they are apart, s.
     colour
@@ -44,7 +44,20 @@ class Remainder:
 
 
 def noise_of_sensors(fit: Fit, decays: Sequence[Decay]) -> Real:
-    """Give the noise of each sensor at rest, where a recording shows it, and not more than a fit leaves; m/s², (channel,)."""
+    """Give the noise of each sensor at rest, where a recording shows it, and not more than a fit leaves.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    decays
+        What was fitted.
+
+    Returns
+    -------
+    ndarray
+        m/s² root-mean-square, shape (channel,).
+    """
     seen = sensor_noise(decays, moments(residual_records(fit.fitted, decays)))
     variance = seen.variance + seen.added
     at_rest = np.where((seen.samples > 0) & (seen.variance > 0), np.sqrt(variance), np.inf)

@@ -47,7 +47,9 @@ class Event(NamedTuple):
     time: float
     """s after the release."""
     wheel: Wheel
+    """Which one."""
     kind: Literal["lift-off", "landing"]
+    """What it does."""
 
 
 class Piece(NamedTuple):
@@ -56,12 +58,12 @@ class Piece(NamedTuple):
     start: float
     """s after the release."""
     state: Array
-    """Y at the start, shape (2n + 1,) with n coordinates."""
+    """Y at the start, SI, shape (2n + 1,) with n coordinates."""
     generator: Array
-    """Shape (2n + 1, 2n + 1); the last column holds the constant force."""
+    """SI, shape (2n + 1, 2n + 1); the last column holds the constant force."""
 
     def at(self, time: float) -> Array:
-        """Give Y at a time after the release, shape (2n + 1,)."""
+        """Give Y at a time, s after the release; SI, shape (2n + 1,)."""
         return expm(self.generator * (time - self.start)) @ self.state
 
 
@@ -186,6 +188,8 @@ def drop_from_blocks(
     ------
     InputError
         If the vehicle does not stand on its four wheels, or there are no such blocks; all faults at once.
+    SprungError
+        If its wheels hop on and on, as those of a vehicle without damping do.
 
     Notes
     -----

@@ -18,6 +18,7 @@ from sprung.vehicle.rows import Row, Wheel
 
 Law = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
+"""Whether springs and dampers of an axle share their half-distance."""
 
 LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine")
 """Extras, by the name used in a campaign's ``[model]``, which the linear model can carry."""
@@ -38,6 +39,8 @@ class Element:
         Name of the parameter that multiplies it, or a known number in SI.
     row
         The displacement it feels.
+    factor
+        By which the coefficient is multiplied, dimensionless.
     """
 
     law: Law
@@ -151,6 +154,10 @@ def ground_forces(extras: Collection[str] = ()) -> tuple[Force, ...]:
     ----------
     extras
         Any of `EXTRAS`; with ``tyre-damping`` it damps too.
+
+    Returns
+    -------
+    tuple of Force
     """
     damping = "tyre-damping" in extras
     return tuple(

@@ -18,7 +18,18 @@ Array = NDArray[np.float64]
 
 
 def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
-    """Give stiffness, N/m, and damping, N s/m, of the tyre at each wheel station."""
+    """Give stiffness, N/m, and damping, N s/m, of the tyre at each wheel station.
+
+    Parameters
+    ----------
+    vehicle
+        Whose tyres.
+
+    Returns
+    -------
+    dict
+        By wheel station: stiffness, N/m, and damping, N s/m.
+    """
     front, rear = (vehicle.k_tf, vehicle.c_tf), (vehicle.k_tr, vehicle.c_tr)
     return {"fl": front, "fr": front, "rl": rear, "rr": rear}
 

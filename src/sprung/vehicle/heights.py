@@ -11,6 +11,7 @@ from typing import Literal, NamedTuple
 from sprung.units import STANDARD_GRAVITY
 
 CarriedAt = Literal["wheels", "roll axis"]
+"""Where the suspensions carry the body sideways: see `Heights`."""
 
 
 class Heights(NamedTuple):

@@ -13,8 +13,13 @@ from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.rows import Wheel
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+"""One above 0."""
+
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+"""One that is not below 0."""
+
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+"""A number in a campaign file: neither infinite nor NaN."""
 
 
 class Item(BaseModel):

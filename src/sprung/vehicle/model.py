@@ -21,7 +21,13 @@ LAWS: tuple[Law, ...] = ("mass", "damper", "spring")
 
 
 class Matrices(NamedTuple):
-    """Mass, damping and stiffness matrices, each of shape (..., n, n) with n coordinates, SI."""
+    """Mass, damping and stiffness matrices of n coordinates.
+
+    Attributes
+    ----------
+    M, C, K
+        Mass (kg, kg m²), damping (N s/m, N s, N m s) and stiffness (N/m, N, N m), shape (..., n, n).
+    """
 
     M: Array
     C: Array
@@ -101,8 +107,8 @@ class LinearModel:
         The products of parameters that occur: their positions in the list of names counted from 1, in order, filled up
         with 0 in front for a product of fewer than three; shape (product, 3).
     terms
-        What each multiplies in M, C and K: shape (product, 3, n, n) with n coordinates, or (product, model, 3, n, n) of several
-        models `side_by_side`, whose matrices then have a leading axis.
+        What each multiplies in M, C and K, SI: shape (product, 3, n, n) with n coordinates, or (product, model, 3, n, n) of
+        several models `side_by_side`, whose matrices then have a leading axis.
     elements
         What it was compiled from; none where it is several models.
     """

@@ -28,7 +28,7 @@ Index = NDArray[np.int64]
 
 
 class Forces(NamedTuple):
-    """Forces over one list of parameters, those of one law beside each other.
+    """Forces over one list of parameters, whose values are SI, shape (parameter,); those of one law beside each other.
 
     Attributes
     ----------
@@ -37,9 +37,10 @@ class Forces(NamedTuple):
     laws
         Each law, which of the forces have it, and where its parameters are in the list, shape (parameter, force).
     remembering
-        Which forces have a memory, in the order of the memories.
+        Which forces have a memory, in the order of the memories; positions, shape (memory,).
     weightless
-        1 for those whose travel counts from where the empty vehicle would be without gravity, else 0; shape (force,).
+        1 for those whose travel counts from where the empty vehicle would be without gravity, else 0; dimensionless,
+        shape (force,).
     """
 
     rows: Rows
@@ -67,14 +68,14 @@ class Forces(NamedTuple):
         return len(self.rows.affine)
 
     def answer(self, values: Array, felt: Felt) -> Answer:
-        """Give all forces; the last axis of what is felt is that of the forces."""
+        """Give all forces at parameter values; the last axis of what is felt is that of the forces."""
         parts = [law.answer(values[at], _of(felt, own)) for law, own, at in self.laws]
         if len(parts) == 1:
             return parts[0]
         return Answer(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
 
     def sensitivity(self, values: Array, felt: Felt) -> Sensitivity:
-        """Give the derivatives of forces and memories by the list of parameters, shape (..., force, parameter)."""
+        """Give the derivatives of forces and memories by the parameters, from what is felt; shape (..., force, parameter)."""
         force = np.zeros((*felt.travel.shape, len(values)))
         remembered = np.zeros_like(force)
         for law, own, at in self.laws:
@@ -107,7 +108,7 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class NonlinearModel:
-    """Equations of motion with forces beside them, of one load.
+    """Equations of motion with forces beside them, of one load, over values of the parameters, SI, shape (parameter,).
 
     Attributes
     ----------
@@ -136,7 +137,7 @@ class NonlinearModel:
         heights: Heights = LEVEL,
         gravity: float = STANDARD_GRAVITY,
     ) -> NonlinearModel:
-        """Compile the elements of a vehicle, forces beside them, and a load on it, over a list of parameter names."""
+        """Compile a vehicle with its heights and a load, elements and forces beside them, over a list of parameter names."""
         added = load.elements(heights)
         linear = LinearModel.of([*elements, *added], names)
         return cls(linear, LinearModel.of(added, names), Forces.of(forces, names), gravity)

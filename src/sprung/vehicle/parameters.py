@@ -12,7 +12,9 @@ class Parameter(NamedTuple):
     """What one parameter is."""
 
     unit: str
+    """SI, such as ``N/m``."""
     meaning: str
+    """In words."""
     scales: bool
     """Whether it changes in proportion when every mass, rate and force is multiplied by one number."""
     positive: bool = True
@@ -135,6 +137,10 @@ def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> 
         Whether springs and dampers of an axle share their half-distance.
     extras
         Any of `EXTRA_PARAMETERS`.
+
+    Returns
+    -------
+    tuple of str
     """
     places = {*half_distances(tracks).values()}
     absent = {name for one in ("shared", "separate") for name in half_distances(one).values()} - places
@@ -152,6 +158,10 @@ def brought_by(extra: str, tracks: Tracks) -> tuple[str, ...]:
         One of `EXTRAS`.
     tracks
         Whether springs and dampers of an axle share their places.
+
+    Returns
+    -------
+    tuple of str
     """
     other: Tracks = "shared" if tracks == "separate" else "separate"
     elsewhere = set(inboard_shares(other).values())
@@ -191,6 +201,11 @@ def separated(parameters: Mapping[str, float]) -> dict[str, float]:
     Parameters
     ----------
     parameters
+        Values by name, SI.
+
+    Returns
+    -------
+    dict
         Values by name, SI.
     """
     return {own: value for name, value in parameters.items() for own in separate_names(name)}

@@ -19,7 +19,13 @@ Array = NDArray[np.float64]
 
 
 class Motion(NamedTuple):
-    """Displacements, velocities and accelerations of the coordinates, each of shape (coordinate, time), SI."""
+    """Displacements, velocities and accelerations of the coordinates.
+
+    Attributes
+    ----------
+    displacement, velocity, acceleration
+        SI, shape (coordinate, time).
+    """
 
     displacement: Array
     velocity: Array

@@ -106,11 +106,16 @@ def decays_with_forces(
     loads
         What is on it each time.
     states
-        {X, Ẋ} from where it rests with its load, shape (decay, 2n); friction holds nothing at first.
+        {X, Ẋ} from where it rests with its load, SI, shape (decay, 2n); friction holds nothing at first.
     step
         Sampling interval, s.
     samples
         How many samples.
+
+    Returns
+    -------
+    list of Motion
+        One for each state.
     """
     names, values = tuple(vehicle.parameters), np.array(list(vehicle.parameters.values()))
     different = list({load.name: load for load in loads}.values())

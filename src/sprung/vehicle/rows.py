@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Wheel = Literal["fl", "fr", "rl", "rr"]
+"""A wheel station: front left, front right, rear left, rear right."""
 
 WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
 """Wheel stations in the order of the coordinates: A, B, C, D of the paper."""
@@ -26,7 +27,7 @@ AXLES: tuple[tuple[Wheel, Wheel], ...] = (("fl", "fr"), ("rl", "rr"))
 """Left and right wheel of each axle, front first."""
 
 COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD", "z_e")
-"""All that rows are over; the last is a coordinate only of a vehicle whose engine moves on its mounts."""
+"""All that rows are over, displacements in m, angles in rad; the last only of a vehicle whose engine moves on its mounts."""
 
 WHEELS_AT = slice(3, 7)
 """Where the wheels are among the coordinates."""

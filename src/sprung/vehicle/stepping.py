@@ -107,7 +107,7 @@ class Stepper:
         states
             {X, Ẋ} of each, SI, shape (drop, 2n).
         memories
-            Of the forces that remember, shape (drop, memory).
+            Of the forces that remember, dimensionless, shape (drop, memory).
         steps
             How many.
 

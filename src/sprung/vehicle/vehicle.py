@@ -48,6 +48,8 @@ class Vehicle:
         Growth of the spring rates with compression, as a part of them per metre.
     k_bf, k_br, x_bf, x_br
         Stiffness of the bump stops, N/m, and the compression from rest at which they are met, m.
+    w_h
+        Weight of the body times the height by which it stands above what carries it, N m.
     y_s
         Centre of gravity of the sprung mass, m left of the centreline.
     d_ksf, d_ksr, d_ktf, d_ktr, d_csf, d_csr

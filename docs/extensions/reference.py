@@ -1,0 +1,191 @@
+"""The references that are not written but generated: every command from itself, every public name from its docstring."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import pkgutil
+import re
+from collections.abc import Iterable, Iterator
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import paper_tables
+import typer
+from sphinx.pycode import ModuleAnalyzer
+from sprung.cli.commands import app as commands
+
+import sprung
+from sprung.vehicle import EXTRA_PARAMETERS, PARAMETERS
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
+
+ROOMS = (
+    "pipeline",
+    "study",
+    "report",
+    "planning",
+    "validation",
+    "identification",
+    "modal",
+    "prepare",
+    "simulation",
+    "recording",
+    "vehicle",
+    "estimate",
+    "units",
+    "errors",
+)
+"""The rooms whose public names are listed, from the top down."""
+
+
+def command_reference() -> str:
+    """Write one section for each command: what it does, how it is called, its arguments and options, an example."""
+    group: Any = typer.main.get_command(commands)
+    return "\n\n".join("\n\n".join(_command(name, command)) for name, command in group.commands.items())
+
+
+def _command(name: str, command: Any) -> Iterator[str]:
+    arguments = [one for one in command.params if one.param_type_name == "argument"]
+    options = [one for one in command.params if one.param_type_name == "option"]
+    usage = " ".join(one.metavar if one.required else f"[{one.metavar}]" for one in arguments)
+    text, example = _plain(command.help), re.sub(r"\[/?bold\]", "", command.epilog or "").removeprefix("Example: ")
+    yield f"## sprung {name}"
+    yield text
+    yield f"```text\nsprung {name} [OPTIONS] {usage}".rstrip() + "\n```"
+    for one in (*arguments, *options):
+        flags = [one.metavar] if one in arguments else [*one.opts, *one.secondary_opts]
+        value = f" {one.metavar or one.name.upper()}" if one in options and not _is_flag(one) else ""
+        shown = (
+            ""
+            if one.default in (None, False, (), []) or not isinstance(one.default, int | float | str)
+            else one.default
+        )
+        default = f" (default: {shown})" if shown != "" and not _is_flag(one) else ""
+        yield f"`{', '.join(flags)}{value}`\n: {_plain(one.help)}{default}"
+    yield f"Example: `{example}`"
+
+
+def _is_flag(option: Any) -> bool:
+    return bool(getattr(option, "is_flag", False))
+
+
+def _plain(text: str | None) -> str:
+    """Give a help text as Markdown: angle brackets and stars of its own are text."""
+    return re.sub(r"([*_<>\[\]])", r"\\\1", re.sub(r"\[/?bold\]", "", text or "")).strip()
+
+
+def parameter_table() -> str:
+    """Write every parameter with its unit and meaning, and the extra that brings it."""
+    extra_of = {name: extra for extra, names in EXTRA_PARAMETERS.items() for name in names}
+    rows = [f"| `{name}` | {one.unit} | {one.meaning} | {extra_of.get(name, '')} |" for name, one in PARAMETERS.items()]
+    return "\n".join(("| name | unit | what it is | extra |", "| --- | --- | --- | --- |", *rows))
+
+
+def api_reference() -> str:
+    """Write the directives for what the package itself exports."""
+    names = [name for name in sprung.__all__ if not inspect.ismodule(getattr(sprung, name))]
+    return _listed("sprung", names)
+
+
+def rooms_reference() -> str:
+    """Write the directives for what each room exports."""
+    return "\n\n".join(_room(importlib.import_module(f"sprung.{name}")) for name in ROOMS)
+
+
+def exported(room: ModuleType) -> list[str]:
+    """Name what a room exports: what it lists, or what a room of one file defines."""
+    own = [name for name, value in vars(room).items() if getattr(value, "__module__", None) == room.__name__]
+    return list(getattr(room, "__all__", [name for name in own if not name.startswith("_")]))
+
+
+def _room(room: ModuleType) -> str:
+    # What the package itself hands on is described there.
+    here = [name for name in exported(room) if getattr(sprung, name, None) is not getattr(room, name)]
+    handed_on = ", ".join(f"`{name}`" for name in exported(room) if name not in here)
+    also = f"\n\nHanded on by the package itself, and [described there](api.md): {handed_on}." if handed_on else ""
+    return f"## {room.__name__}\n\n{inspect.getdoc(room)}{also}\n\n{_listed(room.__name__, here)}"
+
+
+def _listed(module: str, names: Iterable[str]) -> str:
+    directives = "\n\n".join(_directive(module, name) for name in names)
+    return f"```{{eval-rst}}\n{directives}\n```"
+
+
+def _directive(module: str, name: str) -> str:
+    value = getattr(importlib.import_module(module), name)
+    if inspect.isclass(value):
+        return f".. autoclass:: {module}.{name}\n   :members:\n   :exclude-members: model_config"
+    if inspect.isroutine(value):
+        return f".. autofunction:: {module}.{name}"
+    text = "\n".join(f"   {line}" for line in text_of_constant(module, name).splitlines())
+    return f".. py:data:: {module}.{name}\n\n{text}"
+
+
+def text_of_constant(module: str, name: str) -> str:
+    """Give what stands below a constant where it is defined; nothing where nothing does."""
+    room = importlib.import_module(module)
+    inside = [found.name for found in pkgutil.walk_packages(getattr(room, "__path__", []), f"{module}.")]
+    for place in (module, *inside):
+        if not hasattr(importlib.import_module(place), name):
+            continue
+        analyzer = ModuleAnalyzer.for_module(place)
+        analyzer.analyze()
+        if ("", name) in analyzer.attr_docs:
+            return "\n".join(analyzer.attr_docs["", name]).strip()
+    return ""
+
+
+_WRITTEN = {
+    "<!-- commands -->": command_reference,
+    "<!-- parameters -->": parameter_table,
+    "<!-- api -->": api_reference,
+    "<!-- rooms -->": rooms_reference,
+    **paper_tables.WRITTEN,
+}
+
+
+def _fill(_app: Sphinx, _page: str, source: list[str]) -> None:
+    for mark, write in _WRITTEN.items():
+        if mark in source[0]:
+            source[0] = source[0].replace(mark, write())
+
+
+_NAMES = re.compile(r"(\w+(?:, \w+)+)( : .*)?")
+_UNDERLINE = re.compile(r"-{3,}")
+
+
+def _prepare(_app: Sphinx, what: str, _name: str, _value: object, _options: object, lines: list[str]) -> None:
+    """Turn a docstring into what Napoleon and reStructuredText take for the same."""
+    # |pole| is a size, not a substitution.
+    lines[:] = [re.sub(r"(?<!\\)\|", r"\\|", line) for line in lines]
+    if what in ("attribute", "property"):
+        lines[:0] = ["..", ""]  # a comment that is empty, or what stands before a colon is taken for a type
+    elif any(map(_UNDERLINE.fullmatch, lines)):
+        lines[:] = _apart(lines)
+
+
+def _apart(lines: list[str]) -> list[str]:
+    """Describe names that share one description each by itself: they would be taken for one name and its type."""
+    found: list[str] = []
+    place = 0
+    while place < len(lines):
+        names = _NAMES.fullmatch(lines[place])
+        end = next((k for k in range(place + 1, len(lines)) if lines[k] and not lines[k].startswith(" ")), len(lines))
+        text = lines[place + 1 : end]
+        if names is None or not text or not text[0].startswith(" "):
+            found.append(lines[place])
+            place += 1
+            continue
+        for name in names[1].split(", "):
+            found += [name + (names[2] or ""), *text]
+        place = end
+    return found
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Write the generated parts while pages are read."""
+    app.connect("source-read", _fill)
+    app.connect("autodoc-process-docstring", _prepare, priority=400)  # before Napoleon
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
