@@ -13,18 +13,19 @@ from typing import TYPE_CHECKING, Any
 import paper_tables
 import typer
 from sphinx.pycode import ModuleAnalyzer
-from sprung.cli.commands import app as commands
 
 import sprung
+from sprung.cli import app as commands
 from sprung.vehicle import EXTRA_PARAMETERS, PARAMETERS
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 ROOMS = (
-    "pipeline",
-    "study",
+    "plot",
     "report",
+    "study",
+    "pipeline",
     "planning",
     "validation",
     "identification",
@@ -33,6 +34,7 @@ ROOMS = (
     "simulation",
     "recording",
     "vehicle",
+    "tables",
     "estimate",
     "units",
     "errors",

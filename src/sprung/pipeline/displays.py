@@ -19,7 +19,17 @@ _DERIVED = {"I_xx_roll_axis": "roll inertia of the sprung mass about the axis of
 
 
 def meaning_of(name: str) -> str:
-    """Say what a parameter or derived quantity is."""
+    """Say what a parameter or derived quantity is.
+
+    Parameters
+    ----------
+    name
+        Its name.
+
+    Returns
+    -------
+    str
+    """
     return PARAMETERS[name].meaning if name in PARAMETERS else _DERIVED.get(name, _OF_ALL)
 
 
@@ -32,6 +42,10 @@ def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:
         Whose they are.
     parameters
         By name, derived quantities among them.
+
+    Returns
+    -------
+    Table
     """
     headers = ("parameter", "value", "±", "%", "unit", "status", "meaning")
     rows = tuple((name, *value_cells(found), meaning_of(name)) for name, found in parameters.items())
@@ -46,6 +60,10 @@ def ratios_table(ratios: Mapping[str, Ratio]) -> Table:
     ----------
     ratios
         By parameter.
+
+    Returns
+    -------
+    Table
     """
     rows = []
     for name, ratio in ratios.items():
@@ -64,6 +82,10 @@ def modes_table(load: str, modes: Sequence[ModeEstimate]) -> Table:
         Its name.
     modes
         Of the identified vehicle.
+
+    Returns
+    -------
+    Table
     """
     rows = []
     for mode in modes:
@@ -85,6 +107,10 @@ def found_modes_table(load: str, method: str, drops: int, modes: Sequence[FoundM
         By which they were found, in how many drops.
     modes
         The modes.
+
+    Returns
+    -------
+    Table
     """
     headers = ("mode", "f_n Hz", "± Hz", "f_d Hz", "damping", "±", "MPC")
     title = f"Modes, {load} ({method}, {drops} drop{'s' * (drops > 1)})"

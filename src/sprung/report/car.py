@@ -101,6 +101,10 @@ def wire_car(result: Result, width: float = 220.0) -> WireCar:
         With what was known beforehand, where it holds that.
     width
         Of the picture, units.
+
+    Returns
+    -------
+    WireCar
     """
     told = {name: found.value for name, found in result.parameters.items() if found.value is not None}
     before = {} if result.setup is None else {name: one.value for name, one in result.setup.known.items()}

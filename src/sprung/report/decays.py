@@ -44,6 +44,11 @@ def decays_by_load(result: Result) -> Iterator[LoadDecays]:
     ----------
     result
         With its series.
+
+    Returns
+    -------
+    iterator of LoadDecays
+        In the order of the result's modes; not for a load of which no decay is held.
     """
     for load in result.modes:
         drops = [drop for drop in result.drops if drop.load == load and _name(drop.name, drop.file) in result.series]

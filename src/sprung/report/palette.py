@@ -29,6 +29,7 @@ LIGHT: Mapping[str, str] = {
     "second": "#8a5f00",
     "quiet": "#97a3aa",
 }
+"""On light ground, and on paper: red, green and blue in hexadecimal digits, by what is drawn."""
 
 DARK: Mapping[str, str] = {
     "paper": "#11181c",
@@ -55,3 +56,4 @@ DARK: Mapping[str, str] = {
     "second": "#d9a94a",
     "quiet": "#74828a",
 }
+"""The same on dark ground."""

@@ -41,7 +41,7 @@ class Curve:
     Attributes
     ----------
     x, y
-        Shape (point,).
+        In the units of the axes, shape (point,).
     role
         What it stands for.
     label
@@ -67,7 +67,7 @@ class Points:
     Attributes
     ----------
     x, y
-        Shape (point,).
+        In the units of the axes, shape (point,).
     role
         What they stand for.
     label
@@ -75,9 +75,9 @@ class Points:
     hollow
         Whether they are rings.
     bars
-        Half-lengths of bars along y, shape (point,); none without.
+        Half-lengths of bars along y, in the unit of that axis, shape (point,); none without.
     size
-        Radius, 1 for the usual.
+        Radius, dimensionless: 1 for the usual.
     """
 
     x: Real
@@ -96,7 +96,7 @@ class Rule:
     Attributes
     ----------
     at
-        Where.
+        Where, in the unit of the axis.
     role
         What it stands for.
     label
@@ -116,13 +116,20 @@ class Rule:
 
 @dataclass(frozen=True)
 class Band:
-    """A stretch of x that is shaded: the decay."""
+    """A stretch of x that is shaded: the decay.
+
+    Attributes
+    ----------
+    low, high
+        Its ends, in the unit of the axis.
+    """
 
     low: float
     high: float
 
 
 Mark: TypeAlias = Curve | Points | Rule | Band
+"""Anything that is drawn into a panel."""
 
 
 @dataclass(frozen=True)
@@ -174,7 +181,7 @@ class Panel:
     marks
         What is drawn, the hindmost first.
     height
-        Beside the other panels of the picture.
+        Beside the other panels of the picture, dimensionless.
     note
         What is written into it, upper right.
     wrong

@@ -17,6 +17,11 @@ def value_cells(estimate: Estimate) -> list[str]:
     ----------
     estimate
         With or without a value.
+
+    Returns
+    -------
+    list of str
+        "-" for what there is not.
     """
     unit = unit_text(estimate.unit)
     if estimate.value is None or estimate.std is None:
@@ -27,14 +32,35 @@ def value_cells(estimate: Estimate) -> list[str]:
 
 
 def percent_text(percent: float) -> str:
-    """Write a percentage, to no more digits than an uncertainty has."""
+    """Write a percentage, to no more digits than an uncertainty has.
+
+    Parameters
+    ----------
+    percent
+        Percent, not negative.
+
+    Returns
+    -------
+    str
+        Without the sign.
+    """
     if percent >= 10:
         return f"{percent:.0f}"
     return f"{percent:.2f}" if percent >= 0.01 else f"{percent:.1g}"
 
 
 def unit_text(unit: str) -> str:
-    """Write a unit as people do: ``kg m²``; nothing for a plain number."""
+    """Write a unit as people do: ``kg m²``; nothing for a plain number.
+
+    Parameters
+    ----------
+    unit
+        As results have it: ``kg m^2``, or ``1`` for a plain number.
+
+    Returns
+    -------
+    str
+    """
     return "" if unit == "1" else unit.translate(_SUPERSCRIPT)
 
 
@@ -45,6 +71,11 @@ def with_std(value: float, std: float | None) -> tuple[str, str]:
     ----------
     value, std
         In one unit; a std of None stands for what is not determined.
+
+    Returns
+    -------
+    value, std
+        As text; "-" for both where there is no number.
     """
     if std is None:
         return "-", "-"

@@ -13,6 +13,11 @@ def escaped(text: str) -> str:
     ----------
     text
         Any.
+
+    Returns
+    -------
+    str
+        HTML.
     """
     return html.escape("".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text))
 
@@ -46,6 +51,11 @@ class Table:
         ----------
         caption
             Whether the title is written above it.
+
+        Returns
+        -------
+        str
+            HTML.
         """
         kinds = [' class="number"' if header in self.numbers else "" for header in self.headers]
         head = "".join(

@@ -25,6 +25,11 @@ def amplitude_pictures(amplitudes: Sequence[ModeAmplitude]) -> list[Picture]:
     ----------
     amplitudes
         Of a result.
+
+    Returns
+    -------
+    list of Picture
+        One for each mode that some record shows.
     """
     return [_picture(one) for one in amplitudes if any(trace.amplitude.size for trace in one.records)]
 

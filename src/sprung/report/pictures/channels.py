@@ -22,6 +22,11 @@ def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Pict
         As it was fitted.
     channels
         Names of channels, each of which the drop has.
+
+    Returns
+    -------
+    Picture
+        Two panels for each channel, m/s² over s.
     """
     panels: list[Panel] = []
     for channel in channels:

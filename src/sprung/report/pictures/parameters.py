@@ -50,6 +50,11 @@ def parameters_picture(parameters: Mapping[str, Estimate]) -> Picture:
     ----------
     parameters
         By name.
+
+    Returns
+    -------
+    Picture
+        One panel, percent to the right.
     """
     half = half_width(parameters)
     told = {name: limits for name, found in parameters.items() if (limits := limits_percent(found)) is not None}

@@ -23,6 +23,11 @@ def whole_picture(drop: DropReport, recorded: Recorded) -> Picture:
         What is said of it.
     recorded
         What was recorded.
+
+    Returns
+    -------
+    Picture
+        A panel for each channel, m/s² over s.
     """
     time = recorded.time
     return _picture("The whole recording", drop, recorded, (float(time[0]), float(time[-1])), False)

@@ -32,6 +32,11 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
         Of that load.
     modes
         Identified with it; those whose frequency is not determined are left out.
+
+    Returns
+    -------
+    Picture
+        m/s² per √Hz over Hz: a panel for the body's sensors, and one for those at the wheels.
     """
     told = [mode for mode in modes if mode.frequency_std is not None and mode.pole[1] > 0]
     rate = decays.rate

@@ -17,6 +17,11 @@ def stability_picture(load: str, diagram: Diagram) -> Picture:
         Whose decays it is of.
     diagram
         The diagram.
+
+    Returns
+    -------
+    Picture
+        One panel, order over Hz.
     """
     vibrating = [one for one in diagram.poles if one.pole.imag > 0]
     frequency = np.array([abs(one.pole) for one in vibrating]) / (2 * np.pi)
