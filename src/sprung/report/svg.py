@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.report.axis import Axis
 from sprung.report.lanes import thinned
-from sprung.report.picture import Axis, Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
 from sprung.tables import escaped
 
 Real = NDArray[np.float64]

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from sprung.pipeline import Series
-from sprung.report.picture import Axis, Panel, Picture
+from sprung.report.axis import Axis
+from sprung.report.picture import Panel, Picture
 from sprung.report.pictures.motions import compared
 
 

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.pipeline import Series
-from sprung.report.picture import Axis, Curve, Panel, Picture, Rule, room
+from sprung.report.axis import Axis, room
+from sprung.report.picture import Curve, Panel, Picture, Rule
 from sprung.validation import MOTIONS, DropValidation
 
 Real = NDArray[np.float64]

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from sprung.pipeline import DropReport, Recorded
+from sprung.report.axis import Axis
 from sprung.report.lanes import Lane, lanes_of
-from sprung.report.picture import Axis, Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
 
 _LANE = 0.42
 """Height of a lane."""

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification import ModeEstimate
+from sprung.report.axis import Axis
 from sprung.report.decays import LoadDecays
-from sprung.report.picture import Axis, Curve, Panel, Picture, Rule, labelled_together
+from sprung.report.picture import Curve, Panel, Picture, Rule, labelled_together
 
 Real = NDArray[np.float64]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.modal import Diagram
-from sprung.report.picture import Axis, Panel, Picture, Points, Rule, labelled_together
+from sprung.report.axis import Axis
+from sprung.report.picture import Panel, Picture, Points, Rule, labelled_together
 
 
 def stability_picture(load: str, diagram: Diagram) -> Picture:
