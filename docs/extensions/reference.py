@@ -15,16 +15,17 @@ import typer
 from sphinx.pycode import ModuleAnalyzer
 
 import sprung
-from sprung.cli.commands import app as commands
+from sprung.cli import app as commands
 from sprung.vehicle import EXTRA_PARAMETERS, PARAMETERS
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
 
 ROOMS = (
-    "pipeline",
-    "study",
+    "plot",
     "report",
+    "study",
+    "pipeline",
     "planning",
     "validation",
     "identification",
@@ -33,6 +34,7 @@ ROOMS = (
     "simulation",
     "recording",
     "vehicle",
+    "tables",
     "estimate",
     "units",
     "errors",

@@ -15,6 +15,7 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from sprung import plot as plot
     from sprung import report as report
     from sprung import study as study
     from sprung.pipeline import (
@@ -93,7 +94,7 @@ _HOME = {
     "validate": "pipeline",
     "write": "recording",
 }
-_ROOMS = ("report", "study")
+_ROOMS = ("plot", "report", "study")
 
 
 def __getattr__(name: str) -> Any:

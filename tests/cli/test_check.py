@@ -10,7 +10,6 @@ from jsonschema import Draft202012Validator
 
 import sprung
 from command_line import DROPS, Folder, copy_sedan, run
-from sprung.report import drawing
 
 
 @pytest.fixture
@@ -58,19 +57,6 @@ def test_a_folder_that_cannot_be_written_costs_the_drawings_only(one: Folder) ->
     assert line.startswith("No drawings: ")
     assert "a file where the folder should be" in line
     assert (one.path / "check").read_text() == "in the way"
-
-
-def test_without_matplotlib_the_table_is_all_the_same(one: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(_: str) -> None:
-        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
-
-    table = run("check", one.path, "--no-drawings")
-    monkeypatch.setattr(drawing, "import_module", missing)
-    said = run("check", one.path)
-    assert (said.status, said.out) == (0, table.out)
-    [line] = said.err.splitlines()
-    assert 'pip install "sprung[plot]"' in line
-    assert not (one.path / "check").exists()
 
 
 def test_wheels_that_fell_otherwise_than_stated(one: Folder) -> None:

@@ -12,7 +12,19 @@ import pytest
 import sprung
 from command_line import SEDAN, Folder, Identified, Run, run
 
-COMMANDS = ("demo", "paper", "check", "modal", "identify", "validate", "compare", "plan", "simulate", "schema")
+COMMANDS = (
+    "demo",
+    "paper",
+    "check",
+    "modal",
+    "identify",
+    "report",
+    "validate",
+    "compare",
+    "plan",
+    "simulate",
+    "schema",
+)
 # The contract's results.json.
 KEYS = {
     "schema",
@@ -209,7 +221,29 @@ def test_load_gives_the_result_back(any_campaign: Identified) -> None:
 def test_results_are_written_beside_the_campaign_unless_told(folder: Folder) -> None:
     before = folder.listing()
     assert run("identify", folder.path / "campaign.toml").status == 0
-    assert folder.listing() == sorted([*before, "results", "results/results.json", "results/series.npz"])
+    results = [f"results/{name}" for name in ("report.html", "results.json", "series.npz")]
+    assert folder.listing() == sorted([*before, "results", *results])
+
+
+def test_without_a_report_none_is_left(folder: Folder) -> None:
+    """One of an earlier result would be read as this one's."""
+    results = folder.path / "results"
+    assert run("identify", folder.path).status == 0
+    (results / "report.pdf").write_bytes(b"of that result")
+    said = run("identify", folder.path, "--no-report")
+    assert "report.html" not in said.out
+    assert sorted(path.name for path in results.iterdir()) == ["results.json", "series.npz"]
+    document = json.loads((results / "results.json").read_text(encoding="utf-8"))
+    assert document["amplitude"] == {}  # nothing is spent on figures
+    assert run("report", results).status == 0
+    assert (results / "report.html").exists()
+
+
+def test_a_report_of_nothing(tmp_path: Path) -> None:
+    said = run("report", tmp_path)
+    assert (said.status, said.out) == (2, "")
+    assert "Name the folder given to save." in said.err
+    assert not list(tmp_path.iterdir())
 
 
 def test_check(folder: Folder) -> None:

@@ -119,7 +119,7 @@ def test_clipping_says_until_when(car: Campaign) -> None:
     assert report.why_start == "until then wheel_fl clipped"
     assert report.start == pytest.approx((clipped[-1] + 1) / 500)
     assert report.channels[4].faults == ("clipped",)
-    [mark] = check.seen[0].marks
+    [mark] = check.recorded[0].marks
     assert (mark.code, mark.channel) == ("clipped", 4)
     np.testing.assert_array_equal(mark.samples, clipped)
 
@@ -129,7 +129,7 @@ def test_spikes_are_marked_where_they_were(car: Campaign) -> None:
     values[5, [900, 1200]] = 300.0
     check = sprung.check(spoilt(car, values))
     assert check.drops[0].channels[5].faults == ("spike",)
-    [mark] = check.seen[0].marks
+    [mark] = check.recorded[0].marks
     assert (mark.code, mark.channel, mark.samples.tolist()) == ("spike", 5, [900, 1200])
     assert check.drops[0].channels[5].peak == pytest.approx(sprung.check(car).drops[0].channels[5].peak)
 
@@ -149,7 +149,7 @@ def test_a_channel_left_out(car: Campaign) -> None:
     [flat, *others] = check.drops[0].channels
     assert (flat.used, flat.faults, flat.noise, flat.peak) == (False, ("flat",), None, None)
     assert all(channel.used for channel in others)
-    assert check.recordings[0].values[0, 0] == 9.81  # what was read can still be drawn
+    assert check.recorded[0].values[0, 0] == np.float32(9.81)  # what was read can still be drawn
 
 
 def test_a_drop_left_out(car: Campaign) -> None:

@@ -2,32 +2,38 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import replace
-from importlib import import_module
 from itertools import pairwise
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from matplotlib.axes import Axes
-from matplotlib.colors import to_hex
-from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 import sprung
-from sprung.errors import InputError
 from sprung.pipeline import Check
 from sprung.recording import Campaign
-from sprung.report import draw_check, drawing, write_check
-from sprung.report.figure import figure_of
+from sprung.report import (
+    Band,
+    Curve,
+    Panel,
+    Picture,
+    Points,
+    Rule,
+    draw_check,
+    near_picture,
+    whole_picture,
+    write_check,
+)
 from sprung.report.lanes import thinned
 from sprung.vehicle import TABLE_1_CAR
+
+M = TypeVar("M", Band, Curve, Points, Rule)
 
 
 @pytest.fixture(scope="module")
@@ -63,45 +69,48 @@ def test_words(check: Check) -> None:
     assert f"to {drop.end:.3f} s: the recording ends" in said
     assert all(channel.name in said for channel in drop.channels)
     assert "left out: flat" in said
-    assert f"clipped: {check.seen[0].marks[0].samples.size}" in said
+    assert f"clipped: {check.recorded[0].marks[0].samples.size}" in said
 
 
-def panels(check: Check) -> tuple[Axes, Axes]:
-    whole, close = figure_of(check.drops[0], check.seen[0], check.recordings[0]).axes
-    return whole, close
+def pictures(check: Check) -> tuple[Picture, Picture]:
+    drop, recorded = check.drops[0], check.recorded[0]
+    close = near_picture(drop, recorded)
+    assert close is not None
+    return whole_picture(drop, recorded), close
+
+
+def marks(panel: Panel, kind: type[M]) -> list[M]:
+    return [mark for mark in panel.marks if isinstance(mark, kind)]
 
 
 def test_signals(check: Check) -> None:
-    """Each lane holds its channel, the first on top, with what its ticks say."""
-    whole, _ = panels(check)
-    recording = check.seen[0].recording
-    signals = [line for line in whole.lines if len(np.asarray(line.get_xdata())) == recording.values.shape[1]]
-    assert len(signals) == len(recording.channels)
-    low, *_, high = list(zip(whole.get_yticks(), whole.get_yticklabels(), strict=True))[-3:]  # of the lowest lane
-    bottom, top = (float(label.get_text().replace("\N{MINUS SIGN}", "-")) for _, label in (low, high))
-    drawn = (np.asarray(signals[-1].get_ydata(), dtype=float) - low[0]) / (high[0] - low[0]) * (top - bottom) + bottom
-    np.testing.assert_allclose(drawn, recording.values[-1], atol=1e-9)
-    for number, line in enumerate(signals):
-        inside = np.asarray(line.get_ydata(), dtype=float) + number
-        assert np.abs(inside).max() <= 0.5  # no signal leaves its lane
-        np.testing.assert_allclose(np.asarray(line.get_xdata(), dtype=float), recording.time)
-    greys = [to_hex(str(line.get_color())) for line in signals]
-    assert greys[0] != greys[1]  # the channel left out
-    assert len(set(greys[1:])) == 1
+    """Each lane holds its channel, the first on top, at a scale that it shares with its like."""
+    whole, _ = pictures(check)
+    recorded = check.recorded[0]
+    assert [panel.name for panel in whole.panels] == [channel.name for channel in check.drops[0].channels]
+    for panel, values in zip(whole.panels, recorded.values.astype(float), strict=True):
+        [curve] = marks(panel, Curve)
+        np.testing.assert_array_equal(curve.y, values)
+        np.testing.assert_allclose(curve.x, recorded.time)
+        inside = panel.y.at(curve.y)
+        assert 0 <= inside.min() <= inside.max() <= 1  # no signal leaves its lane
+        assert all(0 <= panel.y.at(np.array(value)) <= 1 for value, _ in panel.y.ticks)
+    roles = [marks(panel, Curve)[0].role for panel in whole.panels]
+    assert roles == ["unused", *["signal"] * 7]  # the channel left out
+    spans = [panel.y.high - panel.y.low for panel in whole.panels]
+    assert len({round(span, 9) for span in spans[1:4]}) == 1
+    assert len({round(span, 9) for span in spans[4:]}) == 1
 
 
 def test_events_and_marks_are_where_they_were(check: Check) -> None:
-    whole, close = panels(check)
-    drop, seen = check.drops[0], check.seen[0]
-    for axes in (whole, close):
-        [shade] = [patch for patch in axes.patches if isinstance(patch, Rectangle)]
-        assert (shade.get_x(), shade.get_x() + shade.get_width()) == pytest.approx((drop.start, drop.end))
-        marked = [np.asarray(line.get_xdata(), dtype=float) for line in axes.lines if line.get_marker() == "."]
-        times = np.concatenate(marked)
-        np.testing.assert_allclose(np.unique(times), seen.recording.time[seen.marks[0].samples])
-    places = [np.asarray(line.get_xdata(), dtype=float) for line in close.lines]
-    upright = {float(place[0]) for place in places if np.ptp(place) == 0}
-    assert upright >= {drop.release, drop.landing, drop.start}
+    drop, recorded = check.drops[0], check.recorded[0]
+    for picture in pictures(check):
+        for panel in picture.panels:
+            [band] = marks(panel, Band)
+            assert (band.low, band.high) == (drop.start, drop.end)
+            assert [rule.at for rule in marks(panel, Rule)] == [drop.release, drop.landing, drop.start]
+        marked = np.concatenate([points.x for panel in picture.panels for points in marks(panel, Points)])
+        np.testing.assert_allclose(marked, recorded.time[recorded.marks[0].samples])
 
 
 def test_the_same_recordings_give_the_same_drawing(campaign: Campaign, check: Check) -> None:
@@ -175,7 +184,7 @@ NAMES = [
 def test_names_of_every_kind(check: Check, tmp_path: Path) -> None:
     drops = tuple(replace(check.drops[0], file=name, load="<&>$x$") for name in NAMES)
     count = len(NAMES)
-    many = Check(drops, (), check.seen * count, check.recordings * count)
+    many = Check(drops, (), check.recorded * count)
     written = write_check(many, tmp_path / "check")
     assert len({path.name.lower() for path in written}) == len(NAMES)
     assert all(path.parent == tmp_path / "check" for path in written)
@@ -193,30 +202,3 @@ def test_names_of_channels(campaign: Campaign) -> None:
     said = texts(*draw_check(sprung.check(renamed)).values())
     assert {"$a$", '<b> & "c"'} <= set(said)
     assert any(text.startswith("ddd") and text.endswith("…") for text in said)
-
-
-def test_without_matplotlib(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(_: str) -> None:
-        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib.axes")
-
-    monkeypatch.setattr(drawing, "import_module", missing)
-    with pytest.raises(InputError, match=r'matplotlib.*pip install "sprung\[plot\]"'):
-        draw_check(check)
-
-
-def test_a_defect_is_not_taken_for_a_missing_library(check: Check, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(drawing, "import_module", lambda _: import_module("sprung.report.nothing"))
-    with pytest.raises(ModuleNotFoundError, match=r"sprung\.report\.nothing"):
-        draw_check(check)
-
-
-def test_matplotlib_is_loaded_when_something_is_drawn_and_its_global_state_never() -> None:
-    code = (
-        "import sys, sprung; from sprung.vehicle import TABLE_1_CAR\n"
-        "check = sprung.check(sprung.simulate(TABLE_1_CAR, drops=[{}]))\n"
-        "sprung.report.check_view(check)\n"
-        "assert 'matplotlib' not in sys.modules\n"
-        "sprung.report.draw_check(check)\n"
-        "assert 'matplotlib' in sys.modules and 'matplotlib.pyplot' not in sys.modules\n"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)  # noqa: S603 (our own interpreter)

@@ -9,11 +9,8 @@ import pytest
 from rich.console import Console
 
 import sprung
-from sprung.errors import InputError
 from sprung.pipeline import Validation
-from sprung.report import draw_validation, drawing, text_of, validation_view
-from sprung.report.amplitude import figure_of_amplitudes
-from sprung.report.motion import figure_of_motion
+from sprung.report import Curve, amplitude_pictures, draw_validation, motion_picture, text_of, validation_view
 from sprung.vehicle import TABLE_1_CAR
 
 
@@ -44,33 +41,25 @@ def test_drawings_are_svg_and_the_same_again(found: Validation) -> None:
 
 
 def test_a_drop_is_drawn_as_it_was(found: Validation) -> None:
-    motion = found.motions[1]
-    figure = figure_of_motion(motion, found.result.validation[motion.name])
-    assert len(figure.axes) == 6
+    motion, result = found.motions[1], found.result
+    picture = motion_picture(motion.name, result.series[motion.name], result.validation[motion.name])
+    assert picture is not None
+    assert len(picture.panels) == 6
     for i in range(3):
-        above, below = figure.axes[2 * i : 2 * i + 2]
-        measured, simulated = (line.get_ydata() for line in above.lines[:2])
-        np.testing.assert_array_equal(measured, motion.measured[i])
-        np.testing.assert_array_equal(simulated, motion.simulated[i])
-        np.testing.assert_array_equal(below.lines[0].get_ydata(), motion.measured[i] - motion.simulated[i])
+        measured, simulated, left = (
+            mark.y for panel in picture.panels[2 * i : 2 * i + 2] for mark in panel.marks if isinstance(mark, Curve)
+        )
+        np.testing.assert_array_equal(measured, motion.measured[i].astype(np.float32))
+        np.testing.assert_array_equal(simulated, motion.simulated[i].astype(np.float32))
+        np.testing.assert_array_equal(left, measured - simulated)
 
 
 def test_modes_are_drawn_in_mm_the_largest_amplitude_on_the_left(found: Validation) -> None:
-    figure = figure_of_amplitudes(found.amplitudes, "Modes")
-    assert len(figure.axes) == 2 * len(found.amplitudes)
-    for above, one in zip(figure.axes[::2], found.amplitudes, strict=True):
-        left, right = above.get_xlim()
-        assert left > right
-        assert left > 1e3 * one.records[0].amplitude.max()
-        low, high = above.get_ylim()
+    pictures = amplitude_pictures(found.amplitudes)
+    assert [picture.title for picture in pictures] == [one.mode for one in found.amplitudes]
+    for picture, one in zip(pictures, found.amplitudes, strict=True):
+        assert picture.x.falling
+        assert picture.x.high > 1e3 * one.records[0].amplitude.max()
+        frequency = picture.panels[0].y
         # What is flat is drawn flat.
-        assert high - low > 0.1 * one.frequency
-
-
-def test_without_matplotlib_it_is_named(found: Validation, monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(_: str) -> object:
-        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib")
-
-    monkeypatch.setattr(drawing, "import_module", missing)
-    with pytest.raises(InputError, match="matplotlib"):
-        draw_validation(found)
+        assert frequency.high - frequency.low > 0.1 * one.frequency

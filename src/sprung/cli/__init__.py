@@ -6,7 +6,9 @@ import os
 import sys
 import traceback
 
-from sprung.cli.commands import app
+from sprung.cli import identifying as identifying
+from sprung.cli import measuring as measuring
+from sprung.cli.app import app
 from sprung.cli.output import BAD_INPUT, DEFECT, complain
 from sprung.errors import SprungError
 

@@ -37,6 +37,9 @@ class ModeEstimate:
         Hz.
     damping_ratio, damping_ratio_std
         -re/|pole|, dimensionless; 1 for a real pole.
+    motion
+        How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
+        imaginary part of each, the largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
     """
 
     name: str
@@ -46,6 +49,7 @@ class ModeEstimate:
     damped_frequency: float
     damping_ratio: float
     damping_ratio_std: float | None
+    motion: tuple[tuple[float, float], ...] = ()
 
 
 def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
@@ -103,4 +107,11 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
         damped_frequency=mode.damped_frequency,
         damping_ratio=mode.damping_ratio,
         damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
+        motion=_largest_one(mode.shape),
     )
+
+
+def _largest_one(shape: NDArray[np.complex128]) -> tuple[tuple[float, float], ...]:
+    """Turn and scale a shape so that its largest entry is 1; real and imaginary part of each."""
+    scaled = shape / shape[np.argmax(np.abs(shape))]
+    return tuple((float(part.real), float(part.imag)) for part in scaled)

@@ -1,16 +1,20 @@
 """The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
 
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
+from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.identify import identify
-from sprung.pipeline.modes import FoundMode, LoadModes, modes
+from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.recordings import is_recordings, modes_of_recordings
-from sprung.pipeline.result import FitReport, Result, Series
+from sprung.pipeline.result import FitReport, Result
 from sprung.pipeline.saved import load
+from sprung.pipeline.series import Recorded, Series
+from sprung.pipeline.setup import Before, Setup
 from sprung.pipeline.validate import Validation, validate
 
 __all__ = [
+    "Before",
     "ChannelReport",
     "Check",
     "Draft",
@@ -18,18 +22,25 @@ __all__ = [
     "FitReport",
     "FoundMode",
     "LoadModes",
+    "ModesByLoad",
+    "Recorded",
     "Result",
     "Series",
+    "Setup",
     "Validation",
     "check",
     "draft",
     "identify",
     "is_recordings",
     "load",
+    "meaning_of",
     "modes",
     "modes_of_recordings",
+    "modes_table",
+    "parameters_table",
     "plan",
     "plan_campaign",
     "plan_file",
+    "ratios_table",
     "validate",
 ]

@@ -10,8 +10,9 @@ import numpy as np
 
 from sprung.errors import Fault
 from sprung.pipeline.clocks import ClockReport
+from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
-from sprung.recording import Campaign, Drop, Recording
+from sprung.recording import Campaign, Drop, drop_names
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
 
@@ -77,6 +78,8 @@ class DropReport:
         What each channel shows.
     clocks
         For several loggers how their clocks stood, as the fit found it.
+    name
+        The drop's short name, by which its series are found.
     """
 
     file: str
@@ -95,6 +98,7 @@ class DropReport:
     rate: float | None = None
     channels: tuple[ChannelReport, ...] = ()
     clocks: tuple[ClockReport, ...] = ()
+    name: str = ""
 
     @property
     def contradicted(self) -> bool:
@@ -112,16 +116,13 @@ class Check:
         What happened in each drop, and which part of it can be used.
     faults
         Everything that is wrong, the harmless included.
-    seen
-        What each drop's recording shows, to draw.
-    recordings
-        Each drop's recording as it was read, to draw what was left out of it.
+    recorded
+        Each drop's whole recording, to draw.
     """
 
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
-    seen: tuple[Seen, ...] = field(default=(), repr=False)
-    recordings: tuple[Recording, ...] = field(default=(), repr=False)
+    recorded: tuple[Recorded, ...] = field(default=(), repr=False)
 
     @property
     def usable(self) -> bool:
@@ -153,19 +154,20 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     used = {decay.file: decay for decay in prepared.decays}
     left_out = {recording.name: faults for _, recording, faults in prepared.left_out}
     reports = []
-    for drop, seen in zip(campaign.drops, prepared.seen, strict=True):
+    for drop, short, seen in zip(campaign.drops, drop_names(campaign.drops), prepared.seen, strict=True):
         name = seen.recording.name
         decay = used.get(name)
         faults = left_out[name] if decay is None else decay.faults
-        reports.append(_report(drop, seen, decay, faults, campaign.sensors))
+        reports.append(_report(drop, short, seen, decay, faults, campaign.sensors))
+    recorded = tuple(Recorded.of(*pair) for pair in zip(prepared.seen, campaign.recordings, strict=True))
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
     everything = (*campaign.faults, *of_drops, *of_left_out)
-    return Check(tuple(reports), everything, prepared.seen, campaign.recordings)
+    return Check(tuple(reports), everything, recorded)
 
 
 def _report(
-    drop: Drop, seen: Seen, decay: Decay | None, faults: Sequence[Fault], sensors: Sequence[Sensor]
+    drop: Drop, name: str, seen: Seen, decay: Decay | None, faults: Sequence[Fault], sensors: Sequence[Sensor]
 ) -> DropReport:
     recording = seen.recording
     released = None if seen.release is None else recording.start + seen.release / recording.rate
@@ -186,6 +188,7 @@ def _report(
         why_end=events.why_end,
         rate=recording.rate,
         channels=tuple(_channels(seen, decay, faults, sensors)),
+        name=name,
     )
 
 

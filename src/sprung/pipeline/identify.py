@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sprung.errors import Fault, Problems
 from sprung.identification import (
@@ -22,6 +24,7 @@ from sprung.identification import (
     look_around,
     mode_estimates,
 )
+from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.candidates import ENGINE, fit_from
 from sprung.pipeline.check import check_prepared
@@ -40,12 +43,14 @@ from sprung.pipeline.diagnosis import (
 from sprung.pipeline.extras import Attempt, Way
 from sprung.pipeline.flight import fly, is_needed
 from sprung.pipeline.profiles import check_asked, profiles_of
-from sprung.pipeline.result import FitReport, Result, Series, VehicleName
+from sprung.pipeline.result import FitReport, Result, VehicleName
+from sprung.pipeline.series import Series
+from sprung.pipeline.setup import setup_of
 from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, next_step, subject_of_fit
 from sprung.prepare import Decay, Prepared, prepare
 from sprung.recording import Campaign
 from sprung.simulation import DEFAULT_HEIGHT
-from sprung.validation import Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
+from sprung.validation import BodyMotion, Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
 from sprung.vehicle import Tracks
 
 METHOD = "joint maximum likelihood"
@@ -67,6 +72,7 @@ def identify(
     extras: Sequence[str] | None = None,
     fall: bool | None = None,
     profile: str | Sequence[str] = (),
+    amplitude: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Result:
     """Identify every parameter of a vehicle from its drop tests.
@@ -87,6 +93,8 @@ def identify(
         Parameters whose 95 % interval is to follow from the whole profile of the likelihood, not from its curvature at the
         maximum: for those that are weakly determined, whose interval is not symmetric. Also derived quantities
         (``total_mass``, ``front_axle_mass``, ``rear_axle_mass``, ``wheelbase``), or ``all`` for every parameter.
+    amplitude
+        Whether to follow the body's modes through the decays, for frequency and damping against amplitude.
     progress
         Told in words what is being done.
 
@@ -112,7 +120,8 @@ def identify(
     """
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
-    return result_of(fitted, asked, progress)
+    options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
+    return result_of(fitted, asked, progress, amplitude=amplitude, options=options)
 
 
 class Fitted(NamedTuple):
@@ -332,7 +341,14 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
     problems.raise_if_any()
 
 
-def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[str], None] = lambda _: None) -> Result:
+def result_of(
+    fitted: Fitted,
+    profile: Sequence[str] = (),
+    progress: Callable[[str], None] = lambda _: None,
+    *,
+    amplitude: bool = False,
+    options: Mapping[str, object] = MappingProxyType({}),
+) -> Result:
     """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
     campaign, choice, why, prepared, summit, fit, _, path, accused = fitted
     decays = prepared.decays
@@ -341,13 +357,16 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
     clocks = clock_reports(summit, fit, decays)
     estimates = conclude(fit, choice.known)
     misfit = judge_residuals(fit, decays)
-    validated = validate_drops(summit, fit, decays, channels, body_motions(fit, decays, campaign.sensors))
+    motions = body_motions(fit, decays, campaign.sensors)
+    validated = validate_drops(summit, fit, decays, channels, motions)
     verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
     doubt = doubt_of(verdict, fit, misfit)
     if doubt:
         fit = fit.widened(doubt)
         estimates = conclude(fit, choice.known).refused(verdict.reasons[0])
     profiles = profiles_of(profile, summit, fit, choice.known, progress)
+    if amplitude:
+        progress("following the modes of the body through the decays")
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     return Result(
         version=version("sprung"),
@@ -367,7 +386,13 @@ def result_of(fitted: Fitted, profile: Sequence[str] = (), progress: Callable[[s
         drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         validation=validated,
-        series={decay.name: _series(decay, fitted, channels) for decay, fitted in zip(decays, fit.fitted, strict=True)},
+        setup=setup_of(campaign, fit, choice.known, options),
+        amplitude=amplitudes_of(fit, choice, decays, campaign.sensors, motions) if amplitude else (),
+        series={
+            decay.name: _series(decay, fitted, motion, channels)
+            for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)
+        },
+        recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
     )
 
 
@@ -402,9 +427,7 @@ def _fit_report(
     )
 
 
-def _series(
-    decay: Decay, fitted: np.ndarray[tuple[int, ...], np.dtype[np.float64]], channels: tuple[str, ...]
-) -> Series:
-    time = decay.start + np.arange(decay.samples) / decay.rate
+def _series(decay: Decay, fitted: NDArray[np.float64], motion: BodyMotion, channels: tuple[str, ...]) -> Series:
     level = decay.values.mean(axis=1, keepdims=True)
-    return Series(channels, time, decay.values, fitted + level)
+    body = motion.measured.astype(np.float32), motion.simulated.astype(np.float32)
+    return Series(channels, motion.time, decay.values, fitted + level, *body)

@@ -25,8 +25,10 @@ from sprung.modal import (
     name_by_sensors,
     stabilisation_diagram,
 )
+from sprung.pipeline.displays import found_modes_table
 from sprung.prepare import Decay, prepare
 from sprung.recording import Campaign
+from sprung.tables import Table, escaped
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -115,6 +117,20 @@ class LoadModes(Sequence[FoundMode]):
         """Go through the modes."""
         return iter(self.modes)
 
+    def table(self, load: str) -> Table:
+        """Show them as a table.
+
+        Parameters
+        ----------
+        load
+            What the load is called.
+        """
+        return found_modes_table(load, self.method, len(self.drops), self.modes)
+
+    def _repr_html_(self) -> str:
+        """Show them in a notebook."""
+        return self.table(", ".join(self.drops)).html() + "".join(f"<p>{escaped(one)}</p>\n" for one in self.unresolved)
+
     def document(self) -> dict[str, Any]:
         """Say for machines how the modes were found."""
         return {
@@ -127,6 +143,14 @@ class LoadModes(Sequence[FoundMode]):
         }
 
 
+class ModesByLoad(dict[str, LoadModes]):
+    """The modes of every load, by its name."""
+
+    def _repr_html_(self) -> str:
+        """Show them in a notebook."""
+        return "".join(modes.table(load).html() for load, modes in self.items())
+
+
 def modes(
     campaign: Campaign,
     method: str = DEFAULT,
@@ -134,7 +158,7 @@ def modes(
     *,
     amplitude: bool = False,
     diagram: bool = False,
-) -> dict[str, LoadModes]:
+) -> ModesByLoad:
     """Find the modes of every load; no vehicle model is needed.
 
     Parameters
@@ -153,8 +177,8 @@ def modes(
 
     Returns
     -------
-    dict
-        By load, lowest frequency first. Names are the paper's seven, by the shapes at the sensors.
+    ModesByLoad
+        A dict by load, lowest frequency first. Names are the paper's seven, by the shapes at the sensors.
 
     Raises
     ------
@@ -166,7 +190,7 @@ def modes(
         problems = Problems()
         problems.add(campaign.name, "no drop that can be used", "at least one", "Run `sprung check` on the campaign.")
         problems.raise_if_any()
-    found = {}
+    found = ModesByLoad()
     for load in campaign.loads:
         of_load = [decay for decay in decays if decay.load == load.name]
         if of_load:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problems
 from sprung.modal import DEFAULT
-from sprung.pipeline.modes import LoadModes, examined
+from sprung.pipeline.modes import ModesByLoad, examined
 from sprung.recording import FILE, Table, read_table
 from sprung.units import acceleration_factor
 
@@ -60,7 +60,7 @@ def modes_of_recordings(
     start: float | None = None,
     amplitude: bool = False,
     diagram: bool = False,
-) -> dict[str, LoadModes]:
+) -> ModesByLoad:
     """Find the modes common to free decays that nothing is known of but their recordings.
 
     Parameters
@@ -74,8 +74,8 @@ def modes_of_recordings(
 
     Returns
     -------
-    dict
-        Under `RECORDINGS`. Modes are numbered. Channels keep their unit, but for accelerations, which come in m/s².
+    ModesByLoad
+        A dict, under `RECORDINGS`. Modes are numbered. Channels keep their unit, but for accelerations, which come in m/s².
 
     Raises
     ------
@@ -117,7 +117,7 @@ def modes_of_recordings(
     problems.raise_if_any()
     names = tuple(file.stem for file, _ in tables)
     numbered = examined(records, rates[0], method, order, tuple(channels), names, amplitude=amplitude, diagram=diagram)
-    return {RECORDINGS: numbered}
+    return ModesByLoad({RECORDINGS: numbered})
 
 
 def _rate(file: Path, table: Table, problems: Problems) -> float:

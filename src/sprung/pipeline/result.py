@@ -2,48 +2,29 @@
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from sprung.errors import Fault
 from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
+from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
+from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
 from sprung.pipeline.extras import Attempt
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
+from sprung.pipeline.series import Recorded, Series, arrays_of, packed
+from sprung.pipeline.setup import Setup
 from sprung.recording import write_whole
+from sprung.tables import escaped
 from sprung.validation import DropValidation, Verdict
 
 SCHEMA: Literal[1] = 1
 """Version of results.json; a change that an old reader would misread raises it."""
-
-
-@dataclass(frozen=True, eq=False)
-class Series:
-    """What the figures draw of one drop.
-
-    Attributes
-    ----------
-    channels
-        Channel names.
-    time
-        On the file's own clock, s, shape (time,).
-    measured, fitted
-        m/s², positive up, shape (channel, time); NaN in channels that were left out.
-    """
-
-    channels: tuple[str, ...]
-    time: NDArray[np.float64]
-    measured: NDArray[np.float64]
-    fitted: NDArray[np.float64]
 
 
 class _Frozen(BaseModel):
@@ -142,8 +123,14 @@ class Result(_Frozen):
         older sprung wrote the result.
     next_step
         What to measure next, in a sentence; None where the verdict is reject, or an older sprung wrote the result.
+    setup
+        What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
+    amplitude
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
     series
-        By drop name: what the figures draw.
+        By drop name: what was fitted.
+    recordings
+        By drop name, of all drops: the whole recording.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, populate_by_name=True)
@@ -163,12 +150,26 @@ class Result(_Frozen):
     faults: tuple[Fault, ...]
     validation: dict[str, DropValidation] = Field(default_factory=dict)
     next_step: str | None = None
+    setup: Setup | None = None
+    amplitude: Amplitudes = ()
     series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
+    recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
+
+    def _repr_html_(self) -> str:
+        """Show the verdict, the parameters and the modes in a notebook."""
+        parts = [
+            self.verdict._repr_html_(),
+            parameters_table(self.vehicle.name, {**self.parameters, **self.derived}).html(),
+        ]
+        parts += [f"<p>Not determined: {escaped(one.text)}.</p>\n" for one in self.unidentifiable]
+        if not self.scale.known and self.scale.per_total_mass:
+            parts.append(ratios_table(self.scale.per_total_mass).html())
+        return "".join([*parts, *(modes_table(load, modes).html() for load, modes in self.modes.items())])
 
     def to_json(self) -> str:
         """Write the contract's results.json as text, with the checksums by which `sprung.load` knows that nobody changed it."""
         document = self.model_dump(mode="json", by_alias=True)
-        seals = {"document": document_seal(document), "series": arrays_seal(self._arrays())}
+        seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
         return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
     def save(self, folder: str | Path) -> Path:
@@ -189,21 +190,16 @@ class Result(_Frozen):
         InputError
             If the folder cannot be written.
         """
-        write_whole(Path(folder), {"series.npz": packed(self._arrays()), "results.json": self.to_json().encode()})
+        write_whole(Path(folder), self.files())
         return Path(folder)
 
-    def _arrays(self) -> dict[str, NDArray[Any]]:
-        arrays: dict[str, NDArray[Any]] = {}
-        for name, series in self.series.items():
-            arrays[f"{name}/channels"] = np.array(series.channels)
-            arrays[f"{name}/time"] = series.time
-            arrays[f"{name}/measured"] = series.measured
-            arrays[f"{name}/fitted"] = series.fitted
-        return arrays
+    def files(self) -> dict[str, bytes]:
+        """Give what `save` writes, by file name: series.npz and, last, results.json.
 
-
-def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Give the bytes of an .npz file of arrays by name."""
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
-    return buffer.getvalue()
+        Returns
+        -------
+        dict
+            Content by name.
+        """
+        series = packed(arrays_of(self.series, self.recordings))
+        return {"series.npz": series, "results.json": self.to_json().encode()}

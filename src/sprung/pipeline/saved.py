@@ -14,13 +14,13 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from sprung.errors import Problem, Problems, ResultFileError
 from sprung.estimate import Estimate
-from sprung.pipeline.result import SCHEMA, Result, Series
+from sprung.pipeline.result import SCHEMA, Result
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
+from sprung.pipeline.series import Everything, everything_in
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."
 _ROUNDING = 1e-6
@@ -70,13 +70,15 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
     if not isinstance(seals, dict) or seals.get("document", document_seal(document)) != document_seal(document):
         found = "numbers or words that were changed after it was written (its checksum is another)"
         problems.add(str(path), found, "a result as sprung wrote it", _AGAIN)
-    arrays: dict[str, NDArray[Any]] = {}
+    everything = Everything({}, {})
     if series:
         with problems.collecting():
-            arrays = _arrays(path.with_name("series.npz"), seals.get("series") if isinstance(seals, dict) else None)
+            everything = _everything(
+                path.with_name("series.npz"), seals.get("series") if isinstance(seals, dict) else None
+            )
     if problems or result is None:
         raise ResultFileError(problems)
-    return result.model_copy(update={"series": _series(arrays)})
+    return result.model_copy(update=everything._asdict())
 
 
 def _document(path: Path) -> dict[str, Any]:
@@ -148,7 +150,7 @@ def _is_whole(found: Estimate) -> bool:
             return found.value is not None and found.std is not None and found.std > 0
 
 
-def _arrays(path: Path, seal: object) -> dict[str, NDArray[Any]]:
+def _everything(path: Path, seal: object) -> Everything:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {key: archive[key] for key in archive.files}
@@ -159,27 +161,11 @@ def _arrays(path: Path, seal: object) -> dict[str, NDArray[Any]]:
     if seal is not None and seal != arrays_seal(arrays):
         found = "series that do not belong to this result (their checksum is another)"
         _refuse(path, found, "the series that were written with results.json", _AGAIN)
-    whole = {f"{name}/{of}" for name in _names(arrays) for of in ("channels", "time", "measured", "fitted")}
-    if set(arrays) != whole:
-        found = f"{', '.join(sorted(set(arrays) ^ whole)[:3])} left over or missing"
-        _refuse(path, found, "channels, time, measured and fitted of every drop", _AGAIN)
-    return arrays
-
-
-def _names(arrays: Mapping[str, NDArray[Any]]) -> list[str]:
-    return sorted({key.rpartition("/")[0] for key in arrays})
-
-
-def _series(arrays: Mapping[str, NDArray[Any]]) -> dict[str, Series]:
-    return {
-        name: Series(
-            tuple(arrays[f"{name}/channels"].tolist()),
-            arrays[f"{name}/time"],
-            arrays[f"{name}/measured"],
-            arrays[f"{name}/fitted"],
-        )
-        for name in _names(arrays)
-    }
+    try:
+        return everything_in(arrays)
+    except ValueError as error:
+        expected = "channels, time, measured and fitted of every drop, and what else sprung writes"
+        _refuse(path, str(error), expected, _AGAIN, error)
 
 
 def _refuse(path: Path, found: str, expected: str, do: str, because: Exception | None = None) -> NoReturn:

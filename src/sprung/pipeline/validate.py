@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.pipeline.amplitude import amplitude_document, amplitudes_of, plain_trace
 from sprung.pipeline.identify import fit_campaign, result_of
-from sprung.pipeline.result import Result, packed
+from sprung.pipeline.result import Result
+from sprung.pipeline.series import packed
 from sprung.recording import Campaign, write_whole
-from sprung.validation import BodyMotion, ModeAmplitude, Trace, body_motions, mode_amplitudes
+from sprung.validation import BodyMotion, ModeAmplitude, body_motions
 from sprung.vehicle import EMPTY, Tracks
 
 
@@ -42,19 +44,8 @@ class Validation:
     def document(self) -> dict[str, Any]:
         """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
         result = self.result.model_dump(mode="json", by_alias=True)
-        modes = {
-            one.mode: {
-                "load": self.load,
-                "frequency": one.frequency,
-                "damping_ratio": one.damping_ratio,
-                "records": {trace.name: _plain(trace) for trace in one.records},
-                "simulated": {trace.name: _plain(trace) for trace in one.simulated},
-                "model": _plain(one.model),
-            }
-            for one in self.amplitudes
-        }
         kept = ("sprung", "vehicle", "verdict", "validation", "faults")
-        return {**{name: result[name] for name in kept}, "amplitude": modes}
+        return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 
     def files(self) -> dict[str, bytes]:
         """Give validation.json, and validation.npz with every series that a drawing shows."""
@@ -67,7 +58,7 @@ class Validation:
             named = {f"records/{trace.name}": trace for trace in one.records}
             named |= {f"simulated/{trace.name}": trace for trace in one.simulated} | {"model": one.model}
             for where, trace in named.items():
-                series = _plain(trace).items()
+                series = plain_trace(trace).items()
                 arrays |= {f"amplitude/{one.mode}/{where}/{name}": np.array(values) for name, values in series}
         text = json.dumps(self.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         return {"validation.npz": packed(arrays), "validation.json": text.encode()}
@@ -132,18 +123,9 @@ def validate(
     True
     """
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
-    result = result_of(fitted, (), progress)
+    asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
+    result = result_of(fitted, progress=progress, options=asked)
     progress("following the modes of the body through the decays")
-    fit, choice, decays = fitted.fit, fitted.choice, fitted.prepared.decays
-    motions = body_motions(fit, decays, fitted.campaign.sensors)
-    loads = [decay.load for decay in decays]
-    load = EMPTY.name if EMPTY.name in loads else loads[0]
-    # Modes belong to a vehicle on the ground.
-    grounded = replace(choice, airborne=False)
-    model = grounded.stepped[load] if choice.nonlinear else choice.models[load]
-    own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
-    return Validation(result, motions, load, mode_amplitudes(fit, model, fitted.campaign.sensors, own))
-
-
-def _plain(trace: Trace) -> dict[str, list[float]]:
-    return {name: values.tolist() for name, values in asdict(trace).items() if name != "name"}
+    motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)
+    return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

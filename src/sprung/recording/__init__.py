@@ -10,6 +10,7 @@ from sprung.recording.merging import merged
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
 from sprung.recording.recording import LoggerClock, Recording
+from sprung.recording.sources import SourceFile
 from sprung.recording.whole import write_whole
 from sprung.recording.writing import write
 
@@ -25,6 +26,7 @@ __all__ = [
     "LoggerClock",
     "ModelChoice",
     "Recording",
+    "SourceFile",
     "Table",
     "VehicleFile",
     "drop_names",

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from sprung.errors import Fault
 from sprung.estimate import Known
 from sprung.recording.recording import Recording
+from sprung.recording.sources import SourceFile
 from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel
 
 KINDS: Mapping[frozenset[Wheel], str] = {
@@ -204,6 +205,8 @@ class Campaign:
         What was wrong with the files.
     path
         Where the campaign file is; None for a campaign made in memory.
+    files
+        What was read: the campaign file and the recordings, with their checksums.
     """
 
     name: str
@@ -219,6 +222,7 @@ class Campaign:
     model: ModelChoice = field(default_factory=ModelChoice)
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
+    files: tuple[SourceFile, ...] = ()
 
     @property
     def heights(self) -> Heights:

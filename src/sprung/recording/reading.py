@@ -15,6 +15,7 @@ from sprung.recording.formats import Signals, Table, from_sep005, read_table, sp
 from sprung.recording.loggers import Wanted, named_apart, recording_of_drop
 from sprung.recording.schema import CampaignFile, VehicleFileSchema
 from sprung.recording.signals import column_of
+from sprung.recording.sources import SourceFile
 from sprung.recording.understanding import Draft, understand
 from sprung.vehicle import EMPTY, Load, Sensor, Vehicle
 
@@ -113,6 +114,7 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
         known={name: measured.known for name, measured in draft.file.known.items()},
         model=draft.file.model,
         path=path,
+        files=_sources(files, path, signals or {}),
     )
 
 
@@ -215,6 +217,12 @@ def _tables(
         for index, names in files.items()
         if all(file in read_already for file in names)
     }
+
+
+def _sources(files: Mapping[int, Sequence[str]], path: Path, signals: Signals) -> tuple[SourceFile, ...]:
+    """Give the checksum of everything that was read, each file once."""
+    recordings = dict.fromkeys(file for names in files.values() for file in names if file not in signals)
+    return tuple(SourceFile.of(path.parent, name) for name in (path.name, *recordings))
 
 
 def _check_signals(

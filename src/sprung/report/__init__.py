@@ -1,28 +1,72 @@
 """Everything people look at; reads every result, and nothing below reads it."""
 
+from sprung.report.car import BODY_EDGES, STRUTS, wire_car
 from sprung.report.check import check_view
 from sprung.report.comparison import comparison_view
+from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
+from sprung.report.folder import write_report, write_results
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
+from sprung.report.page import page_of
+from sprung.report.palette import LIGHT
 from sprung.report.paper import paper_view
+from sprung.report.paper_copy import pdf_of
+from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.pictures import (
+    amplitude_pictures,
+    channels_picture,
+    motion_picture,
+    near_picture,
+    parameters_picture,
+    spectra_picture,
+    stability_picture,
+    whole_picture,
+)
 from sprung.report.plan import plan_view
+from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [
+    "BODY_EDGES",
+    "LIGHT",
+    "STRUTS",
+    "Band",
+    "Curve",
+    "LoadDecays",
+    "Mark",
+    "Panel",
+    "Picture",
+    "Points",
+    "Rule",
+    "amplitude_pictures",
+    "channels_picture",
     "check_view",
     "comparison_view",
+    "decays_by_load",
     "draft_view",
     "draw_check",
     "draw_validation",
     "modes_view",
+    "motion_picture",
+    "near_picture",
+    "page_of",
     "paper_view",
+    "parameters_picture",
+    "pdf_of",
     "plan_view",
     "result_view",
+    "spectra_picture",
+    "stability_picture",
+    "svg_of",
     "text_of",
     "validation_view",
+    "whole_picture",
+    "wire_car",
     "write_check",
+    "write_report",
+    "write_results",
     "write_validation",
 ]

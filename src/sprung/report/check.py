@@ -10,8 +10,9 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.pipeline import ChannelReport, Check, DropReport
-from sprung.report.layout import figures, hanging, table
+from sprung.report.layout import figures, hanging, laid_out, table
 from sprung.report.terminal import fault_list
+from sprung.tables import Table
 
 _FEW = 3
 """Drops that are named; of more the number is said."""
@@ -30,7 +31,7 @@ def check_view(check: Check) -> RenderableType:
     RenderableType
         For `text_of`.
     """
-    parts = [_drops(check.drops)]
+    parts = [laid_out(drops_table(check.drops))]
     if reasons := list(_reasons(check.drops)):
         parts += [Text(), _listed("Limits of the decays", reasons)]
     if others := [drop for drop in check.drops if drop.contradicted]:
@@ -42,7 +43,14 @@ def check_view(check: Check) -> RenderableType:
     return Group(*parts)
 
 
-def _drops(drops: Sequence[DropReport]) -> RenderableType:
+def drops_table(drops: Sequence[DropReport]) -> Table:
+    """Show what happened when in each drop.
+
+    Parameters
+    ----------
+    drops
+        What is said of them.
+    """
     headers = ("recording", "load", "dropped", "release", "landing", "lift-off", "from", "to", "length", "faults")
     rows = []
     for drop in drops:
@@ -52,7 +60,8 @@ def _drops(drops: Sequence[DropReport]) -> RenderableType:
             moments[-1] = "left out"
         rows.append([drop.file, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
     title = "Drops, s on each recording's own clock; the decay is used from ... to"
-    return table(title, headers, rows, headers[3:9], ("length", "faults", "load", "lift-off", "landing", "release"))
+    spare = ("length", "faults", "load", "lift-off", "landing", "release")
+    return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)
 
 
 def _moment(moment: float | None) -> str:

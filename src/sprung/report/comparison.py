@@ -11,8 +11,9 @@ from rich.text import Text
 
 from sprung.estimate import round_by_uncertainty
 from sprung.report.layout import figures, hanging, table
-from sprung.report.terminal import COLOURS, unit_text
+from sprung.report.terminal import COLOURS
 from sprung.study import Comparison, Difference, Joint, Quantity, Scatter, Told
+from sprung.tables import unit_text
 
 _WORDS = {
     "none": "none to be seen",

@@ -1,18 +1,15 @@
-"""Drawings of the recordings, one per drop, where matplotlib is installed."""
+"""Drawings of the recordings, one per drop."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from importlib import import_module
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any
 
-from sprung.errors import InputError, Problem
+from sprung.pipeline import Check, DropReport
 from sprung.recording import write_whole
-
-if TYPE_CHECKING:
-    from sprung.pipeline import Check
+from sprung.report.pictures import near_picture, whole_picture
+from sprung.report.sheet import sheet
 
 
 def draw_check(check: Check) -> dict[str, str]:
@@ -27,39 +24,26 @@ def draw_check(check: Check) -> dict[str, str]:
     -------
     dict
         SVG text by file name, in the campaign's order; the same for the same recordings.
-
-    Raises
-    ------
-    InputError
-        If matplotlib, which draws, is not installed.
     """
-    figure = drawer("figure")
-    drawn = zip(_names(check), check.drops, check.seen, check.recordings, strict=True)
-    return {name: figure.svg_of(drop, seen, recording) for name, drop, seen, recording in drawn}
+    drawn = {}
+    for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=True):
+        pictures = [picture for picture in (whole_picture(drop, recorded), near_picture(drop, recorded)) if picture]
+        drawn[name] = sheet(drop.file, list(_said(drop)), pictures)
+    return drawn
 
 
-def drawer(module: str) -> Any:
-    """Load a module of this room that draws.
-
-    Parameters
-    ----------
-    module
-        Its name.
-
-    Raises
-    ------
-    InputError
-        If matplotlib, which draws, is not installed.
-    """
-    try:
-        # The only library of this room that not everybody has.
-        return import_module(f"sprung.report.{module}")
-    except ImportError as error:
-        if (error.name or "").partition(".")[0] != "matplotlib":
-            raise
-        found = f"no library matplotlib, which draws them ({error})"
-        do = 'Install it with: pip install "sprung[plot]"'
-        raise InputError([Problem("drawings", found, "an installation that can draw", do)]) from error
+def _said(drop: DropReport) -> Iterator[tuple[str, bool]]:
+    """Say what a drop is, which part of it is used and why, each line with whether it tells of something wrong."""
+    wheels = "" if drop.kind == " ".join(drop.wheels) else f" ({', '.join(drop.wheels)})"
+    rate = "" if drop.rate is None else f", {drop.rate:.6g} samples per second"
+    yield f"{drop.kind}{wheels}, load {drop.load}{rate}", False
+    if drop.start is None or drop.end is None:
+        yield f"left out: {', '.join(drop.faults)}", True
+    else:
+        yield f"decay from {drop.start:.3f} s: {drop.why_start}", False
+        yield f"to {drop.end:.3f} s: {drop.why_end}", False
+    if drop.contradicted:
+        yield f"the release shows {', '.join(drop.wheels_seen or ()) or 'no wheel'} to have fallen", True
 
 
 def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
@@ -80,7 +64,7 @@ def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
     Raises
     ------
     InputError
-        If matplotlib is not installed, or the folder cannot be written.
+        If the folder cannot be written.
     """
     drawings = draw_check(check)
     write_whole(folder, {name: text.encode() for name, text in drawings.items()})

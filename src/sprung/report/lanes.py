@@ -8,9 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.pipeline import DropReport
-from sprung.prepare import Seen
-from sprung.recording import Recording
+from sprung.pipeline import DropReport, Recorded
 from sprung.report.layout import figures
 
 Real = NDArray[np.float64]
@@ -66,19 +64,17 @@ class Lane:
             yield float(value), f"{value:g}".replace("-", "\N{MINUS SIGN}")
 
 
-def lanes_of(drop: DropReport, seen: Seen, as_read: Recording) -> list[Lane]:
+def lanes_of(drop: DropReport, recorded: Recorded) -> list[Lane]:
     """Choose what to draw of each channel.
 
     Parameters
     ----------
     drop
         What is said of it.
-    seen
-        What its recording shows.
-    as_read
-        Its recording as it was read, for channels of which nothing else is left.
+    recorded
+        Its whole recording.
     """
-    lanes = [_lane(drop, channel, seen, as_read) for channel in range(len(drop.channels))]
+    lanes = [_lane(drop, channel, recorded) for channel in range(len(drop.channels))]
     # The channels of the body have one scale, and so have those of the wheels; what is left out has its own.
     groups = [
         report.on == "body" if lane.used or drop.start is None else None
@@ -93,12 +89,10 @@ def lanes_of(drop: DropReport, seen: Seen, as_read: Recording) -> list[Lane]:
     ]
 
 
-def _lane(drop: DropReport, channel: int, seen: Seen, as_read: Recording) -> Lane:
+def _lane(drop: DropReport, channel: int, recorded: Recorded) -> Lane:
     """Draw one channel, at a scale of its own."""
-    report, values = drop.channels[channel], seen.recording.values[channel]
-    if np.isnan(values).any() and as_read.values.shape == seen.recording.values.shape:
-        values = as_read.values[channel]
-    marks = [mark for mark in seen.marks if mark.channel == channel]
+    report, values = drop.channels[channel], recorded.values[channel].astype(float)
+    marks = [mark for mark in recorded.marks if mark.channel == channel]
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
     counts = {mark.code: f"{mark.code}: {len(mark.samples)}" for mark in marks}

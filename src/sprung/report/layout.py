@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
-from rich.table import Table
+from rich.table import Table as Grid
 from rich.text import Text
+
+from sprung.tables import Table
 
 _GAP = 2
 """Columns between the columns of a table."""
@@ -16,37 +18,25 @@ _GAP = 2
 
 @dataclass(frozen=True)
 class Fitting:
-    """A table that leaves columns out where the terminal is narrow; made by `table`.
+    """A table that leaves columns out where the terminal is narrow; made by `laid_out`."""
 
-    Attributes
-    ----------
-    headers, rows
-        Of its columns; cells as text.
-    numbers
-        Headers of the columns set flush right.
-    spare
-        Headers of the columns it can do without, the first to go first.
-    """
-
-    headers: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numbers: frozenset[str]
-    spare: tuple[str, ...]
+    table: Table
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Render it for a terminal."""
-        kept = dict(enumerate(self.headers))
-        widths = [max(map(cell_len, column)) + _GAP for column in zip(self.headers, *self.rows, strict=True)]
-        for header in self.spare:
+        table = self.table
+        kept = dict(enumerate(table.headers))
+        widths = [max(map(cell_len, column)) + _GAP for column in zip(table.headers, *table.rows, strict=True)]
+        for header in table.spare:
             if sum(widths[i] for i in kept) - _GAP <= options.max_width:
                 break
-            del kept[self.headers.index(header)]
+            del kept[table.headers.index(header)]
         # Of its natural width, whatever the terminal's: a line that wraps can still be read, a cut number cannot.
         width = sum(widths[i] for i in kept) - _GAP
-        shown = Table(header_style="dim", box=None, pad_edge=False, padding=(0, _GAP, 0, 0), width=width)
+        shown = Grid(header_style="dim", box=None, pad_edge=False, padding=(0, _GAP, 0, 0), width=width)
         for header in kept.values():
-            shown.add_column(header, justify="right" if header in self.numbers else "left", no_wrap=True)
-        for row in self.rows:
+            shown.add_column(header, justify="right" if header in table.numbers else "left", no_wrap=True)
+        for row in table.rows:
             shown.add_row(*(Text(row[i]) for i in kept))
         yield shown
 
@@ -73,8 +63,18 @@ def table(
     spare
         Headers of the columns that a narrow terminal can do without, the first to go first.
     """
-    body = Fitting(tuple(headers), tuple(map(tuple, rows)), frozenset(numbers), tuple(spare))
-    return Group(Text(title, style="bold"), body)
+    return laid_out(Table(title, tuple(headers), tuple(map(tuple, rows)), frozenset(numbers), tuple(spare)))
+
+
+def laid_out(table: Table) -> RenderableType:
+    """Lay out a table with its title above it.
+
+    Parameters
+    ----------
+    table
+        The table.
+    """
+    return Group(Text(table.title, style="bold"), Fitting(table))
 
 
 def hanging(first: str, text: str | Text) -> RenderableType:
@@ -87,7 +87,7 @@ def hanging(first: str, text: str | Text) -> RenderableType:
     text
         The text.
     """
-    grid = Table.grid(padding=0)
+    grid = Grid.grid(padding=0)
     grid.add_column(no_wrap=True)
     grid.add_column(overflow="fold")
     grid.add_row(first, text)

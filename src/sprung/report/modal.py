@@ -11,9 +11,10 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.modal import Diagram
-from sprung.pipeline import FoundMode, LoadModes
-from sprung.report.layout import figures, hanging, table
-from sprung.report.terminal import fault_list, with_std
+from sprung.pipeline import LoadModes
+from sprung.report.layout import figures, hanging, laid_out, table
+from sprung.report.terminal import fault_list
+from sprung.tables import with_std
 
 _MARGIN = 5
 """Columns for the order beside the chart."""
@@ -64,7 +65,7 @@ def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> 
     """
     parts: list[RenderableType] = []
     for load, modes in found.items():
-        parts += [_modes(load, modes), Text(), _peaks(load, modes), Text()]
+        parts += [laid_out(modes.table(load)), Text(), _peaks(load, modes), Text()]
         if any(mode.amplitudes for mode in modes):
             parts += [_amplitudes(load, modes), Text()]
         if modes.diagram is not None:
@@ -74,29 +75,6 @@ def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> 
     if faults:
         parts += [fault_list(faults), Text()]
     return Group(*parts[:-1])
-
-
-def _modes(load: str, modes: LoadModes) -> RenderableType:
-    headers = ("mode", "f_n Hz", "± Hz", "f_d Hz", "damping", "±", "MPC")
-    title = f"Modes, {load} ({modes.method}, {len(modes.drops)} drop{'s' * (len(modes.drops) > 1)})"
-    return table(title, headers, [_row(mode) for mode in modes], headers[1:], ("MPC", "f_d Hz"))
-
-
-def _row(mode: FoundMode) -> tuple[str, ...]:
-    if mode.status == "unresolved":
-        return (mode.name, f"~{mode.frequency:.2g}", "-", "-", "-", "-", "-")
-    return (
-        mode.name,
-        *_told(mode.frequency, mode.frequency_std),
-        f"{mode.damped_frequency:.4f}",
-        *_told(mode.damping_ratio, mode.damping_ratio_std),
-        f"{mode.collinearity:.2f}",
-    )
-
-
-def _told(value: float, std: float | None) -> tuple[str, str]:
-    """Round by the uncertainty; a method that tells none gets four digits."""
-    return (f"{value:.4f}", "-") if std is None else with_std(value, std)
 
 
 def _peaks(load: str, modes: LoadModes) -> RenderableType:

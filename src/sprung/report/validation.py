@@ -10,10 +10,26 @@ from rich.text import Text
 
 from sprung.pipeline import Validation
 from sprung.recording import write_whole
-from sprung.report.drawing import drawer, file_names
-from sprung.report.layout import figures, hanging, table
+from sprung.report.drawing import file_names
+from sprung.report.layout import figures, hanging, laid_out
+from sprung.report.pictures import amplitude_pictures, motion_picture
+from sprung.report.sheet import sheet
 from sprung.report.terminal import fault_list, verdict_view
+from sprung.tables import Table
 from sprung.validation import DropValidation, ModeAmplitude, Trace
+
+COLUMNS = (
+    "/noise: what is left, over the noise. Predicted: by the vehicle fitted to all other drops. Least white: in which "
+    "channel what is left repeats itself, how much, and after what time."
+)
+"""What the columns of the table of drops say."""
+
+AMPLITUDES = (
+    "A damped sinusoid fitted to one and a half periods of a record at a time (symbols, with two standard uncertainties), the "
+    "same of the simulated drops (thin lines), and a free decay of the fitted vehicle in this mode alone (thick line); dashed "
+    "its linear part."
+)
+"""How modes against amplitude are to be read."""
 
 _COLOURED = 6.0
 """Standard deviations from which a channel's residuals are said not to be white."""
@@ -33,49 +49,64 @@ def validation_view(validation: Validation) -> RenderableType:
         For `text_of`.
     """
     result = validation.result
-    parts: list[RenderableType] = [drop_table(result.vehicle.name, result.validation), Text()]
+    parts: list[RenderableType] = [
+        laid_out(validation_table(result.vehicle.name, result.validation)),
+        hanging("", COLUMNS),
+        Text(),
+    ]
     if validation.amplitudes:
-        parts += [amplitude_table(validation.load, validation.amplitudes), Text()]
+        parts += [laid_out(amplitude_table(validation.load, validation.amplitudes)), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
     return Group(*parts, verdict_view(result))
 
 
-def drop_table(vehicle: str, drops: Mapping[str, DropValidation]) -> RenderableType:
-    """Show how well each drop is explained, and predicted by the others."""
+def validation_table(vehicle: str, drops: Mapping[str, DropValidation]) -> Table:
+    """Show how well each drop is explained, and predicted by the others.
+
+    Parameters
+    ----------
+    vehicle
+        Whose they are.
+    drops
+        By name.
+    """
     headers = ("drop", "vertical %", "pitch %", "roll %", "all %", "/noise", "predicted %", "/noise ", "least white")
-    rows = [
-        [
+    rows = tuple(
+        (
             name,
             *(_percent(error) for error in (drop.vertical, drop.pitch, drop.roll, drop.fitted)),
             f"{drop.residual:.2f}",
             _percent(drop.predicted),
             "-" if drop.predicted_residual is None else f"{drop.predicted_residual:.2f}",
             _least_white(drop),
-        ]
+        )
         for name, drop in drops.items()
-    ]
-    title = f"{vehicle}: measured minus simulated as a part of the measured, of the body and of all channels"
-    said = (
-        "/noise: what is left, over the noise. Predicted: by the vehicle fitted to all other drops. Least white: in which "
-        "channel what is left repeats itself, how much, and after what time."
     )
-    shown = table(title, headers, rows, headers[1:-1], ("least white", "all %", "/noise"))
-    return Group(shown, hanging("", said))
+    title = f"{vehicle}: measured minus simulated as a part of the measured, of the body and of all channels"
+    return Table(title, headers, rows, frozenset(headers[1:-1]), ("least white", "all %", "/noise"))
 
 
-def amplitude_table(load: str, amplitudes: Sequence[ModeAmplitude]) -> RenderableType:
-    """Show frequency and damping of each mode at its largest and its smallest amplitude."""
+def amplitude_table(load: str, amplitudes: Sequence[ModeAmplitude]) -> Table:
+    """Show frequency and damping of each mode at its largest and its smallest amplitude.
+
+    Parameters
+    ----------
+    load
+        On the vehicle.
+    amplitudes
+        By mode.
+    """
     rows = []
     for one in amplitudes:
         for trace in one.records:
             if trace.amplitude.size:
-                rows.append([one.mode, trace.name, *_ends(trace)])
+                rows.append((one.mode, trace.name, *_ends(trace)))
         if one.model.amplitude.size:
-            rows.append([one.mode, "fitted vehicle", *_ends(one.model)])
+            rows.append((one.mode, "fitted vehicle", *_ends(one.model)))
     headers = ("mode", "from", "mm", "f Hz", "±", "damping", "mm ", "f Hz ", "± ", "damping ")
     title = f"Modes of the body against amplitude, {load}: at the largest, then at the smallest"
-    return table(title, headers, rows, headers[2:], ("± ", "±", "damping ", "damping"))
+    return Table(title, headers, tuple(rows), frozenset(headers[2:]), ("± ", "±", "damping ", "damping"))
 
 
 def _ends(trace: Trace) -> list[str]:
@@ -113,23 +144,26 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     -------
     dict
         SVG text by file name; the same for the same recordings.
-
-    Raises
-    ------
-    InputError
-        If matplotlib, which draws, is not installed.
     """
-    motion, amplitude = drawer("motion"), drawer("amplitude")
     result = validation.result
     drawn = {}
-    if validation.amplitudes:
+    if pictures := amplitude_pictures(validation.amplitudes):
         title = f"{result.vehicle.name}, {validation.load}: modes of the body against amplitude"
-        drawn["amplitude.svg"] = amplitude.svg_of_amplitudes(validation.amplitudes, title)
-    names = file_names(["amplitude", *(one.name for one in validation.motions)])
+        drawn["amplitude.svg"] = sheet(title, [(AMPLITUDES, False)], pictures)
+    names = file_names(["amplitude", *result.series])
     next(names)  # taken by the drawing above
-    for name, one in zip(names, validation.motions, strict=True):
-        drawn[name] = motion.svg_of_motion(one, result.validation[one.name])
+    for name, (drop, series) in zip(names, result.series.items(), strict=True):
+        picture = motion_picture(drop, series, result.validation[drop])
+        if picture is not None:
+            drawn[name] = sheet(drop, [(_said(result.validation[drop]), False)], [picture])
     return drawn
+
+
+def _said(drop: DropValidation) -> str:
+    text = f"all channels: error {100 * drop.fitted:.1f} % of the signal, {drop.residual:.2f} times the noise"
+    if drop.predicted is not None and drop.predicted_residual is not None:
+        text += f"; predicted by the other drops: {100 * drop.predicted:.1f} %, {drop.predicted_residual:.2f} times"
+    return text
 
 
 def write_validation(validation: Validation, folder: Path, drawings: Mapping[str, str]) -> tuple[Path, ...]:
@@ -142,7 +176,7 @@ def write_validation(validation: Validation, folder: Path, drawings: Mapping[str
     folder
         Made if it does not exist. Files of the same names in it are replaced.
     drawings
-        From `draw_validation`; none without matplotlib.
+        From `draw_validation`.
 
     Returns
     -------

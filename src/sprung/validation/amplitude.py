@@ -16,7 +16,7 @@ from sprung.identification import Fit
 from sprung.modal import Mode, modes_of
 from sprung.validation.bodies import BodyMotion, body_rows
 from sprung.validation.sliding import Trace, follow_mode
-from sprung.vehicle import LinearModel, NonlinearModel, Sensor, Stepper, free_decay
+from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, free_decay
 
 Real = NDArray[np.float64]
 
@@ -52,6 +52,8 @@ class ModeAmplitude:
         From what the fitted vehicle makes of these drops: dry friction lets a mode depend on what else moves.
     model
         From a free decay of the fitted vehicle in this mode alone, begun where the records begin.
+    load
+        On the vehicle in those drops.
     """
 
     mode: str
@@ -60,6 +62,7 @@ class ModeAmplitude:
     records: tuple[Trace, ...]
     simulated: tuple[Trace, ...]
     model: Trace
+    load: str = EMPTY.name
 
 
 def mode_amplitudes(

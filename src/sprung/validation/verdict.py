@@ -12,6 +12,7 @@ import numpy as np
 
 from sprung.estimate import Estimate
 from sprung.identification import Fit
+from sprung.tables import escaped
 from sprung.validation.drops import DropValidation
 from sprung.validation.residuals import Misfit
 
@@ -59,6 +60,11 @@ class Verdict:
 
     state: State
     reasons: tuple[str, ...]
+
+    def _repr_html_(self) -> str:
+        """Show it in a notebook."""
+        reasons = "".join(f"<li>{escaped(reason)}</li>\n" for reason in self.reasons)
+        return f"<p>Verdict: <strong>{self.state}</strong></p>\n<ul>\n{reasons}</ul>\n"
 
 
 def judge(

@@ -1,122 +1,18 @@
-"""The commands. Each takes what it is given to one function of the package, and prints what comes back."""
+"""The commands for everything around: recordings, plans, simulations, the paper."""
 
 from __future__ import annotations
 
 import shlex
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Optional
+from typing import Annotated, Optional
 
 import typer
-from typer.core import TyperGroup
 
 import sprung
-from sprung.cli.output import INTERRUPTED, REJECTED, advancing, complain, say, say_json, working
+from sprung.cli.app import CampaignFile, Json, app
+from sprung.cli.output import REJECTED, advancing, complain, say, say_json, working
 from sprung.errors import Fault, InputError, Problem
-
-
-class Commands(TyperGroup):
-    """The commands; Ctrl-C ends any of them with the shell's own status and without a traceback."""
-
-    def invoke(self, ctx: Any) -> Any:
-        """Run the command that was asked for."""
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt:
-            complain("sprung was interrupted.")
-            raise SystemExit(INTERRUPTED) from None
-
-
-app = typer.Typer(
-    cls=Commands,
-    help="Find the physical parameters of a two-axle road vehicle from drop tests.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-CampaignFile = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.")]
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
-
-
-@app.command(epilog="Example: [bold]sprung identify campaign.toml -o results[/bold]")
-def identify(
-    campaign: CampaignFile,
-    output: Annotated[
-        Optional[Path],  # noqa: UP045 (typer reads it)
-        typer.Option("-o", "--output", metavar="DIR", help="Where to write results.json and series.npz."),
-    ] = None,
-    profile: Annotated[
-        Optional[list[str]],  # noqa: UP045 (typer reads it)
-        typer.Option(
-            metavar="NAME",
-            help="Take the 95 % interval of a parameter from the whole likelihood, for one that is weakly determined; "
-            "can be given more than once; all for every one.",
-        ),
-    ] = None,
-    fall: Annotated[
-        Optional[bool],  # noqa: UP045 (typer reads it)
-        typer.Option(
-            "--fall/--no-fall",
-            help="Use the drops from their release on, not only from when the last tyre is down: sharper, and slower.",
-            show_default="where the decays leave a parameter uncertain by more than 2 %",
-        ),
-    ] = None,
-    as_json: Json = False,
-) -> None:
-    """Identify every parameter and write the results folder (default: results/ beside the campaign)."""
-    with working("reading the recordings") as progress:
-        read = sprung.read(campaign)
-        folder = output or (read.path or campaign).parent / "results"
-        result = sprung.identify(read, profile=profile or (), fall=fall, progress=progress)
-        result.save(folder)
-    conclude(result, folder, as_json)
-
-
-def conclude(result: Any, folder: Path, as_json: bool) -> None:
-    """Print a result and leave with the status that belongs to its verdict."""
-    if as_json:
-        say_json(result.to_json())
-    else:
-        say(sprung.report.text_of(sprung.report.result_view(result)))
-        say(f"\nWritten: {folder / 'results.json'}, {folder / 'series.npz'}\n")
-    if result.verdict.state == "reject":
-        raise typer.Exit(REJECTED)
-
-
-@app.command(epilog="Example: [bold]sprung validate campaign.toml -o validation[/bold]")
-def validate(
-    campaign: CampaignFile,
-    output: Annotated[
-        Optional[Path],  # noqa: UP045 (typer reads it)
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="Where to write numbers, series and drawings (default: nowhere)."
-        ),
-    ] = None,
-    as_json: Json = False,
-) -> None:
-    """Hold the identified vehicle against each drop: fitted, predicted by the other drops, and against amplitude."""
-    with working("reading the recordings") as progress:
-        found = sprung.validate(sprung.read(campaign), progress=progress)
-    written: tuple[Path, ...] = ()
-    if output is not None:
-        drawings: dict[str, str] = {}
-        try:
-            with working("drawing"):
-                drawings = sprung.report.draw_validation(found)
-        except InputError as error:
-            complain(f"No drawings: {error}")
-        written = sprung.report.write_validation(found, output.resolve(), drawings)
-    if as_json:
-        say_json(found.document())
-    else:
-        say(sprung.report.text_of(sprung.report.validation_view(found)))
-        if written:
-            say(f"\nWritten: {len(written)} files in {written[0].parent}\n")
-    if found.result.verdict.state == "reject":
-        raise typer.Exit(REJECTED)
 
 
 @app.command(epilog="Example: [bold]sprung check campaign.toml --no-drawings[/bold]")
@@ -307,25 +203,6 @@ def new(
         )
 
 
-@app.command(epilog="Example: [bold]sprung demo[/bold]")
-def demo(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
-    as_json: Json = False,
-) -> None:
-    """Write an example campaign, the paper's school bus, and identify it."""
-    with working("dropping the school bus") as progress:
-        written = sprung.write(sprung.study.demo_campaign(), folder)
-        result = sprung.identify(sprung.read(written), progress=progress)
-        results = result.save(folder / "results")
-    conclude(result, results, as_json)
-    if not as_json:
-        say(
-            f"\nThe recordings and what was known beforehand: {written}\n"
-            f"Everything that was found, for other programs:  {results / 'results.json'}\n"
-            f"Change something there and run again:           sprung identify {shlex.quote(str(written))}\n"
-        )
-
-
 @app.command(epilog="Example: [bold]sprung paper --json[/bold]")
 def paper(as_json: Json = False) -> None:
     """Show the paper's tables beside ours, its misprints, and where its method breaks."""
@@ -341,18 +218,3 @@ def paper(as_json: Json = False) -> None:
 def schema(as_json: Json = False) -> None:  # noqa: ARG001 (it is JSON anyhow)
     """Print the JSON Schema of campaign.toml, by which editors complete its keys and mark mistakes."""
     say_json(sprung.schema_text())
-
-
-def _version(wanted: bool) -> None:
-    if wanted:
-        say(f"sprung {sprung.__version__}\n")
-        raise typer.Exit
-
-
-@app.callback()
-def _options(
-    version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
-    ] = False,
-) -> None:
-    """Find the physical parameters of a two-axle road vehicle from drop tests."""

@@ -1,0 +1,157 @@
+"""Pictures of modes: spectra, stabilisation diagrams, shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from sprung.errors import InputError, Problem
+from sprung.modal import Diagram, stabilisation_diagram
+from sprung.pipeline import LoadModes, Result
+from sprung.plot.drawing import chosen, drawn, single
+from sprung.report import (
+    BODY_EDGES,
+    LIGHT,
+    STRUTS,
+    LoadDecays,
+    decays_by_load,
+    spectra_picture,
+    stability_picture,
+    wire_car,
+)
+
+
+def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | None = None) -> tuple[Axes, ...]:
+    """Draw the spectra of the decays of one load, measured and fitted, with the identified modes.
+
+    Parameters
+    ----------
+    result
+        From `sprung.identify` or `sprung.load`.
+    load
+        Its name; the first one unless given.
+    axes
+        One for the sensors on the body, and one for those at the wheels; a figure of its own unless given.
+
+    Returns
+    -------
+    tuple of Axes
+        Those that were drawn into; m/s² per √Hz over Hz.
+
+    Raises
+    ------
+    InputError
+        If there is no such load.
+    """
+    decays = _decays(result, load)
+    return drawn(spectra_picture(decays, result.modes[decays.load]), axes)
+
+
+def stabilisation(
+    of: LoadModes | Mapping[str, LoadModes] | Diagram | Result, load: str | None = None, *, axes: Axes | None = None
+) -> Axes:
+    """Draw a stabilisation diagram: natural frequencies of models of growing order, and where they stay.
+
+    Parameters
+    ----------
+    of
+        From `sprung.modes` with ``diagram=True``, all of it or one load; or a result, from whose decays the diagram is made.
+    load
+        Its name, where there are several; the first one unless given.
+    axes
+        Where to; a figure of its own unless given.
+
+    Returns
+    -------
+    Axes
+        Order over Hz.
+
+    Raises
+    ------
+    InputError
+        If there is no such load, or the modes were found without a diagram.
+    """
+    name, diagram = _diagram(of, load)
+    [found] = drawn(stability_picture(name, diagram), None if axes is None else [axes])
+    return found
+
+
+def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0.0, axes: Axes | None = None) -> Axes:
+    """Draw a mode of the identified vehicle as a small car of wire, at rest and moved.
+
+    Parameters
+    ----------
+    result
+        From `sprung.identify` or `sprung.load`.
+    name
+        Such as ``body bounce``.
+    load
+        On the vehicle; the first one unless given.
+    phase
+        Of the vibration, rad: 0 is where what moves most is furthest up.
+    axes
+        Where to; a figure of its own unless given.
+
+    Returns
+    -------
+    Axes
+        Without scales: a shape has no size.
+
+    Raises
+    ------
+    InputError
+        If there is no such mode or load, its shape is not held, or the result was rejected.
+    """
+    load = chosen(load or next(iter(result.modes)), list(result.modes), "load")
+    modes = {one.name: one for one in result.modes[load]}
+    found = modes[chosen(name, list(modes), "mode")]
+    if not found.motion or result.verdict.state == "reject":
+        what = "no shape" if not found.motion else "a rejected result"
+        raise InputError(
+            [Problem(f"mode {name}", what, "a result that holds its shape", "Identify the campaign again.")]
+        )
+    car, axes = wire_car(result), single(axes)
+    rise = (car.swing(found.motion) * np.exp(1j * phase)).real
+    moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)
+    for i, j in BODY_EDGES:
+        axes.plot(*car.places[[i, j]].T, color=LIGHT["measured"], lw=0.8, ls="--")
+        axes.plot(*moved[[i, j]].T, color=LIGHT["text"], lw=1.4)
+    for i, j in STRUTS:
+        axes.plot(*moved[[i, j]].T, color=LIGHT["simulated"], lw=1.6)
+    around = np.linspace(0, 2 * np.pi, 60)
+    for node, radius in car.circles:
+        x, y = moved[node]
+        axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), color=LIGHT["left"], lw=1.4)
+    axes.set_aspect("equal")
+    axes.set(xlim=(0, car.width), ylim=(car.height, 0))
+    axes.set_axis_off()
+    sure = "not determined" if found.frequency_std is None else f"{found.frequency:.4g} Hz"
+    axes.set_title(f"{name}, {load}: {sure}", fontsize=9, parse_math=False)
+    return axes
+
+
+def _decays(result: Result, load: str | None) -> LoadDecays:
+    by_load = {one.load: one for one in decays_by_load(result)}
+    if not by_load:
+        raise InputError([Problem("result", "no series", "a result with its series", "Load it from its folder.")])
+    return by_load[chosen(load or next(iter(by_load)), list(by_load), "load")]
+
+
+def _diagram(of: LoadModes | Mapping[str, LoadModes] | Diagram | Result, load: str | None) -> tuple[str, Diagram]:
+    match of:
+        case Diagram():
+            return load or "", of
+        case Result():
+            decays = _decays(of, load)
+            records = [record - record.mean(axis=1, keepdims=True) for record in decays.measured]
+            return decays.load, stabilisation_diagram(records, decays.rate)
+        case LoadModes():
+            if of.diagram is None:
+                do = "Find the modes with diagram=True."
+                raise InputError([Problem("modes", "no diagram", "modes with a stabilisation diagram", do)])
+            return load or ", ".join(of.drops), of.diagram
+        case _:
+            name = chosen(load or next(iter(of)), list(of), "load")
+            return _diagram(of[name], name)

@@ -1,0 +1,90 @@
+"""Pictures of the identified vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from matplotlib.axes import Axes
+
+from sprung.errors import InputError, Problem
+from sprung.pipeline import Result, Validation
+from sprung.plot.drawing import chosen, drawn, matrix, single
+from sprung.report import amplitude_pictures, parameters_picture
+
+
+def parameters(result: Result, *, axes: Axes | None = None) -> Axes:
+    """Draw the 95 % interval of every estimated parameter, in percent of its value.
+
+    Parameters
+    ----------
+    result
+        From `sprung.identify` or `sprung.load`.
+    axes
+        Where to; a figure of its own unless given.
+
+    Returns
+    -------
+    Axes
+    """
+    picture = parameters_picture({**result.parameters, **result.derived})
+    [found] = drawn(picture, None if axes is None else [axes])
+    return found
+
+
+def correlation(result: Result, *, axes: Axes | None = None) -> Axes:
+    """Draw which parameters are uncertain together.
+
+    Parameters
+    ----------
+    result
+        From `sprung.identify` or `sprung.load`.
+    axes
+        Where to; a figure of its own unless given.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        If nothing was estimated.
+    """
+    if not result.correlation.names:
+        do = "Read the reasons of the verdict."
+        raise InputError([Problem("result", "no estimated parameters", "two or more", do)])
+    axes = single(axes)
+    matrix(result.correlation.names, result.correlation.matrix, axes)
+    return axes
+
+
+def amplitude(
+    of: Result | Validation, mode: str = "body bounce", *, axes: Iterable[Axes] | None = None
+) -> tuple[Axes, ...]:
+    """Draw frequency and damping ratio of a mode of the body against its amplitude.
+
+    Parameters
+    ----------
+    of
+        From `sprung.identify` with ``amplitude=True``, `sprung.load` or `sprung.validate`.
+    mode
+        ``body bounce``, ``body pitch`` or ``body roll``.
+    axes
+        One for the frequency, Hz, and one for the damping ratio, %, over the amplitude in mm; a figure of its own unless given.
+
+    Returns
+    -------
+    tuple of Axes
+        Those that were drawn into.
+
+    Raises
+    ------
+    InputError
+        If the modes were not followed, or not this one.
+    """
+    amplitudes = of.amplitude if isinstance(of, Result) else of.amplitudes
+    if not amplitudes:
+        do = "Identify with amplitude=True."
+        raise InputError([Problem("result", "no amplitudes", "modes that were followed through the decays", do)])
+    pictures = {picture.title: picture for picture in amplitude_pictures(amplitudes)}
+    return drawn(pictures[chosen(mode, list(pictures), "mode")], axes)

@@ -1,0 +1,38 @@
+"""Channels of one drop as they were fitted: measured against fitted, what is left below."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from sprung.pipeline import Series
+from sprung.report.axis import Axis
+from sprung.report.picture import Panel, Picture
+from sprung.report.pictures.motions import compared
+
+
+def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Picture:
+    """Show some channels of one drop.
+
+    Parameters
+    ----------
+    name
+        The drop's.
+    series
+        As it was fitted.
+    channels
+        Names of channels, each of which the drop has.
+
+    Returns
+    -------
+    Picture
+        Two panels for each channel, m/s² over s.
+    """
+    panels: list[Panel] = []
+    for channel in channels:
+        i = series.channels.index(channel)
+        note = "left out" if np.isnan(series.measured[i]).all() else ""
+        panels += compared(f"{channel}, m/s²", series.time, series.measured[i], series.fitted[i], note)
+    x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
+    return Picture(f"{name}: measured and fitted", x, tuple(panels))

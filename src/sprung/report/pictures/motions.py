@@ -1,0 +1,81 @@
+"""One drop in the coordinates of the body: measured against simulated as in figures 7 to 9 of the paper, what is left below."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.pipeline import Series
+from sprung.report.axis import Axis, room
+from sprung.report.picture import Curve, Panel, Picture, Rule
+from sprung.validation import MOTIONS, DropValidation
+
+Real = NDArray[np.float64]
+
+_UNITS = ("m/s²", "rad/s²", "rad/s²")
+
+
+def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Picture | None:
+    """Show one drop in the coordinates of the body.
+
+    Parameters
+    ----------
+    name
+        The drop's.
+    series
+        As it was fitted.
+    drop
+        What is said of it.
+
+    Returns
+    -------
+    Picture or None
+        None where the result does not hold the motion of the body.
+    """
+    if series.body_measured is None or series.body_simulated is None:
+        return None
+    measured, simulated = series.body_measured.astype(float), series.body_simulated.astype(float)
+    panels: list[Panel] = []
+    for i, motion in enumerate(MOTIONS):
+        error = None if drop is None else getattr(drop, motion)
+        note = "" if drop is None else "no motion beyond the noise" if error is None else f"error {100 * error:.1f} %"
+        if np.isnan(measured[i]).all():
+            note = "not told by the sensors in use"
+        panels += compared(f"{motion}, {_UNITS[i]}", series.time, measured[i], simulated[i], note)
+    x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
+    told = "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each what is left."
+    return Picture(name, x, tuple(panels), told)
+
+
+def compared(label: str, time: Real, measured: Real, simulated: Real, note: str) -> tuple[Panel, Panel]:
+    """Show two curves, and what one has more than the other below them.
+
+    Parameters
+    ----------
+    label
+        Of the upper axis.
+    time
+        s, shape (time,).
+    measured, simulated
+        Shape (time,).
+    note
+        Written into the upper panel.
+    """
+    left = measured - simulated
+    above = Panel(
+        Axis(label, *room(measured, simulated)),
+        (
+            Rule(0.0, "quiet", lying=True),
+            Curve(time, measured, "measured", "measured", 2.4),
+            Curve(time, simulated, "simulated", "simulated"),
+        ),
+        note=note,
+    )
+    low, high = room(left, np.zeros(1))
+    ticks = ((0.0, "0"), (float(f"{0.8 * high:.1g}"), f"{0.8 * high:.1g}")) if high > 0 else ()
+    below = Panel(
+        Axis("left", low, high, ticks=ticks),
+        (Rule(0.0, "quiet", lying=True), Curve(time, left, "left", "measured less simulated", 0.8)),
+        height=0.36,
+    )
+    return above, below

@@ -1,0 +1,97 @@
+"""A whole recording: its channels in lanes one above the other, when what happened, which part is used, what is wrong where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sprung.pipeline import DropReport, Recorded
+from sprung.report.axis import Axis
+from sprung.report.lanes import Lane, lanes_of
+from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
+
+_LANE = 0.42
+"""Height of a lane."""
+
+
+def whole_picture(drop: DropReport, recorded: Recorded) -> Picture:
+    """Show a recording from its first sample to its last.
+
+    Parameters
+    ----------
+    drop
+        What is said of it.
+    recorded
+        What was recorded.
+
+    Returns
+    -------
+    Picture
+        A panel for each channel, m/s² over s.
+    """
+    time = recorded.time
+    return _picture("The whole recording", drop, recorded, (float(time[0]), float(time[-1])), False)
+
+
+def near_picture(drop: DropReport, recorded: Recorded) -> Picture | None:
+    """Show what happened around release and landing.
+
+    Parameters
+    ----------
+    drop
+        What is said of it.
+    recorded
+        What was recorded.
+
+    Returns
+    -------
+    Picture or None
+        None where the release is not known.
+    """
+    moments = [moment for moment in (drop.landing, drop.last_lift_off, drop.start) if moment is not None]
+    if drop.release is None:
+        return None
+    time, last = recorded.time, max([drop.release, *moments])
+    length = max(last - drop.release, 0.1)
+    limits = max(drop.release - 0.3 * length, float(time[0])), min(last + 1.2 * length, float(time[-1]))
+    return _picture("Release and landing", drop, recorded, limits, True)
+
+
+def _picture(title: str, drop: DropReport, recorded: Recorded, limits: tuple[float, float], near: bool) -> Picture:
+    time = recorded.time
+    inside = (time >= limits[0]) & (time <= limits[1])
+    events = tuple(_events(drop, labelled=near))
+    panels = []
+    for lane in lanes_of(drop, recorded):
+        marks: list[Mark] = []
+        if drop.start is not None and drop.end is not None:
+            marks.append(Band(drop.start, drop.end))
+        marks += [*events, Curve(time[inside], lane.values[inside], "signal" if lane.used else "unused", width=0.9)]
+        if (of := lane.marked[inside[lane.marked]]).size:
+            marks.append(Points(time[of], lane.values[of], "fault", size=0.7))
+        note, wrong = ("", "") if near else (", ".join(lane.notes), ", ".join(lane.wrong))
+        panels.append(Panel(_axis(lane), tuple(marks), _LANE, note, wrong, lane.name))
+    said = "" if near else f" {drop.why_start and f'The decay begins where it does as {drop.why_start}.'}"
+    told = f"Accelerations of {len(panels)} channels in m/s², the decay shaded.{said}"
+    return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), told)
+
+
+def _axis(lane: Lane) -> Axis:
+    ticks = tuple(lane.ticks)
+    spread = lane.span / 0.86
+    return Axis("", lane.middle - spread / 2, lane.middle + spread / 2, ticks=_few(ticks))
+
+
+def _few(ticks: tuple[tuple[float, str], ...]) -> tuple[tuple[float, str], ...]:
+    """Keep so many ticks as a lane has room for."""
+    return ticks if len(ticks) <= 3 else tuple(ticks[:: int(np.ceil(len(ticks) / 3))])
+
+
+def _events(drop: DropReport, labelled: bool) -> Iterator[Rule]:
+    if drop.release is not None:
+        yield Rule(drop.release, "release", f"release {drop.release:.3f} s" if labelled else "", dashed=True)
+    if drop.landing is not None:
+        yield Rule(drop.landing, "landing", f"landing {drop.landing:.3f} s" if labelled else "", dashed=True)
+    if drop.start is not None:
+        yield Rule(drop.start, "landing", f"decay from {drop.start:.3f} s" if labelled else "")

@@ -1,0 +1,75 @@
+"""Every drop: its recording, what was wrong, and measured against simulated."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any
+
+from sprung.errors import Fault
+from sprung.pipeline import DropReport, Result
+from sprung.report.check import drops_table
+from sprung.report.pictures import (
+    motion_picture,
+    near_picture,
+    whole_picture,
+)
+from sprung.report.sections.context import Context
+from sprung.report.validation import COLUMNS, validation_table
+
+
+def recordings(result: Result, few: bool, unfolded: bool) -> Context:
+    """Show every recording, with what happened in it and what was wrong."""
+    drawn, opened = [], False
+    for drop in result.drops:
+        recorded = result.recordings.get(drop.name)
+        if recorded is None or not drop.channels:
+            continue
+        pictures = [whole_picture(drop, recorded), near_picture(drop, recorded)]
+        # Of many that are alike one is shown as an example; whatever is wrong is shown.
+        show = unfolded or not opened or (few and bool(drop.faults))
+        opened = opened or show
+        drawn.append(
+            {
+                "file": drop.file,
+                "said": f"{drop.kind}, {drop.load}",
+                "wrong": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
+                "limits": _limits(drop),
+                "open": show,
+                "pictures": [picture for picture in pictures if picture is not None],
+            }
+        )
+    return {"overview": drops_table(result.drops), "faults": _joined(result.faults), "drawn": drawn}
+
+
+def _limits(drop: DropReport) -> str:
+    if drop.start is None or drop.end is None or not drop.why_start:
+        return ""
+    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}."
+
+
+def _joined(faults: tuple[Fault, ...]) -> list[Fault]:
+    """Say once what was found alike in several places."""
+    places: defaultdict[tuple[str, str, str], list[str]] = defaultdict(list)
+    for fault in faults:
+        places[fault.code, fault.what, fault.do].append(fault.where)
+    return [Fault(code, ", ".join(where), what, do) for (code, what, do), where in places.items()]
+
+
+def motions(result: Result, few: bool) -> Context | None:
+    """Hold what the body did against what the fitted vehicle does, drop by drop."""
+    groups: dict[str, list[Any]] = {}
+    for drop in result.drops:
+        series = result.series.get(drop.name)
+        picture = None if series is None else motion_picture(drop.name, series, result.validation.get(drop.name))
+        if picture is not None:
+            groups.setdefault(drop.load, []).append(picture)
+    if not result.validation and not groups:
+        return None
+    return {
+        "overview": validation_table(result.vehicle.name, result.validation),
+        "columns": COLUMNS,
+        "groups": [
+            {"title": f"{load}: {len(pictures)} drop{'s' * (len(pictures) > 1)}", "pictures": pictures, "open": few}
+            for load, pictures in groups.items()
+        ],
+    }

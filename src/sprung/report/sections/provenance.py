@@ -1,0 +1,90 @@
+"""What to do next, and everything that led here: settings, versions, files, literature."""
+
+from __future__ import annotations
+
+from sprung.pipeline import Result
+from sprung.report.literature import literature_of
+from sprung.report.sections.context import Context
+from sprung.tables import Table
+
+_NOT_KEPT = "An older sprung wrote this result, without what is shown here: identify the campaign again."
+
+
+def next_step(result: Result) -> Context:
+    """Say what to measure next."""
+    if result.next_step is not None:
+        return {"said": f"{result.next_step[0].upper()}{result.next_step[1:]}".rstrip(".") + "."}
+    if result.verdict.state == "reject":
+        return {
+            "said": "First the reasons of the verdict: what does not fit the model tells nothing of what to measure next."
+        }
+    return {"said": _NOT_KEPT}
+
+
+def settings(result: Result) -> Context:
+    """Tell every setting, version, file and checksum."""
+    fit = result.fit
+    pairs = [
+        ("method", fit.method),
+        ("model", f"seven degrees of freedom{', with ' + ', '.join(fit.model) if fit.model else ''}"),
+        ("half-distances", f"{fit.tracks}"),
+        ("why this model", fit.why),
+        ("axes of the inertias", fit.axes),
+        ("drops used from", "their release on" if fit.since == "release" else "when the last tyre was down"),
+        (
+            "fit",
+            (
+                f"{fit.samples} samples, {fit.iterations} steps, {'converged' if fit.converged else 'not converged'}; "
+                f"{fit.starts_agreeing} of {fit.starts} starts agree"
+            ),
+        ),
+        ("error bars", _bars(result)),
+        ("noise, m/s² rms", ", ".join(f"{name} {value:.3g}" for name, value in fit.noise.items())),
+    ]
+    tables = []
+    if fit.path:
+        headers = ("tried", "gain", "asked", "fitted", "taken")
+        rows = tuple(
+            (
+                one.extra,
+                f"{one.gain:.0f}",
+                f"{one.asked:.0f}",
+                "yes" if one.fitted else "no",
+                "yes" if one.taken else "no",
+            )
+            for one in fit.path
+        )
+        title = "The way to the model: gain in twice the log-likelihood, and what is asked"
+        tables.append(Table(title, headers, rows, frozenset(headers[1:3])))
+    if (setup := result.setup) is not None:
+        model = setup.model
+        asked = {
+            "tracks": model.tracks,
+            "extras": None if model.extras is None else ", ".join(model.extras) or "none",
+            "forbidden": ", ".join(model.forbid) or None,
+            "fall": None if model.fall is None else "yes" if model.fall else "no",
+        }
+        pairs.append(
+            ("asked in the campaign file", "; ".join(f"{key}: {value or 'left open'}" for key, value in asked.items()))
+        )
+        pairs.append(
+            ("asked beside it", "; ".join(f"{key}: {value}" for key, value in setup.options.items()) or "nothing")
+        )
+        pairs.append(("software", ", ".join(f"{name} {number}" for name, number in setup.software.items())))
+        files = tuple((one.name, f"{one.size}", one.sha256) for one in setup.files)
+        if files:
+            tables.append(Table("Files", ("file", "bytes", "SHA-256"), files, frozenset(("bytes",))))
+    return {"pairs": [pair for pair in pairs if pair[1]], "tables": tables}
+
+
+def _bars(result: Result) -> str:
+    fit = result.fit
+    if fit.inflation <= 1:
+        return "as white noise makes them"
+    because = f", because of {fit.inflated_by}" if fit.inflated_by not in {None, "nothing"} else ""
+    return f"{fit.inflation**0.5:.2f} times as wide as white noise would make them{because}"
+
+
+def literature(result: Result) -> Context:
+    """Name what was written on the methods that were used."""
+    return {"works": list(literature_of(result))}

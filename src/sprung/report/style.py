@@ -1,0 +1,26 @@
+"""How pictures look: rules of style whose colours a page sets, or which stand alone in a file of their own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from importlib.resources import files
+from typing import get_args
+
+from sprung.report.palette import LIGHT
+from sprung.report.picture import Role
+
+
+def role_rules() -> Iterator[str]:
+    """Give the rules by which what is drawn has the colour of what it stands for."""
+    for role in get_args(Role):
+        kinds = ", ".join(f".picture .{kind}.{role}" for kind in ("curve", "points", "rule", "bars"))
+        yield f"{kinds} {{ stroke: var(--{role}); }}"
+
+
+def alone_style() -> str:
+    """Give the style of a picture that stands alone, or where that of its page does not reach: the light one."""
+    own = files("sprung.report").joinpath("templates", "picture.css").read_text(encoding="utf-8")
+    rules = "\n".join([*role_rules(), own])
+    light = re.sub(r"var\(--(\w+)\)", lambda found: LIGHT[found[1]], rules)
+    return f"<style>{light}</style>"

@@ -1,0 +1,72 @@
+"""A table as text cells, which a terminal, a notebook and a page each lay out in their own way."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass
+
+
+def escaped(text: str) -> str:
+    """Write text so that HTML shows it as it is, with what no page can hold replaced.
+
+    Parameters
+    ----------
+    text
+        Any.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    return html.escape("".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text))
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table.
+
+    Attributes
+    ----------
+    title
+        Above it.
+    headers, rows
+        Of its columns; cells as text.
+    numbers
+        Headers of the columns set flush right.
+    spare
+        Headers of the columns that a narrow place can do without, the first to go first.
+    """
+
+    title: str
+    headers: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers: frozenset[str] = frozenset()
+    spare: tuple[str, ...] = ()
+
+    def html(self, caption: bool = True) -> str:
+        """Write it as an HTML table, the first cell of each row as its heading.
+
+        Parameters
+        ----------
+        caption
+            Whether the title is written above it.
+
+        Returns
+        -------
+        str
+            HTML.
+        """
+        kinds = [' class="number"' if header in self.numbers else "" for header in self.headers]
+        head = "".join(
+            f'<th scope="col"{kind}>{escaped(header.strip())}</th>'
+            for header, kind in zip(self.headers, kinds, strict=True)
+        )
+        body = "\n".join(f"<tr>{_row(cells, kinds)}</tr>" for cells in self.rows)
+        title = f"<caption>{escaped(self.title)}</caption>\n" if caption else ""
+        return f"<table>\n{title}<thead><tr>{head}</tr></thead>\n<tbody>\n{body}\n</tbody>\n</table>\n"
+
+
+def _row(cells: tuple[str, ...], kinds: list[str]) -> str:
+    first, *others = (f"{kind}>{escaped(cell)}" for cell, kind in zip(cells, kinds, strict=True))
+    return f'<th scope="row"{first}</th>' + "".join(f"<td{other}</td>" for other in others)
