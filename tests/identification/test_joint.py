@@ -269,3 +269,17 @@ def test_an_exact_quantity_that_cannot_be_is_named() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=14, known=known)
     found, _ = fit(campaign, TABLE_1_CAR)
     assert found.contradictions["total_mass"] > 10
+
+
+@pytest.mark.parametrize("std", [0.2, 2.0, 20.0])
+def test_a_contradiction_is_a_distance_in_standard_uncertainties_of_the_difference(std: float) -> None:
+    truth = TABLE_1_CAR.total_mass
+    plain = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=15)
+    told, _ = fit(plain, TABLE_1_CAR)
+    gradient = np.array([{"m_s": 1.0, "m_uf": 2.0, "m_ur": 2.0}.get(name, 0.0) for name in told.names])
+    own = float(gradient @ told.covariance @ gradient) ** 0.5
+    stated = float(gradient @ told.values) + 4 * np.hypot(own, std)
+    campaign = replace(plain, known={**plain.known, "total_mass": Known(stated, std)})
+    found, _ = fit(campaign, TABLE_1_CAR)
+    assert abs(stated - truth) > 3 * std
+    assert found.contradictions["total_mass"] == pytest.approx(4.0, rel=0.05)

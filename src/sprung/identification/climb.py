@@ -206,8 +206,13 @@ class Climb:
             one this is its distance from what the rest says, in standard uncertainties of the difference.
         """
         found = {}
+        every = self.knowledge.prior(point.u).residual
         for name, known in self.knowledge.statements.items():
-            move, gain = replace(self, knowledge=self.knowledge.without(name)).slope(point, inflation).newton
+            without = self.knowledge.without(name)
+            move, gain = replace(self, knowledge=without).slope(point, inflation).newton
+            # What the summit still misses of an uncertain statement would be gained as well.
+            missed = without.prior(point.u).residual
+            gain += float(every @ every - missed @ missed)
             away = self.knowledge.change(name, point.u, move) / known.value
             if not known.exact or abs(away) > _EXACT_ENOUGH:
                 found[name] = max(gain, 0.0) ** 0.5
