@@ -27,11 +27,17 @@ Real = NDArray[np.float64]
 _FLIGHT = 0.04
 """s after the release that are enough."""
 
-_IN_THE_AIR, _LOW = 0.7, 0.02
+_IN_THE_AIR, _LOW = 0.85, 0.02
 """Part of the time to the landing that is certainly flight, and height of blocks where nobody says it, m."""
 
-_AWAY = 0.008
-"""s by which the release may have been before or after the first motion that a logger shows."""
+_AWAY = 2.0
+"""Uncertainties of a clock within which the release is looked for on both sides of where it should be."""
+
+_LEAST = 0.008
+"""s by which the first motion that any logger shows may be before or after it all the same."""
+
+_BEFORE = 0.008
+"""s before the release that are looked at with it."""
 
 _FINE = 1e-4
 """s: step at which the flight is computed, and to which the release is looked for at first."""
@@ -42,11 +48,12 @@ _CLEAR = 20.0
 _LIKE_IT = 0.2
 """Part of the flight that may be left unexplained: beyond it the release was not at one moment, and tells nothing."""
 
-_FLOOR = 1.5e-5
-"""s: by so much crystals drift between the release and the liveliest part of a decay."""
+_FLOOR = 5e-6
+"""s: by so much crystals that are fast or slow by some ten parts in a million drift from the release to the liveliest part
+of a decay."""
 
-_HIGH, _NUDGE = 1.0, 1e-4
-"""m, and part of a parameter by which it is moved to see what that does to the flight."""
+_NUDGE = 1e-4
+"""Part of a parameter by which it is moved to see what that does to the flight."""
 
 _UNTOLD = 0.01
 """s of uncertainty from which a clock is not told."""
@@ -77,29 +84,35 @@ def timed_by_release(
     -------
     Decay
     """
-    parameters = separated(vehicle.parameters)
-    try:
-        fall = drop_from_blocks(vehicle, load, drop.wheels, drop.height or _LOW, duration=_FLIGHT)
-        flight, slopes = _flights(parameters, drop, load, sensors, vehicle.heights)
-    except SprungError:  # so rough a vehicle that it does not even stand
-        return decay
     if seen.release is None:
         return decay
+    parameters, height = separated(vehicle.parameters), drop.height or _LOW
+    try:
+        fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
+        flight, slopes = _flights(parameters, drop, height, load, sensors, vehicle.heights)
+    except SprungError:  # so rough a vehicle that it does not even stand
+        return decay
     air = next((event.time for event in fall.events if event.kind == "landing"), _FLIGHT) * _IN_THE_AIR
-    rate, noise = seen.recording.rate, seen.rest.noise.std(axis=1)
-    first = max(seen.release - int(2 * _AWAY * rate), 0)
-    window = slice(first, seen.release + int(air * rate) + 1)
-    values = seen.recording.values[:, window] - seen.rest.level[:, None]
-    times = (np.arange(window.start, window.stop) - seen.release) / rate
+    recording = seen.recording
+    times = (np.arange(recording.values.shape[1]) - seen.release) / recording.rate
+    values, noise = recording.values - seen.rest.level[:, None], seen.rest.noise.std(axis=1)
     told: dict[int, _Moment] = {}
-    released = seen.recording.start + seen.release / rate
-    taken = {part.name: part.time for part in seen.recording.parts}
+    taken = {part.name: part.time for part in recording.parts}
     for number, clock in enumerate(decay.clocks):
         own = [channel for channel in clock.channels if decay.usable[channel]]
-        when = taken[clock.name] - clock.ahead - released if clock.share < 1 else times
-        found = _released(values[own], times, when, flight[own], slopes[:, own], noise[own]) if own else None
+        if not own or not np.any(np.abs(flight[own, : int(air / _FINE)]).max(axis=1) > _CLEAR * noise[own]):
+            continue
+        begin = _begins(values[own], times, flight[own], air, max(_AWAY * clock.std, _LEAST))
+        when = taken[clock.name] - clock.ahead - recording.start - seen.release / recording.rate
+        found = (
+            None
+            if begin is None
+            else _released(
+                values[own], times, when if clock.share < 1 else times, flight[own], slopes[:, own], begin, air
+            )
+        )
         if found is not None:
-            told[number] = found
+            told[number] = found._replace(std=float(np.hypot(found.std / clock.share**0.5, _FLOOR)))
     if not told:
         return decay
     common = float(np.median([one.time for one in told.values()]))
@@ -136,18 +149,22 @@ class _Moment(NamedTuple):
 
 
 def _flights(
-    parameters: Mapping[str, float], drop: Drop, load: Load, sensors: Sequence[Sensor], heights: Heights
+    parameters: Mapping[str, float],
+    drop: Drop,
+    height: float,
+    load: Load,
+    sensors: Sequence[Sensor],
+    heights: Heights,
 ) -> tuple[Real, Real]:
     """Give what the sensors read after the release, and by how much more with each parameter.
 
     Shapes (channel, time) and (parameter, channel, time), m/s² and that per SI unit, in steps of `_FINE`.
     """
-    names, samples = tuple(parameters), int((_FLIGHT + 2 * _AWAY) / _FINE)
+    names, samples = tuple(parameters), int(_FLIGHT / _FINE)
 
     def flight(values: Mapping[str, float]) -> Real:
         vehicle = Vehicle.from_parameters(values, name="falling", **heights.by_key)
-        # From high blocks, for until the landing their height makes no difference.
-        fall = drop_from_blocks(vehicle, load, drop.wheels, _HIGH, duration=_FLIGHT + 2 * _AWAY)
+        fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
         rows = Rows.of([sensor.row for sensor in sensors], names).at(np.array(list(values.values())))
         return np.asarray(rows @ fall.motion(_FINE, samples).acceleration, dtype=np.float64)
 
@@ -157,32 +174,60 @@ def _flights(
     return here, np.array(moved)
 
 
-def _released(values: Real, times: Real, taken: Real, flight: Real, slopes: Real, noise: Real) -> _Moment | None:
-    """Find when a logger saw the release; its samples at `times` are those or made of those it took at other ones."""
-    taken = taken[(taken > times[0] - _AWAY) & (taken < times[-1] + _AWAY)] if taken is not times else times
+def _read(flight: Real, times: Real) -> Real:
+    """Give what sensors read at times after the release, s: nothing before it; shape (channel, time)."""
     grid = _FINE * np.arange(flight.shape[1])
-    if not np.any(np.abs(flight[:, grid < times[-1]]).max(axis=1, initial=0.0) > _CLEAR * noise):
+    return np.array([np.interp(times, grid, one, left=0.0) for one in flight])
+
+
+def _begins(values: Real, times: Real, flight: Real, air: float, away: float) -> float | None:
+    """Find to a sample when a logger saw the release, up to so far from where it should be; None where it did not."""
+    rate = 1 / (times[1] - times[0])
+    before, after = int(_BEFORE * rate), int(air * rate)
+    expected = _read(flight, np.arange(-before, after + 1) / rate)
+    first = np.searchsorted(times, -away) - before
+    last = np.searchsorted(times, away) + after
+    if first < 0 or last >= len(times):
         return None
+    windows = np.lib.stride_tricks.sliding_window_view(values[:, first : last + 1], before + after + 1, axis=1)
+    missed = np.sum((windows - expected[:, None]) ** 2, axis=(0, 2))
+    best = int(np.argmin(missed))
+    # At either end of what was looked at, it is not known to be where it is least.
+    return float(times[first + before + best]) if 0 < best < len(missed) - 1 else None
+
+
+def _released(
+    values: Real, times: Real, taken: Real, flight: Real, slopes: Real, begin: float, air: float
+) -> _Moment | None:
+    """Find when a logger saw the release, of which the sample is known.
+
+    Its samples at `times` are those that it took, or made of those it took at other ones.
+    """
+    step = times[1] - times[0]
+    interpolated = taken is not times
+    window = (times > begin - _BEFORE) & (times < begin + air)
+    values, times = values[:, window], times[window]
+    taken = taken[(taken > times[0] - _BEFORE) & (taken < times[-1] + _BEFORE)] if interpolated else times
 
     def model(moment: float, waves: Real = flight) -> Real:
-        read = np.array([np.interp(taken - moment, grid, one, left=0.0) for one in waves])
-        return read if taken is times else CubicSpline(taken, read, axis=1)(times)
+        read = _read(waves, taken - moment)
+        return np.asarray(CubicSpline(taken, read, axis=1)(times) if interpolated else read, dtype=np.float64)
 
     def cost(moment: float) -> float:
         return float(np.sum((values - model(moment)) ** 2))
 
-    tried = np.arange(-_AWAY, _AWAY + _FINE, _FINE)
+    tried = np.arange(begin - 2 * step, begin + 2 * step, _FINE)
     moment = float(tried[np.argmin([cost(one) for one in tried])])
     for _ in range(5):
         slope = (model(moment + _FINE / 2) - model(moment - _FINE / 2)) / _FINE
         steepness = max(float(np.sum(slope**2)), np.finfo(float).tiny)
-        moment = float(np.clip(moment + np.sum(slope * (values - model(moment))) / steepness, -_AWAY, _AWAY))
+        further = float(np.sum(slope * (values - model(moment)))) / steepness
+        moment = float(np.clip(moment + further, tried[0], tried[-1]))
     left = cost(moment)
     if left > _LIKE_IT**2 * np.sum(model(moment) ** 2):
         return None
     follows = [-float(np.sum(slope * model(moment, one))) / steepness for one in slopes]
-    spread = (left / max(values.size - 1, 1) / steepness) ** 0.5
-    return _Moment(moment, float(np.hypot(spread, _FLOOR)), np.array(follows))
+    return _Moment(moment, (left / max(values.size - 1, 1) / steepness) ** 0.5, np.array(follows))
 
 
 def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]:

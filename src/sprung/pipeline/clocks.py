@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, Summit, timed_by_decay, timed_by_release, told_alone
+from sprung.identification import Fit, Summit, clear_of_splines, timed_by_decay, timed_by_release, told_alone
 from sprung.prepare import Decay, Prepared
 from sprung.recording import Campaign, LoggerClock, Recording
 from sprung.vehicle import Vehicle
@@ -17,6 +17,9 @@ Real = NDArray[np.float64]
 
 _DRIFT = 3e-5
 """s: by so much a crystal that is fast or slow by some ten parts in a million drifts while a vehicle vibrates."""
+
+_SET = 1e-3
+"""s to which a clock is set, at the worst, before the fit finds the rest."""
 
 _PASSES = 2
 """The better the vehicle, the better it tells the clocks, and they it."""
@@ -63,7 +66,10 @@ def _reported(clocks: Sequence[LoggerClock], late: Real, covariance: Real) -> It
 
 
 def set_clocks(
-    campaign: Campaign, prepared: Prepared, fit: Callable[[Sequence[Decay]], Summit]
+    campaign: Campaign,
+    prepared: Prepared,
+    prepare_again: Callable[[Campaign], Prepared],
+    fit: Callable[[Sequence[Decay]], Summit],
 ) -> tuple[Prepared, Summit | None]:
     """Set the clocks of all loggers.
 
@@ -73,6 +79,8 @@ def set_clocks(
         The campaign.
     prepared
         Its decays.
+    prepare_again
+        Finds the decays of the same campaign whose clocks are known.
     fit
         Fits decays from scratch.
 
@@ -87,49 +95,50 @@ def set_clocks(
         return prepared, None
     # As far as the first motion that each logger shows has told, all clocks are one: near enough for a first vehicle.
     summit = fit([replace(decay, clocks=()) for decay in prepared.decays])
-    by_name = {
-        seen.recording.name: (drop.model_copy(update={"wheels": seen.wheels}), seen)
-        for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
-    }
-    decays = prepared.decays
     for _ in range(_PASSES):
         vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
-        timed = []
-        for decay in prepared.decays:
-            drop, seen = by_name[decay.file]
-            told = timed_by_release(decay, seen, drop, vehicle, campaign.load(drop.load), campaign.sensors)
-            timed.append(_put_together(told, seen.recording, summit.parameters))
+        by_name = {
+            seen.recording.name: (seen, drop.model_copy(update={"wheels": seen.wheels}))
+            for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
+        }
+        timed = [
+            timed_by_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
+            for decay in prepared.decays
+        ]
         summit = fit([told_alone(decay) for decay in timed])
-        decays = tuple(
-            _put_together(decay, by_name[decay.file][1].recording, summit.parameters)
-            for decay in timed_by_decay(timed, summit)
-        )
-    return prepared._replace(decays=decays), summit
+        timed = list(timed_by_decay(timed, summit))
+        told = {decay.file: _moments(decay.clocks, summit.parameters) for decay in timed if decay.clocks}
+        recordings = [_with_clocks(one, told.get(one.name, {})) for one in campaign.recordings]
+        prepared = prepare_again(replace(campaign, recordings=tuple(recordings)))
+        by_file = {decay.file: decay.clocks for decay in timed}
+        decays = [_told_before(one, by_file.get(one.file, ()), told.get(one.file, {})) for one in prepared.decays]
+        prepared = prepared._replace(decays=tuple(decays))
+    return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in prepared.decays)), summit
 
 
-def _put_together(decay: Decay, recording: Recording, parameters: Mapping[str, float]) -> Decay:
-    """Shift every logger's samples to the nearest ones of the decay's clock, so that no clock is off by more than half a step.
+def _moments(clocks: Sequence[LoggerClock], parameters: Mapping[str, float]) -> dict[str, float]:
+    """Give what each logger's clock showed at one moment, s, by its name."""
+    return {clock.name: clock.ahead - clock.expected(parameters) for clock in clocks}
 
-    What the decay must not hold, such as a tyre in the air, is then held by none of its channels.
+
+def _with_clocks(recording: Recording, moments: Mapping[str, float]) -> Recording:
+    """Give a recording with clocks of which one moment is known; without any as it is."""
+    told = [replace(one, ahead=moments[one.name], std=_SET) for one in recording.clocks if one.name in moments]
+    return replace(recording, clocks=tuple(told) or recording.clocks)
+
+
+def _told_before(decay: Decay, before: Sequence[LoggerClock], moments: Mapping[str, float]) -> Decay:
+    """Give a decay with what is known of its clocks, which were set by it as far as whole samples go.
+
+    No sample was taken before the decay's clock says: what it must not hold, such as a tyre in the air, none of its channels
+    does.
     """
-    begin = round((decay.start - recording.start) * decay.rate) - decay.earlier.shape[1]
-    length = decay.earlier.shape[1] + decay.samples
-    most = recording.values.shape[1]
-    begins = [
-        min(max(begin - round((before.ahead - now.ahead + now.expected(parameters)) * decay.rate), 0), most)
-        for before, now in zip(recording.clocks, decay.clocks, strict=True)
+    known = {clock.name: clock for clock in before}
+    if not all(clock.name in known for clock in decay.clocks):
+        return decay
+    earliest = min((clock.ahead - moments[clock.name] for clock in decay.clocks), default=0.0)
+    clocks = [
+        replace(clock, late=old.late + clock.ahead - old.ahead - earliest, std=old.std, follows=old.follows)
+        for clock, old in ((clock, known[clock.name]) for clock in decay.clocks)
     ]
-    length = min([length, *(most - first for first in begins)])
-    whole = np.concatenate([decay.earlier, decay.values], axis=1)[:, :length]
-    for clock, first in zip(decay.clocks, begins, strict=True):
-        own = [channel for channel in clock.channels if decay.usable[channel]]
-        whole[own] = recording.values[own, first : first + length]
-    ahead = [
-        before.ahead - (begin - first) / decay.rate for before, first in zip(recording.clocks, begins, strict=True)
-    ]
-    clocks = tuple(
-        replace(clock, ahead=there, late=clock.late + there - clock.ahead)
-        for clock, there in zip(decay.clocks, ahead, strict=True)
-    )
-    earlier = decay.earlier.shape[1]
-    return replace(decay, earlier=whole[:, :earlier], values=whole[:, earlier:], clocks=clocks)
+    return replace(decay, clocks=tuple(clocks))

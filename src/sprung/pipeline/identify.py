@@ -233,7 +233,10 @@ def _fit(
     prepared = _without(campaign, prepare(campaign), left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
-        campaign, prepared, lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress)
+        campaign,
+        prepared,
+        lambda known: _without(campaign, prepare(known), left_out),
+        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress),
     )
     start = None if first is None else first.parameters
     first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
