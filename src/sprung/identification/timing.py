@@ -19,7 +19,7 @@ from sprung.errors import SprungError
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay, Seen
-from sprung.recording import Drop
+from sprung.recording import ROUGHLY, Drop
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
 
 Real = NDArray[np.float64]
@@ -30,11 +30,8 @@ _FLIGHT = 0.04
 _IN_THE_AIR, _LOW = 0.85, 0.02
 """Part of the time to the landing that is certainly flight, and height of blocks where nobody says it, m."""
 
-_AWAY = 2.0
-"""Uncertainties of a clock within which the release is looked for on both sides of where it should be."""
-
-_LEAST = 0.008
-"""s by which the first motion that any logger shows may be before or after it all the same."""
+_AWAY = 2 * ROUGHLY
+"""s within which the release is looked for on both sides of where the first motion that a logger shows would have it."""
 
 _BEFORE = 0.008
 """s before the release that are looked at with it."""
@@ -102,7 +99,7 @@ def timed_by_release(
         own = [channel for channel in clock.channels if decay.usable[channel]]
         if not own or not np.any(np.abs(flight[own, : int(air / _FINE)]).max(axis=1) > _CLEAR * noise[own]):
             continue
-        begin = _begins(values[own], times, flight[own], air, max(_AWAY * clock.std, _LEAST))
+        begin = _begins(values[own], times, flight[own], air)
         when = taken[clock.name] - clock.ahead - recording.start - seen.release / recording.rate
         found = (
             None
@@ -180,15 +177,13 @@ def _read(flight: Real, times: Real) -> Real:
     return np.array([np.interp(times, grid, one, left=0.0) for one in flight])
 
 
-def _begins(values: Real, times: Real, flight: Real, air: float, away: float) -> float | None:
-    """Find to a sample when a logger saw the release, up to so far from where it should be; None where it did not."""
+def _begins(values: Real, times: Real, flight: Real, air: float) -> float | None:
+    """Find to a sample when a logger saw the release; None where it did not."""
     rate = 1 / (times[1] - times[0])
     before, after = int(_BEFORE * rate), int(air * rate)
     expected = _read(flight, np.arange(-before, after + 1) / rate)
-    first = np.searchsorted(times, -away) - before
-    last = np.searchsorted(times, away) + after
-    if first < 0 or last >= len(times):
-        return None
+    near = np.flatnonzero(np.abs(times) < _AWAY)
+    first, last = max(near[0] - before, 0), near[-1] + after
     windows = np.lib.stride_tricks.sliding_window_view(values[:, first : last + 1], before + after + 1, axis=1)
     missed = np.sum((windows - expected[:, None]) ** 2, axis=(0, 2))
     best = int(np.argmin(missed))

@@ -10,16 +10,13 @@ from numpy.typing import NDArray
 
 from sprung.identification import Fit, Summit, clear_of_splines, timed_by_decay, timed_by_release, told_alone
 from sprung.prepare import Decay, Prepared
-from sprung.recording import Campaign, LoggerClock, Recording
+from sprung.recording import Campaign, LoggerClock
 from sprung.vehicle import Vehicle
 
 Real = NDArray[np.float64]
 
 _DRIFT = 3e-5
 """s: by so much a crystal that is fast or slow by some ten parts in a million drifts while a vehicle vibrates."""
-
-_SET = 1e-3
-"""s to which a clock is set, at the worst, before the fit finds the rest."""
 
 _PASSES = 2
 """The better the vehicle, the better it tells the clocks, and they it."""
@@ -101,33 +98,32 @@ def set_clocks(
             seen.recording.name: (seen, drop.model_copy(update={"wheels": seen.wheels}))
             for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
         }
-        timed = [
+        released = [
             timed_by_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
             for decay in prepared.decays
         ]
-        summit = fit([told_alone(decay) for decay in timed])
-        timed = list(timed_by_decay(timed, summit))
-        told = {decay.file: _moments(decay.clocks, summit.parameters) for decay in timed if decay.clocks}
-        recordings = [_with_clocks(one, told.get(one.name, {})) for one in campaign.recordings]
+        summit = fit([told_alone(decay) for decay in released])
+        timed = timed_by_decay(released, summit)
+        known = {
+            decay.file: [
+                replace(clock, ahead=_moment(late, summit.parameters))
+                for clock, late in zip(decay.clocks, other.clocks, strict=True)
+            ]
+            for decay, other in zip(released, timed, strict=True)
+        }
+        recordings = [replace(one, clocks=tuple(known.get(one.name, one.clocks))) for one in campaign.recordings]
         prepared = prepare_again(replace(campaign, recordings=tuple(recordings)))
-        by_file = {decay.file: decay.clocks for decay in timed}
-        decays = [_told_before(one, by_file.get(one.file, ()), told.get(one.file, {})) for one in prepared.decays]
-        prepared = prepared._replace(decays=tuple(decays))
-    return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in prepared.decays)), summit
+    by_file = {decay.file: decay.clocks for decay in timed}
+    decays = [_told_before(one, by_file.get(one.file, ()), summit.parameters) for one in prepared.decays]
+    return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays)), summit
 
 
-def _moments(clocks: Sequence[LoggerClock], parameters: Mapping[str, float]) -> dict[str, float]:
-    """Give what each logger's clock showed at one moment, s, by its name."""
-    return {clock.name: clock.ahead - clock.expected(parameters) for clock in clocks}
+def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:
+    """Give what a logger's clock showed at a moment that is the same for all, s."""
+    return clock.ahead - clock.expected(parameters)
 
 
-def _with_clocks(recording: Recording, moments: Mapping[str, float]) -> Recording:
-    """Give a recording with clocks of which one moment is known; without any as it is."""
-    told = [replace(one, ahead=moments[one.name], std=_SET) for one in recording.clocks if one.name in moments]
-    return replace(recording, clocks=tuple(told) or recording.clocks)
-
-
-def _told_before(decay: Decay, before: Sequence[LoggerClock], moments: Mapping[str, float]) -> Decay:
+def _told_before(decay: Decay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> Decay:
     """Give a decay with what is known of its clocks, which were set by it as far as whole samples go.
 
     No sample was taken before the decay's clock says: what it must not hold, such as a tyre in the air, none of its channels
@@ -136,7 +132,7 @@ def _told_before(decay: Decay, before: Sequence[LoggerClock], moments: Mapping[s
     known = {clock.name: clock for clock in before}
     if not all(clock.name in known for clock in decay.clocks):
         return decay
-    earliest = min((clock.ahead - moments[clock.name] for clock in decay.clocks), default=0.0)
+    earliest = min((clock.ahead - _moment(known[clock.name], parameters) for clock in decay.clocks), default=0.0)
     clocks = [
         replace(clock, late=old.late + clock.ahead - old.ahead - earliest, std=old.std, follows=old.follows)
         for clock, old in ((clock, known[clock.name]) for clock in decay.clocks)

@@ -40,8 +40,9 @@ def align(recording: Recording) -> Recording:
     """
     if not recording.parts:
         return recording
-    known = {clock.name: _Told(clock.ahead, clock.std) for clock in recording.clocks if clock.std < ROUGHLY}
-    told = [known.get(part.name) if known else _release(part) for part in recording.parts]
+    known = {clock.name: _Told(clock.ahead, clock.std) for clock in recording.clocks}
+    set_before = any(clock.std < ROUGHLY for clock in recording.clocks)
+    told = [known.get(part.name) if set_before else _release(part) for part in recording.parts]
     if not any(told):  # nothing but that they were all started has tied them
         return recording
     faults = [
