@@ -109,7 +109,7 @@ def timed_by_release(
             )
         )
         if found is not None:
-            told[number] = found._replace(std=float(np.hypot(found.std / clock.share**0.5, _FLOOR)))
+            told[number] = found
     if not told:
         return decay
     common = float(np.median([one.time for one in told.values()]))
@@ -203,10 +203,11 @@ def _released(
     window = (times > begin - _BEFORE) & (times < begin + air)
     values, times = values[:, window], times[window]
     taken = taken[(taken > times[0] - _BEFORE) & (taken < times[-1] + _BEFORE)] if interpolated else times
+    one_by_one = np.eye(len(taken))
+    made = CubicSpline(taken, one_by_one)(times) if interpolated else one_by_one  # shape (time, sample taken)
 
     def model(moment: float, waves: Real = flight) -> Real:
-        read = _read(waves, taken - moment)
-        return np.asarray(CubicSpline(taken, read, axis=1)(times) if interpolated else read, dtype=np.float64)
+        return np.asarray(_read(waves, taken - moment) @ made.T, dtype=np.float64)
 
     def cost(moment: float) -> float:
         return float(np.sum((values - model(moment)) ** 2))
@@ -222,7 +223,10 @@ def _released(
     if left > _LIKE_IT**2 * np.sum(model(moment) ** 2):
         return None
     follows = [-float(np.sum(slope * model(moment, one))) / steepness for one in slopes]
-    return _Moment(moment, (left / max(values.size - 1, 1) / steepness) ** 0.5, np.array(follows))
+    # The samples that were taken are independent, not those that were made of them.
+    noise = left / max(len(values) * float(np.sum(made**2)) - 1, 1)
+    spread = (noise * float(np.sum((slope @ made) ** 2))) ** 0.5 / steepness
+    return _Moment(moment, float(np.hypot(spread, _FLOOR)), np.array(follows))
 
 
 def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]:
