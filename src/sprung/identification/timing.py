@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from sprung.errors import SprungError
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.summit import Summit
-from sprung.prepare import Decay, Seen
+from sprung.prepare import Decay, FromFlight, Seen
 from sprung.recording import ROUGHLY, Drop
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
 
@@ -42,12 +42,18 @@ _FINE = 1e-4
 _CLEAR = 20.0
 """Peak of the flight over a channel's noise from which its logger tells the release."""
 
+_NEIGHBOURS, _LOST = 20, 1e-9
+"""Samples on each side of which a spline makes a new one, and part of the largest singular value that is rounding."""
+
 _LIKE_IT = 0.2
 """Part of the flight that may be left unexplained: beyond it the release was not at one moment, and tells nothing."""
 
 _FLOOR = 5e-6
 """s: by so much crystals that are fast or slow by some ten parts in a million drift from the release to the liveliest part
 of a decay."""
+
+_NEAR = 2.5 * _FINE
+"""s from the release within which a sample may be from before or after it."""
 
 _NUDGE = 1e-4
 """Part of a parameter by which it is moved to see what that does to the flight."""
@@ -62,7 +68,7 @@ _FARTHEST, _COARSE = 0.1, 0.001
 def timed_by_release(
     decay: Decay, seen: Seen, drop: Drop, vehicle: Vehicle, load: Load, sensors: Sequence[Sensor]
 ) -> Decay:
-    """Give a decay with the clocks that the release tells; the others keep what they had.
+    """Give a decay with the clocks that the release tells, and with what the flight tells; other clocks keep what they had.
 
     Parameters
     ----------
@@ -92,22 +98,26 @@ def timed_by_release(
     air = next((event.time for event in fall.events if event.kind == "landing"), _FLIGHT) * _IN_THE_AIR
     recording = seen.recording
     times = (np.arange(recording.values.shape[1]) - seen.release) / recording.rate
-    values, noise = recording.values - seen.rest.level[:, None], seen.rest.noise.std(axis=1)
+    # In units of each channel's noise.
+    noise = np.maximum(seen.rest.noise.std(axis=1), decay.resolution / 12**0.5)[:, None]
+    values, flight, slopes = (recording.values - seen.rest.level[:, None]) / noise, flight / noise, slopes / noise
     told: dict[int, _Moment] = {}
-    taken = {part.name: part.time for part in recording.parts}
+    parts = {part.name: part for part in recording.parts}
     for number, clock in enumerate(decay.clocks):
         own = [channel for channel in clock.channels if decay.usable[channel]]
-        if not own or not np.any(np.abs(flight[own, : int(air / _FINE)]).max(axis=1) > _CLEAR * noise[own]):
+        if not own or np.abs(flight[own, : int(air / _FINE)]).max() < _CLEAR:
             continue
         begin = _begins(values[own], times, flight[own], air)
-        when = taken[clock.name] - clock.ahead - recording.start - seen.release / recording.rate
-        found = (
-            None
-            if begin is None
-            else _released(
-                values[own], times, when if clock.share < 1 else times, flight[own], slopes[:, own], begin, air
-            )
+        if begin is None:
+            continue
+        window = (times > begin - _BEFORE) & (times < begin + air)
+        taken = parts[clock.name].time - clock.ahead - recording.start - seen.release / recording.rate
+        samples = (
+            _as_taken(values[own][:, window], times[window], taken, 1 / parts[clock.name].rate)
+            if clock.share < 1
+            else (values[own][:, window], times[window])
         )
+        found = _moment_of(*samples, flight[own], slopes[:, own], begin)
         if found is not None:
             told[number] = found
     if not told:
@@ -126,7 +136,12 @@ def timed_by_release(
         else clock
         for number, clock in enumerate(decay.clocks)
     )
-    return replace(decay, clocks=clocks)
+    left, unseen = (
+        np.concatenate([getattr(one, name) for one in told.values()], axis=-1) for name in ("left", "unseen")
+    )
+    gradient, information = unseen @ left, unseen @ unseen.T
+    from_flight = FromFlight(tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told))
+    return replace(decay, clocks=clocks, flight=from_flight)
 
 
 class _Moment(NamedTuple):
@@ -138,11 +153,17 @@ class _Moment(NamedTuple):
         s.
     slopes
         How it would move with each parameter of the vehicle that the flight was computed with, s per SI unit.
+    left
+        What the flight leaves of the logger's samples, over their noise, shape (sample,).
+    unseen
+        By how much more it would read with each parameter, less what another moment takes up; shape (parameter, sample).
     """
 
     time: float
     std: float
     slopes: Real
+    left: Real
+    unseen: Real
 
 
 def _flights(
@@ -191,42 +212,44 @@ def _begins(values: Real, times: Real, flight: Real, air: float) -> float | None
     return float(times[first + before + best]) if 0 < best < len(missed) - 1 else None
 
 
-def _released(
-    values: Real, times: Real, taken: Real, flight: Real, slopes: Real, begin: float, air: float
-) -> _Moment | None:
-    """Find when a logger saw the release, of which the sample is known.
+def _as_taken(values: Real, times: Real, taken: Real, step: float) -> tuple[Real, Real]:
+    """Give back the samples that a logger took, and when, from those that a spline through them gives."""
+    near = taken[(taken > times[0] - _NEIGHBOURS * step) & (taken < times[-1] + _NEIGHBOURS * step)]
+    made = CubicSpline(near, np.eye(len(near)))(times)
+    within = (near >= times[0]) & (near <= times[-1])
+    return (values @ np.linalg.pinv(made, rcond=_LOST).T)[:, within], near[within]
 
-    Its samples at `times` are those that it took, or made of those it took at other ones.
-    """
-    step = times[1] - times[0]
-    interpolated = taken is not times
-    window = (times > begin - _BEFORE) & (times < begin + air)
-    values, times = values[:, window], times[window]
-    taken = taken[(taken > times[0] - _BEFORE) & (taken < times[-1] + _BEFORE)] if interpolated else times
-    one_by_one = np.eye(len(taken))
-    made = CubicSpline(taken, one_by_one)(times) if interpolated else one_by_one  # shape (time, sample taken)
+
+def _moment_of(values: Real, times: Real, flight: Real, slopes: Real, begin: float) -> _Moment | None:
+    """Find when a logger saw the release, of which the sample is known."""
 
     def model(moment: float, waves: Real = flight) -> Real:
-        return np.asarray(_read(waves, taken - moment) @ made.T, dtype=np.float64)
+        return _read(waves, times - moment)
 
     def cost(moment: float) -> float:
         return float(np.sum((values - model(moment)) ** 2))
 
+    step = float(np.median(np.diff(times)))
     tried = np.arange(begin - 2 * step, begin + 2 * step, _FINE)
     moment = float(tried[np.argmin([cost(one) for one in tried])])
+    # The reading jumps at the release: a sample so near to it may be from before or after.
+    clear = np.abs(times - moment) > _NEAR
+    values, times = values[:, clear], times[clear]
+    jerk = np.gradient(flight, _FINE, axis=1)
     for _ in range(5):
-        slope = (model(moment + _FINE / 2) - model(moment - _FINE / 2)) / _FINE
+        slope = -model(moment, jerk)
         steepness = max(float(np.sum(slope**2)), np.finfo(float).tiny)
         further = float(np.sum(slope * (values - model(moment)))) / steepness
         moment = float(np.clip(moment + further, tried[0], tried[-1]))
-    left = cost(moment)
-    if left > _LIKE_IT**2 * np.sum(model(moment) ** 2):
+    left = values - model(moment)
+    squared = float(np.sum(left**2))
+    if squared > _LIKE_IT**2 * np.sum(model(moment) ** 2):
         return None
-    follows = [-float(np.sum(slope * model(moment, one))) / steepness for one in slopes]
-    # The samples that were taken are independent, not those that were made of them.
-    noise = left / max(len(values) * float(np.sum(made**2)) - 1, 1)
-    spread = (noise * float(np.sum((slope @ made) ** 2))) ** 0.5 / steepness
-    return _Moment(moment, float(np.hypot(spread, _FLOOR)), np.array(follows))
+    more = np.array([model(moment, one).ravel() for one in slopes])
+    along = more @ slope.ravel() / steepness
+    spread = (squared / max(values.size - 1, 1) / steepness) ** 0.5
+    std = float(np.hypot(spread, _FLOOR))
+    return _Moment(moment, std, -along, left.ravel(), more - along[:, None] * slope.ravel())
 
 
 def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]:

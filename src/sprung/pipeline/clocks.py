@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from sprung.identification import Fit, Summit, clear_of_splines, timed_by_decay, timed_by_release, told_alone
 from sprung.prepare import Decay, Prepared
 from sprung.recording import Campaign, LoggerClock
-from sprung.vehicle import Vehicle
+from sprung.vehicle import Vehicle, separated
 
 Real = NDArray[np.float64]
 
 _DRIFT = 3e-5
 """s: by so much a crystal that is fast or slow by some ten parts in a million drifts while a vehicle vibrates."""
+
+_NO_WORSE = 1.1
+"""Noise with the flight over noise without above which the vehicle did something there that no model has."""
 
 _PASSES = 2
 """The better the vehicle, the better it tells the clocks, and they it."""
@@ -93,15 +96,7 @@ def set_clocks(
     # As far as the first motion that each logger shows has told, all clocks are one: near enough for a first vehicle.
     summit = fit([replace(decay, clocks=()) for decay in prepared.decays])
     for _ in range(_PASSES):
-        vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
-        by_name = {
-            seen.recording.name: (seen, drop.model_copy(update={"wheels": seen.wheels}))
-            for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
-        }
-        released = [
-            timed_by_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
-            for decay in prepared.decays
-        ]
+        released = _released(campaign, prepared, prepared.decays, summit)
         summit = fit([told_alone(decay) for decay in released])
         timed = timed_by_decay(released, summit)
         known = {
@@ -116,6 +111,56 @@ def set_clocks(
     by_file = {decay.file: decay.clocks for decay in timed}
     decays = [_told_before(one, by_file.get(one.file, ()), summit.parameters) for one in prepared.decays]
     return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays)), summit
+
+
+def told_by_flights(
+    campaign: Campaign, prepared: Prepared, summit: Summit, fit: Callable[[Sequence[Decay]], Summit]
+) -> tuple[tuple[Decay, ...], Summit] | None:
+    """Use what the samples between release and landing, which have told the clocks, tell of the vehicle too.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    prepared
+        The decays that were fitted, their clocks set.
+    summit
+        Where that ended.
+    fit
+        Fits decays from there.
+
+    Returns
+    -------
+    decays, summit
+        With what their flights tell; None where there are no several loggers, or where during the flight the vehicle did
+        something that the model does not have.
+    """
+    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.seen}
+    flown = _released(
+        campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], summit
+    )
+    told = [one.flight for one in flown if one.flight is not None]
+    if not told:
+        return None
+    decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
+    found = fit(decays)
+    values = separated(found.parameters)
+    missed = sum(one.missed(np.array([values[name] for name in one.names])) for one in told)
+    worse = max(float(np.max(found.noise / summit.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
+    return (decays, found) if found.converged and worse < _NO_WORSE else None
+
+
+def _released(campaign: Campaign, prepared: Prepared, decays: Sequence[Decay], summit: Summit) -> list[Decay]:
+    """Time the clocks of decays by their releases, for the vehicle of a fit."""
+    vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
+    by_name = {
+        seen.recording.name: (seen, drop.model_copy(update={"wheels": seen.wheels}))
+        for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
+    }
+    return [
+        timed_by_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
+        for decay in decays
+    ]
 
 
 def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:

@@ -29,7 +29,7 @@ from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.candidates import ENGINE, fit_from
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
-from sprung.pipeline.clocks import clock_reports, set_clocks
+from sprung.pipeline.clocks import clock_reports, set_clocks, told_by_flights
 from sprung.pipeline.diagnosis import (
     Bench,
     Hypothesis,
@@ -183,7 +183,30 @@ def fit_campaign(
         listed = scores(fitted.campaign, fitted.prepared.decays, fitted.summit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
-    return _with_the_fall(_with_drifts(fitted), campaign.model.fall if fall is None else fall, progress)
+    return _with_the_fall(
+        _with_flights(_with_drifts(fitted), progress), campaign.model.fall if fall is None else fall, progress
+    )
+
+
+def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
+    """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
+    if not fitted.fit.converged or fitted.accused or fitted.fit.inflation > 1 or fitted.choice.followed:
+        return fitted
+    told = told_by_flights(
+        fitted.campaign,
+        fitted.prepared,
+        fitted.summit,
+        lambda decays: fit_from(fitted.choice, decays, fitted.summit, CONVERGED, progress),
+    )
+    if told is None:
+        return fitted
+    decays, summit = told
+    return fitted._replace(
+        why=f"{fitted.why}; what the flights that told the clocks tell of the vehicle is used too",
+        prepared=fitted.prepared._replace(decays=decays),
+        summit=summit,
+        fit=describe(summit, decays),
+    )
 
 
 def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
