@@ -112,12 +112,10 @@ def timed_by_release(
             continue
         window = (times > begin - _BEFORE) & (times < begin + air)
         taken = parts[clock.name].time - clock.ahead - recording.start - seen.release / recording.rate
-        samples = (
-            _as_taken(values[own][:, window], times[window], taken, 1 / parts[clock.name].rate)
-            if clock.share < 1
-            else (values[own][:, window], times[window])
-        )
-        found = _moment_of(*samples, flight[own], slopes[:, own], begin)
+        read, when = values[own][:, window], times[window]
+        if clock.share < 1:
+            read, when = _as_taken(read, when, taken, 1 / parts[clock.name].rate)
+        found = _moment_of(read, when, flight[own], slopes[:, own], begin)
         if found is not None:
             told[number] = found
     if not told:

@@ -188,9 +188,14 @@ def fit_campaign(
     )
 
 
+def _is_sound(fitted: Fitted) -> bool:
+    """Say whether more of the same model is worth trying."""
+    return fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
+
+
 def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
     """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
-    if not fitted.fit.converged or fitted.accused or fitted.fit.inflation > 1 or fitted.choice.followed:
+    if not _is_sound(fitted) or fitted.choice.followed:
         return fitted
     told = told_by_flights(
         fitted.campaign,
@@ -211,8 +216,7 @@ def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
 
 def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
     """Use the drops from their releases on, where that is wanted or needed, and where it says more."""
-    sound = fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
-    if wanted is False or (wanted is None and not (sound and is_needed(fitted.fit))):
+    if wanted is False or (wanted is None and not (_is_sound(fitted) and is_needed(fitted.fit))):
         return fitted
     flown = fly(fitted.campaign, fitted.choice, fitted.prepared, fitted.summit, fitted.fit, progress)
     if flown is None:
