@@ -136,14 +136,16 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
         [row["kind"], *(f"{row[key]:g}" for key in keys), " / ".join(map(str, row["verdicts"].values()))]
         for row in rows
     ]
-    worst = max(rows, key=lambda row: row["rmse_over_bound"])
-    met = "kept" if worst["rmse_over_bound"] <= WANTED else f"missed: it is {worst['rmse_over_bound']:g} at the worst"
+    mean, worst = (max(row[key] for row in rows) for key in ("rmse_over_bound", "worst_rmse_over_bound"))
+    kept = f"kept: the mean is {mean:g} at the most, and {worst:g} the worst of all parameters"
+    missed = f"missed: the mean is {mean:g} at the most, and {worst:g} the worst of all parameters"
     return f"""# Several loggers
 
 Eight wireless loggers, one for each sensor, are a legitimate instrument: their clocks know nothing of each other. The
 release is one moment for all of them, and how the vehicle moves between the release and the landing follows from the
 vehicle alone; so each logger that shows the release tells when it was on its own clock, and the joint fit finds one delay
-per logger and drop along with the vehicle.
+per logger and drop along with the vehicle. The same samples tell of the vehicle too, whatever the clocks: where the flight
+is explained down to the noise, that is used.
 
 ## How it was done
 
@@ -158,12 +160,15 @@ axle, and for them the table has the error over the stated uncertainty.
 
 ## What came out
 
-Wanted are errors of at most {WANTED:g} times the bound, which is {met}; and clocks within 0.3 ms.
+Wanted are errors of at most {WANTED:g} times the bound, which is {kept if worst <= WANTED else missed}; and clocks within
+0.3 ms.
 
 {table(head, body)}
 
 Every parameter of every row is in [loggers.json](loggers.json). What is lost against one clock is lost to delays that are
-parameters too, seventy of them. Drift within a record is not modelled: it is in the stated uncertainty of the clocks.
+parameters too, seventy of them; flights give some of it back, for some parameters all of it and more, as the bound is that of
+the decays alone. Slower loggers are interpolated to the rate of the fastest, and begin four of their own samples later, so that
+nothing of the landing is in theirs. Drift within a record is not modelled: it is in the stated uncertainty of the clocks.
 
 ## To run it again
 
