@@ -58,6 +58,9 @@ _NEAR = 2.5 * _FINE
 _NUDGE = 1e-4
 """Part of a parameter by which it is moved to see what that does to the flight."""
 
+_VAGUE = 2e-4
+"""s of uncertainty from which so faint a beginning of a motion tells its moment less well than its slope says."""
+
 _UNTOLD = 0.01
 """s of uncertainty from which a clock is not told."""
 
@@ -246,6 +249,8 @@ def _moment_of(values: Real, times: Real, flight: Real, slopes: Real, begin: flo
     more = np.array([model(moment, one).ravel() for one in slopes])
     along = more @ slope.ravel() / steepness
     spread = (squared / max(values.size - 1, 1) / steepness) ** 0.5
+    if spread > _VAGUE:
+        return None
     std = float(np.hypot(spread, _FLOOR))
     return _Moment(moment, std, -along, left.ravel(), more - along[:, None] * slope.ravel())
 
