@@ -145,7 +145,9 @@ def told_by_flights(
     decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
     found = fit(decays)
     values = separated(found.parameters)
-    missed = sum(one.missed(np.array([values[name] for name in one.names])) for one in told)
+    missed = sum(
+        one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
+    )
     worse = max(float(np.max(found.noise / summit.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
     return (decays, found) if found.converged and worse < _NO_WORSE else None
 
