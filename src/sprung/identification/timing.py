@@ -4,8 +4,8 @@ The release is one moment for all loggers. Just after it, before any wheel lands
 so that each logger that shows it tells when the release was on its own clock, to a small part of a millisecond. A
 logger whose sensors hardly moved then is held against what the others say of the decay.
 
-Given the vehicle, a flight tells the clocks; whatever the clocks, it tells of the vehicle. Both follow from the same samples, and
-the likelihood of these is the product of the two: the first is always used, the second only where a flight is explained.
+Given the vehicle, a flight tells the clocks; whatever the clocks, it tells of the vehicle. Both follow from the same samples,
+and the likelihood of these is the product of the two: the first is always used, the second only where a flight is explained.
 """
 
 from __future__ import annotations
