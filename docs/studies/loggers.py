@@ -175,8 +175,8 @@ axle, and for them the table has the error over the stated uncertainty.
 
 ## What came out
 
-Wanted are errors of at most {WANTED:g} times the bound, which is {kept if worst <= WANTED else missed}; and clocks within
-0.3 ms.
+Wanted are clocks within 0.3 ms, and errors of at most {WANTED:g} times the bound, which is
+{kept if worst <= WANTED else missed}.
 
 {table(head, body)}
 

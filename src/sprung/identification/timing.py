@@ -55,6 +55,9 @@ _FLOOR = 5e-6
 """s: by so much crystals that are fast or slow by some ten parts in a million drift from the release to the liveliest part
 of a decay."""
 
+_COMPUTED = 1e-3
+"""m/s² to which a flight is computed, read between its steps."""
+
 _NEAR = 2.5 * _FINE
 """s from the release within which a sample may be from before or after it."""
 
@@ -105,7 +108,7 @@ def timed_by_release(
     recording = seen.recording
     times = (np.arange(recording.values.shape[1]) - seen.release) / recording.rate
     # In units of each channel's noise.
-    noise = np.maximum(seen.rest.noise.std(axis=1), decay.resolution / 12**0.5)[:, None]
+    noise = np.hypot(np.maximum(seen.rest.noise.std(axis=1), decay.resolution / 12**0.5), _COMPUTED)[:, None]
     values, flight, slopes = (recording.values - seen.rest.level[:, None]) / noise, flight / noise, slopes / noise
     told: dict[int, _Moment] = {}
     parts = {part.name: part for part in recording.parts}
