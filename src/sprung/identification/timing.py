@@ -254,7 +254,8 @@ def _moment_of(values: Real, times: Real, flight: Real, slopes: Real, begin: flo
         return None
     more = np.array([model(moment, one).ravel() for one in slopes])
     along = more @ slope.ravel() / steepness
-    spread = (squared / max(values.size - 1, 1) / steepness) ** 0.5
+    # A slow logger takes so few samples in flight that what they leave may be much less than their noise by chance.
+    spread = (max(squared / max(values.size - 1, 1), 1.0) / steepness) ** 0.5
     if spread > _VAGUE:
         return None
     std = float(np.hypot(spread, _FLOOR))
