@@ -128,28 +128,44 @@ def main() -> None:
 
 def page(rows: Sequence[dict[str, Any]]) -> str:
     """Write the page."""
-    head = ["loggers", "error", "worst", "stated", "covered, %", "clocks told, %", "rms, ms", "within 0.3 ms, %"]
+    head = [
+        "loggers",
+        "campaigns",
+        "error",
+        "worst",
+        "stated",
+        "covered, %",
+        "clocks told, %",
+        "rms, ms",
+        "within 0.3 ms, %",
+    ]
     head += ["others over stated", " / ".join(VERDICTS)]
     keys = ["rmse_over_bound", "worst_rmse_over_bound", "stated_over_bound", "coverage_percent", "told_percent"]
     keys += ["told_rms_ms", "told_within_percent", "others_over_stated"]
     body = [
-        [row["kind"], *(f"{row[key]:g}" for key in keys), " / ".join(map(str, row["verdicts"].values()))]
+        [
+            row["kind"],
+            str(row["campaigns"]),
+            *(f"{row[key]:g}" for key in keys),
+            " / ".join(map(str, row["verdicts"].values())),
+        ]
         for row in rows
     ]
-    worst = max(rows, key=lambda row: row["rmse_over_bound"])
-    met = "kept" if worst["rmse_over_bound"] <= WANTED else f"missed: it is {worst['rmse_over_bound']:g} at the worst"
+    missing = [row["kind"] for row in rows if row["worst_rmse_over_bound"] > WANTED]
+    met = f"which is missed by: {'; '.join(missing)}" if missing else "which is kept"
     return f"""# Several loggers
 
 Eight wireless loggers, one for each sensor, are a legitimate instrument: their clocks know nothing of each other. The
 release is one moment for all of them, and how the vehicle moves between the release and the landing follows from the
 vehicle alone; so each logger that shows the release tells when it was on its own clock, and the joint fit finds one delay
-per logger and drop along with the vehicle.
+per logger and drop along with the vehicle. The same samples tell of the vehicle too, whatever the clocks: where the flight
+is explained down to the noise, that is used.
 
 ## How it was done
 
 Ten drops of the paper's car (Table 1), empty and with a load, total mass weighed, {NOISE:g} m/s² of noise. Every sensor is a
 logger of its own, started within {APART:g} s of the others; its clock shows anything, and is fast or slow by up to what
-the table says. {rows[0]["campaigns"]} campaigns in each row, from `sprung.identify`.
+the table says. All from `sprung.identify`.
 
 *Error* is the root-mean-square error over the Cramér-Rao bound of the same drops with one clock for all, in the mean over
 the parameters, and for the *worst* of them; *stated* is the stated uncertainty over that bound. Clocks are *told* where
@@ -158,12 +174,15 @@ axle, and for them the table has the error over the stated uncertainty.
 
 ## What came out
 
-Wanted are errors of at most {WANTED:g} times the bound, which is {met}; and clocks within 0.3 ms.
+Wanted are clocks within 0.3 ms, and errors of at most {WANTED:g} times the bound, in the worst of all parameters,
+{met}. Where fewer than 95 % are covered, error bars are too small.
 
 {table(head, body)}
 
 Every parameter of every row is in [loggers.json](loggers.json). What is lost against one clock is lost to delays that are
-parameters too, seventy of them. Drift within a record is not modelled: it is in the stated uncertainty of the clocks.
+parameters too, seventy of them; flights give some of it back, for some parameters all of it and more, as the bound is that of
+the decays alone. Slower loggers are interpolated to the rate of the fastest, and begin four of their own samples later, so that
+nothing of the landing is in theirs. Drift within a record is not modelled: it is in the stated uncertainty of the clocks.
 
 ## To run it again
 

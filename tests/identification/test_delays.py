@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 
 from sprung.identification import Summit, ascend, describe
 from sprung.identification.likelihood import Likelihood
-from sprung.prepare import Decay, prepare
+from sprung.prepare import Decay, FromFlight, prepare
 from sprung.recording import LoggerClock
 from sprung.simulation import free_decays
 from sprung.vehicle import TABLE_1_CAR, Load, Rows
@@ -57,6 +57,38 @@ def likelihood(those: list[Decay]) -> Likelihood:
 def cost(fit: Likelihood, values: Real) -> float:
     residual, penalty = fit.at(values).misfit(WEIGHTS)
     return float((residual @ WEIGHTS).sum() + penalty)
+
+
+APART = (*NAMES[:-2], "t_f1", "t_f2", "t_r1", "t_r2")
+ONTO = np.array([[own.startswith(name) for own in APART] for name in NAMES], dtype=float)
+"""Half-distances of springs and dampers by those that both share."""
+
+
+def flown(those: list[Decay], at: Real) -> list[Decay]:
+    """Give the first two decays flights that tell of three things, each to some parts in a thousand, and tell them wrong."""
+    random = np.random.default_rng(5)
+    for i in (0, 1):
+        told = random.standard_normal((17, 3)) / (0.003 * (at @ ONTO)[:, None])
+        flight = FromFlight(APART, at @ ONTO, told @ random.standard_normal(3), told @ told.T, 0.0, 0)
+        those[i] = replace(those[i], flight=flight)
+    return those
+
+
+def test_what_flights_tell_adds_to_cost_gradient_and_information() -> None:
+    values, at = TRUTH * np.linspace(0.97, 1.05, 15), TRUTH * 1.01
+    with_flights = flown(decays(), at)
+    plain, told = likelihood(decays()), likelihood(with_flights)
+    before, after = (fit.at(values).evaluate(WEIGHTS) for fit in (plain, told))
+    flights = [one.flight for one in with_flights if one.flight is not None]
+    missed = sum(flight.missed(values @ ONTO) for flight in flights)
+    assert cost(told, values) - cost(plain, values) == pytest.approx(missed, rel=1e-9)
+    assert after.penalty - before.penalty == pytest.approx(missed, rel=1e-9)
+    gradient = sum(ONTO @ (flight.gradient - flight.information @ ((values - at) @ ONTO)) for flight in flights)
+    np.testing.assert_allclose((after.gradient - before.gradient) / gradient, 1.0, rtol=1e-5)
+    information = np.sum([ONTO @ flight.information @ ONTO.T for flight in flights], axis=0)
+    scale = np.outer(TRUTH, TRUTH)
+    added = (after.information - before.information) * scale
+    np.testing.assert_allclose(added, information * scale, atol=1e-6 * np.abs(information * scale).max())
 
 
 @pytest.mark.parametrize("follows", [0.0, 2e-7])

@@ -183,3 +183,17 @@ def test_a_logger_of_which_no_moment_is_known_is_left_out() -> None:
     whole = Recording("drop", ("a", "b"), np.empty((2, 0)), 0.0, 1.0, parts=parts)
     together = merged(whole, [0.1, None])
     assert together.usable.tolist() == [True, False]
+
+
+def test_no_channel_is_lost_to_rounding_where_its_logger_begins_last_or_ends_first() -> None:
+    random = np.random.default_rng(3)
+    for _ in range(200):
+        parts = []
+        for name, rate in (("fast", 1000.0), ("slow", 200.0)):
+            values = random.standard_normal((1, int(rate)))
+            parts.append(Recording(name, (name,), values, float(random.uniform(-1000, 1000)), rate))
+        whole = Recording("drop", ("fast", "slow"), np.empty((2, 0)), 0.0, 1.0, parts=tuple(parts))
+        moments = [part.start + float(random.uniform(0.3, 0.6)) for part in parts]
+        together = merged(whole, moments)
+        assert together.values.shape[1] > 500
+        assert together.usable.all()

@@ -3,7 +3,7 @@
 from sprung.identification.added_mass import added_mass
 from sprung.identification.beyond import ascend_stepped, lost_without, prospects
 from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK, told_directions
-from sprung.identification.contact import ascend_from_contact
+from sprung.identification.contact import ascend_from_contact, clear_of_splines
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
 from sprung.identification.inflation import corrections, of_colour
 from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, inflation_of, residual_records
@@ -48,6 +48,7 @@ __all__ = [
     "ascend",
     "ascend_from_contact",
     "ascend_stepped",
+    "clear_of_splines",
     "conclude",
     "corrections",
     "describe",

@@ -48,6 +48,8 @@ class Sums:
     ----------
     run
         The records.
+    values
+        Parameters, SI, shape (parameter,).
     expected
         How late each logger should be, s, shape (record, logger).
     poles
@@ -63,6 +65,7 @@ class Sums:
     """
 
     run: Run
+    values: Real
     expected: Real
     poles: Complex
     shapes: Complex
@@ -77,7 +80,7 @@ class Sums:
         poles, right = poles[run.load], right[run.load]
         exponent = poles * run.step[:, None]
         products = gram(exponent, run.samples, run.group)
-        return cls(run, expected, poles, shapes[run.load], reach_of(right), products, run.correlate(exponent))
+        return cls(run, values, expected, poles, shapes[run.load], reach_of(right), products, run.correlate(exponent))
 
     def solve(self, weights: Real) -> Amplitudes:
         """Solve for the amplitudes and delays, channels weighted by 1/σ², shape (channel,)."""
@@ -118,7 +121,8 @@ class Sums:
         m = solved.modes
         gram, data = self.gram[:, :m, :m], self.data[:, :, :m]
         inverse, amplitudes = solved.inverse, solved.amplitudes
-        known = self.expected, self.run.expected_std, self.run.follows, self.run.late
+        run = self.run
+        known = self.expected, run.expected_std, run.follows, run.late, run.flown, self.values
         return Delays(values, *known, self.poles, self.shapes, weighted, gram, data, inverse, amplitudes)
 
     def _solve(self, weights: Real) -> Amplitudes:

@@ -8,12 +8,12 @@ vibration begins where the last one last touched. What lies between is where whe
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.identification.likelihood import Place
-from sprung.identification.records import channel_shares
 from sprung.identification.summit import Summit
 from sprung.prepare import Decay
 from sprung.units import STANDARD_GRAVITY
@@ -116,10 +116,32 @@ def _shocked(decay: Decay, found: Summit, position: int) -> int:
 
 
 def _wary(decay: Decay) -> int:
-    """Give samples by which to stay away from the last contact with several clocks.
+    """Give samples by which to stay away from the last contact where a logger interpolated: they have something of it."""
+    slowest = min(decay.shares, default=1.0)
+    return round(_NEIGHBOURS / slowest) if slowest < 1 else 0
 
-    One logger may have taken its sample half a step before the others, and what was interpolated has something of its
-    neighbours.
+
+def clear_of_splines(decay: Decay) -> Decay:
+    """Let the channels of slower loggers begin later, by as much as their interpolated samples have of earlier ones.
+
+    Parameters
+    ----------
+    decay
+        Of several loggers.
+
+    Returns
+    -------
+    Decay
+        In which these loggers are late by that.
     """
-    slowest = float(channel_shares(decay).min())
-    return round(_NEIGHBOURS / slowest) if slowest < 1 else int(bool(decay.clocks))
+    skips = [round(_NEIGHBOURS / clock.share) if clock.share < 1 else 0 for clock in decay.clocks]
+    whole = np.concatenate([decay.earlier, decay.values], axis=1)
+    length, before = whole.shape[1] - max(skips, default=0), decay.earlier.shape[1]
+    values = whole[:, :length].copy()
+    for clock, skip in zip(decay.clocks, skips, strict=True):
+        values[list(clock.channels)] = whole[list(clock.channels), skip : skip + length]
+    clocks = tuple(
+        replace(clock, ahead=clock.ahead + skip / decay.rate, late=clock.late + skip / decay.rate)
+        for clock, skip in zip(decay.clocks, skips, strict=True)
+    )
+    return replace(decay, earlier=values[:, :before], values=values[:, before:], clocks=clocks)

@@ -13,6 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.identification.records import Flown
+
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
@@ -37,6 +39,10 @@ class Delays:
         How that grows with the parameters, shape (record, delay, parameter).
     late
         1 where a channel has a delay, shape (channel, delay).
+    flown
+        What the flights before the records tell of the vehicle.
+    parameters
+        Of the vehicle, shape (parameter,).
     poles
         λ, 1/s, shape (record, mode).
     turned
@@ -58,6 +64,8 @@ class Delays:
     expected_std: Real
     follows: Real
     late: Real
+    flown: Flown
+    parameters: Real
     poles: Complex
     turned: Complex
     weighted: Complex
@@ -83,20 +91,21 @@ class Delays:
 
     @property
     def penalty(self) -> float:
-        """What the delays miss of what is known beforehand, in units of its uncertainty, squared."""
-        return float(np.sum(((self.values - self.expected) / self.expected_std) ** 2))
+        """What delays and parameters miss of what is known beforehand, in units of its uncertainty, squared."""
+        missed = float(np.sum(((self.values - self.expected) / self.expected_std) ** 2))
+        return missed + self.flown.penalty(self.parameters)
 
     @property
     def gradient(self) -> Real:
         """What the same adds to the gradient by the parameters, shape (record, parameter)."""
         missed = (self.values - self.expected) / self.expected_std**2
-        return np.asarray((missed[:, None] @ self.follows)[:, 0], dtype=np.float64)
+        return np.asarray((missed[:, None] @ self.follows)[:, 0] + self.flown.score(self.parameters), dtype=np.float64)
 
     def information(self, record: int, changes: int) -> Real:
         """Give what the same adds to a record's information on parameters, and on other changes behind them; square."""
         scaled = self.follows[record] / self.expected_std[record][:, None]
         whole = np.zeros((changes, changes))
-        whole[: scaled.shape[1], : scaled.shape[1]] = scaled.T @ scaled
+        whole[: scaled.shape[1], : scaled.shape[1]] = scaled.T @ scaled + self.flown.information[record]
         return whole
 
     @cached_property

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,46 @@ Index = NDArray[np.int64]
 
 _LARGEST = 400
 """Blocks in a run at the most, unless one record has more: its products then stay in a processor's cache."""
+
+
+class Flown(NamedTuple):
+    """What flights tell of the vehicle before each record of a run, as `FromFlight` of one does.
+
+    Attributes
+    ----------
+    at, gradient
+        Shape (record, parameter).
+    information
+        Shape (record, parameter, parameter).
+    """
+
+    at: Real
+    gradient: Real
+    information: Real
+
+    @classmethod
+    def of(cls, decays: Sequence[Decay], names: Sequence[str]) -> Flown:
+        """Take up what decays have of it, for parameters of a fit, which may share half-distances."""
+        at, gradient = np.zeros((2, len(decays), len(names)))
+        information = np.zeros((len(decays), len(names), len(names)))
+        for i, flight in enumerate(decay.flight for decay in decays):
+            if flight is not None:
+                own = np.array([[name in separate_names(one) for name in flight.names] for one in names], dtype=float)
+                at[i] = own @ flight.at / np.maximum(own.sum(axis=1), 1)
+                gradient[i], information[i] = own @ flight.gradient, own @ flight.information @ own.T
+        return cls(at, gradient, information)
+
+    def score(self, values: Real) -> Real:
+        """Give the gradient elsewhere, from the parameters, shape (parameter,), to (record, parameter)."""
+        return np.asarray(self.gradient - (self.information @ (values - self.at)[:, :, None])[:, :, 0])
+
+    def penalty(self, values: Real) -> float:
+        """Give what it costs to be elsewhere, in twice the log-likelihood."""
+        return -float(np.sum((values - self.at) * (self.gradient + self.score(values))))
+
+    def members(self, which: Sequence[int] | slice) -> Flown:
+        """Give the same for some of the records."""
+        return Flown(self.at[which], self.gradient[which], self.information[which])
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +95,8 @@ class Run:
     follows
         By how much the first of these, s at parameters of zero, grows with each parameter, s per SI unit; shape (record,
         logger, parameter).
+    flown
+        What the flight before each of these records tells of the vehicle.
     """
 
     order: Index
@@ -68,6 +111,7 @@ class Run:
     expected: Real
     expected_std: Real
     follows: Real
+    flown: Flown
 
     @classmethod
     def of(cls, order: Sequence[int], decays: Sequence[Decay], loads: Sequence[str], names: Sequence[str] = ()) -> Run:
@@ -92,6 +136,7 @@ class Run:
             expected=np.array([[clock.late for clock in decays[i].clocks] for i in order]),
             expected_std=np.array([[clock.std for clock in decays[i].clocks] for i in order]),
             follows=np.array([[_by_parameter(clock, names) for clock in decays[i].clocks] for i in order]),
+            flown=Flown.of([decays[i] for i in order], names),
         )
 
     @cached_property
@@ -146,6 +191,7 @@ class Run:
             expected=self.expected[long, :0],
             expected_std=self.expected_std[long, :0],
             follows=self.follows[long, :0],
+            flown=self.flown.members(long),
         )
 
     def shortened(self, duration: float) -> Run:

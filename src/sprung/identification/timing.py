@@ -3,6 +3,9 @@
 The release is one moment for all loggers. Just after it, before any wheel lands, the motion follows from the vehicle alone,
 so that each logger that shows it tells when the release was on its own clock, to a small part of a millisecond. A
 logger whose sensors hardly moved then is held against what the others say of the decay.
+
+Given the vehicle, a flight tells the clocks; whatever the clocks, it tells of the vehicle. Both follow from the same samples,
+and the likelihood of these is the product of the two: the first is always used, the second only where a flight is explained.
 """
 
 from __future__ import annotations
@@ -18,8 +21,8 @@ from scipy.interpolate import CubicSpline
 from sprung.errors import SprungError
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.summit import Summit
-from sprung.prepare import Decay, Seen
-from sprung.recording import Drop
+from sprung.prepare import Decay, FromFlight, Seen
+from sprung.recording import ROUGHLY, Drop
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
 
 Real = NDArray[np.float64]
@@ -27,11 +30,14 @@ Real = NDArray[np.float64]
 _FLIGHT = 0.04
 """s after the release that are enough."""
 
-_IN_THE_AIR, _LOW = 0.7, 0.02
+_IN_THE_AIR, _LOW = 0.85, 0.02
 """Part of the time to the landing that is certainly flight, and height of blocks where nobody says it, m."""
 
-_AWAY = 0.008
-"""s by which the release may have been before or after the first motion that a logger shows."""
+_AWAY = 2 * ROUGHLY
+"""s within which the release is looked for on both sides of where the first motion that a logger shows would have it."""
+
+_BEFORE = 0.008
+"""s before the release that are looked at with it."""
 
 _FINE = 1e-4
 """s: step at which the flight is computed, and to which the release is looked for at first."""
@@ -39,14 +45,27 @@ _FINE = 1e-4
 _CLEAR = 20.0
 """Peak of the flight over a channel's noise from which its logger tells the release."""
 
+_NEIGHBOURS, _LOST = 20, 1e-9
+"""Samples on each side of which a spline makes a new one, and part of the largest singular value that is rounding."""
+
 _LIKE_IT = 0.2
 """Part of the flight that may be left unexplained: beyond it the release was not at one moment, and tells nothing."""
 
-_FLOOR = 1.5e-5
-"""s: by so much crystals drift between the release and the liveliest part of a decay."""
+_FLOOR = 5e-6
+"""s: by so much crystals that are fast or slow by some ten parts in a million drift from the release to the liveliest part
+of a decay."""
 
-_HIGH, _NUDGE = 1.0, 1e-4
-"""m, and part of a parameter by which it is moved to see what that does to the flight."""
+_COMPUTED = 1e-3
+"""m/s² to which a flight is computed, read between its steps."""
+
+_NEAR = 2.5 * _FINE
+"""s from the release within which a sample may be from before or after it."""
+
+_NUDGE = 1e-4
+"""Part of a parameter by which it is moved to see what that does to the flight."""
+
+_VAGUE = 2e-4
+"""s of uncertainty from which so faint a beginning of a motion tells its moment less well than its slope says."""
 
 _UNTOLD = 0.01
 """s of uncertainty from which a clock is not told."""
@@ -58,7 +77,7 @@ _FARTHEST, _COARSE = 0.1, 0.001
 def timed_by_release(
     decay: Decay, seen: Seen, drop: Drop, vehicle: Vehicle, load: Load, sensors: Sequence[Sensor]
 ) -> Decay:
-    """Give a decay with the clocks that the release tells; the others keep what they had.
+    """Give a decay with the clocks that the release tells, and with what the flight tells; other clocks keep what they had.
 
     Parameters
     ----------
@@ -77,27 +96,35 @@ def timed_by_release(
     -------
     Decay
     """
-    parameters = separated(vehicle.parameters)
-    try:
-        fall = drop_from_blocks(vehicle, load, drop.wheels, drop.height or _LOW, duration=_FLIGHT)
-        flight, slopes = _flights(parameters, drop, load, sensors, vehicle.heights)
-    except SprungError:  # so rough a vehicle that it does not even stand
-        return decay
     if seen.release is None:
         return decay
+    parameters, height = separated(vehicle.parameters), drop.height or _LOW
+    try:
+        fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
+        flight, slopes = _flights(parameters, drop, height, load, sensors, vehicle.heights)
+    except SprungError:  # so rough a vehicle that it does not even stand
+        return decay
     air = next((event.time for event in fall.events if event.kind == "landing"), _FLIGHT) * _IN_THE_AIR
-    rate, noise = seen.recording.rate, seen.rest.noise.std(axis=1)
-    first = max(seen.release - int(2 * _AWAY * rate), 0)
-    window = slice(first, seen.release + int(air * rate) + 1)
-    values = seen.recording.values[:, window] - seen.rest.level[:, None]
-    times = (np.arange(window.start, window.stop) - seen.release) / rate
+    recording = seen.recording
+    times = (np.arange(recording.values.shape[1]) - seen.release) / recording.rate
+    # In units of each channel's noise.
+    noise = np.hypot(np.maximum(seen.rest.noise.std(axis=1), decay.resolution / 12**0.5), _COMPUTED)[:, None]
+    values, flight, slopes = (recording.values - seen.rest.level[:, None]) / noise, flight / noise, slopes / noise
     told: dict[int, _Moment] = {}
-    released = seen.recording.start + seen.release / rate
-    taken = {part.name: part.time for part in seen.recording.parts}
+    parts = {part.name: part for part in recording.parts}
     for number, clock in enumerate(decay.clocks):
         own = [channel for channel in clock.channels if decay.usable[channel]]
-        when = taken[clock.name] - clock.ahead - released if clock.share < 1 else times
-        found = _released(values[own], times, when, flight[own], slopes[:, own], noise[own]) if own else None
+        if not own or np.abs(flight[own, : int(air / _FINE)]).max() < _CLEAR:
+            continue
+        begin = _begins(values[own], times, flight[own], air)
+        if begin is None:
+            continue
+        window = (times > begin - _BEFORE) & (times < begin + air)
+        taken = parts[clock.name].time - clock.ahead - recording.start - seen.release / recording.rate
+        read, when = values[own][:, window], times[window]
+        if clock.share < 1:
+            read, when = _as_taken(read, when, taken, 1 / parts[clock.name].rate)
+        found = _moment_of(read, when, flight[own], slopes[:, own], begin)
         if found is not None:
             told[number] = found
     if not told:
@@ -116,7 +143,12 @@ def timed_by_release(
         else clock
         for number, clock in enumerate(decay.clocks)
     )
-    return replace(decay, clocks=clocks)
+    left, unseen = (
+        np.concatenate([getattr(one, name) for one in told.values()], axis=-1) for name in ("left", "unseen")
+    )
+    gradient, information = unseen @ left, unseen @ unseen.T
+    from_flight = FromFlight(tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told))
+    return replace(decay, clocks=clocks, flight=from_flight)
 
 
 class _Moment(NamedTuple):
@@ -128,26 +160,36 @@ class _Moment(NamedTuple):
         s.
     slopes
         How it would move with each parameter of the vehicle that the flight was computed with, s per SI unit.
+    left
+        What the flight leaves of the logger's samples, over their noise, shape (sample,).
+    unseen
+        By how much more it would read with each parameter, less what another moment takes up; shape (parameter, sample).
     """
 
     time: float
     std: float
     slopes: Real
+    left: Real
+    unseen: Real
 
 
 def _flights(
-    parameters: Mapping[str, float], drop: Drop, load: Load, sensors: Sequence[Sensor], heights: Heights
+    parameters: Mapping[str, float],
+    drop: Drop,
+    height: float,
+    load: Load,
+    sensors: Sequence[Sensor],
+    heights: Heights,
 ) -> tuple[Real, Real]:
     """Give what the sensors read after the release, and by how much more with each parameter.
 
     Shapes (channel, time) and (parameter, channel, time), m/s² and that per SI unit, in steps of `_FINE`.
     """
-    names, samples = tuple(parameters), int((_FLIGHT + 2 * _AWAY) / _FINE)
+    names, samples = tuple(parameters), int(_FLIGHT / _FINE)
 
     def flight(values: Mapping[str, float]) -> Real:
         vehicle = Vehicle.from_parameters(values, name="falling", **heights.by_key)
-        # From high blocks, for until the landing their height makes no difference.
-        fall = drop_from_blocks(vehicle, load, drop.wheels, _HIGH, duration=_FLIGHT + 2 * _AWAY)
+        fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
         rows = Rows.of([sensor.row for sensor in sensors], names).at(np.array(list(values.values())))
         return np.asarray(rows @ fall.motion(_FINE, samples).acceleration, dtype=np.float64)
 
@@ -157,32 +199,67 @@ def _flights(
     return here, np.array(moved)
 
 
-def _released(values: Real, times: Real, taken: Real, flight: Real, slopes: Real, noise: Real) -> _Moment | None:
-    """Find when a logger saw the release; its samples at `times` are those or made of those it took at other ones."""
-    taken = taken[(taken > times[0] - _AWAY) & (taken < times[-1] + _AWAY)] if taken is not times else times
+def _read(flight: Real, times: Real) -> Real:
+    """Give what sensors read at times after the release, s: nothing before it; shape (channel, time)."""
     grid = _FINE * np.arange(flight.shape[1])
-    if not np.any(np.abs(flight[:, grid < times[-1]]).max(axis=1, initial=0.0) > _CLEAR * noise):
-        return None
+    return np.array([np.interp(times, grid, one, left=0.0) for one in flight])
+
+
+def _begins(values: Real, times: Real, flight: Real, air: float) -> float | None:
+    """Find to a sample when a logger saw the release; None where it did not."""
+    rate = 1 / (times[1] - times[0])
+    before, after = int(_BEFORE * rate), int(air * rate)
+    expected = _read(flight, np.arange(-before, after + 1) / rate)
+    near = np.flatnonzero(np.abs(times) < _AWAY)
+    first, last = max(near[0] - before, 0), near[-1] + after
+    windows = np.lib.stride_tricks.sliding_window_view(values[:, first : last + 1], before + after + 1, axis=1)
+    missed = np.sum((windows - expected[:, None]) ** 2, axis=(0, 2))
+    best = int(np.argmin(missed))
+    # At either end of what was looked at, it is not known to be where it is least.
+    return float(times[first + before + best]) if 0 < best < len(missed) - 1 else None
+
+
+def _as_taken(values: Real, times: Real, taken: Real, step: float) -> tuple[Real, Real]:
+    """Give back the samples that a logger took, and when, from those that a spline through them gives."""
+    near = taken[(taken > times[0] - _NEIGHBOURS * step) & (taken < times[-1] + _NEIGHBOURS * step)]
+    made = CubicSpline(near, np.eye(len(near)))(times)
+    within = (near >= times[0]) & (near <= times[-1])
+    return (values @ np.linalg.pinv(made, rcond=_LOST).T)[:, within], near[within]
+
+
+def _moment_of(values: Real, times: Real, flight: Real, slopes: Real, begin: float) -> _Moment | None:
+    """Find when a logger saw the release, of which the sample is known."""
 
     def model(moment: float, waves: Real = flight) -> Real:
-        read = np.array([np.interp(taken - moment, grid, one, left=0.0) for one in waves])
-        return read if taken is times else CubicSpline(taken, read, axis=1)(times)
+        return _read(waves, times - moment)
 
     def cost(moment: float) -> float:
         return float(np.sum((values - model(moment)) ** 2))
 
-    tried = np.arange(-_AWAY, _AWAY + _FINE, _FINE)
+    step = float(np.median(np.diff(times)))
+    tried = np.arange(begin - 2 * step, begin + 2 * step, _FINE)
     moment = float(tried[np.argmin([cost(one) for one in tried])])
+    # The reading jumps at the release: a sample so near to it may be from before or after.
+    clear = np.abs(times - moment) > _NEAR
+    values, times = values[:, clear], times[clear]
+    jerk = np.gradient(flight, _FINE, axis=1)
     for _ in range(5):
-        slope = (model(moment + _FINE / 2) - model(moment - _FINE / 2)) / _FINE
+        slope = -model(moment, jerk)
         steepness = max(float(np.sum(slope**2)), np.finfo(float).tiny)
-        moment = float(np.clip(moment + np.sum(slope * (values - model(moment))) / steepness, -_AWAY, _AWAY))
-    left = cost(moment)
-    if left > _LIKE_IT**2 * np.sum(model(moment) ** 2):
+        further = float(np.sum(slope * (values - model(moment)))) / steepness
+        moment = float(np.clip(moment + further, tried[0], tried[-1]))
+    left = values - model(moment)
+    squared = float(np.sum(left**2))
+    if squared > _LIKE_IT**2 * np.sum(model(moment) ** 2):
         return None
-    follows = [-float(np.sum(slope * model(moment, one))) / steepness for one in slopes]
-    spread = (left / max(values.size - 1, 1) / steepness) ** 0.5
-    return _Moment(moment, float(np.hypot(spread, _FLOOR)), np.array(follows))
+    more = np.array([model(moment, one).ravel() for one in slopes])
+    along = more @ slope.ravel() / steepness
+    # A slow logger takes so few samples in flight that what they leave may be much less than their noise by chance.
+    spread = (max(squared / max(values.size - 1, 1), 1.0) / steepness) ** 0.5
+    if spread > _VAGUE:
+        return None
+    std = float(np.hypot(spread, _FLOOR))
+    return _Moment(moment, std, -along, left.ravel(), more - along[:, None] * slope.ravel())
 
 
 def timed_by_decay(decays: Sequence[Decay], summit: Summit) -> tuple[Decay, ...]:

@@ -8,15 +8,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, Summit, timed_by_decay, timed_by_release, told_alone
+from sprung.identification import Fit, Summit, clear_of_splines, timed_by_decay, timed_by_release, told_alone
 from sprung.prepare import Decay, Prepared
-from sprung.recording import Campaign, LoggerClock, Recording
-from sprung.vehicle import Vehicle
+from sprung.recording import Campaign, LoggerClock
+from sprung.vehicle import Vehicle, separated
 
 Real = NDArray[np.float64]
 
 _DRIFT = 3e-5
 """s: by so much a crystal that is fast or slow by some ten parts in a million drifts while a vehicle vibrates."""
+
+_NO_WORSE = 1.1
+"""Noise with the flight over noise without above which the vehicle did something there that no model has."""
 
 _PASSES = 2
 """The better the vehicle, the better it tells the clocks, and they it."""
@@ -63,7 +66,10 @@ def _reported(clocks: Sequence[LoggerClock], late: Real, covariance: Real) -> It
 
 
 def set_clocks(
-    campaign: Campaign, prepared: Prepared, fit: Callable[[Sequence[Decay]], Summit]
+    campaign: Campaign,
+    prepared: Prepared,
+    prepare_again: Callable[[Campaign], Prepared],
+    fit: Callable[[Sequence[Decay]], Summit],
 ) -> tuple[Prepared, Summit | None]:
     """Set the clocks of all loggers.
 
@@ -73,6 +79,8 @@ def set_clocks(
         The campaign.
     prepared
         Its decays.
+    prepare_again
+        Finds the decays of the same campaign whose clocks are known.
     fit
         Fits decays from scratch.
 
@@ -87,49 +95,93 @@ def set_clocks(
         return prepared, None
     # As far as the first motion that each logger shows has told, all clocks are one: near enough for a first vehicle.
     summit = fit([replace(decay, clocks=()) for decay in prepared.decays])
+    for _ in range(_PASSES):
+        released = _released(campaign, prepared, prepared.decays, summit)
+        summit = fit([told_alone(decay) for decay in released])
+        timed = timed_by_decay(released, summit)
+        known = {
+            decay.file: [
+                replace(clock, ahead=_moment(late, summit.parameters))
+                for clock, late in zip(decay.clocks, other.clocks, strict=True)
+            ]
+            for decay, other in zip(released, timed, strict=True)
+        }
+        recordings = [replace(one, clocks=tuple(known.get(one.name, one.clocks))) for one in campaign.recordings]
+        prepared = prepare_again(replace(campaign, recordings=tuple(recordings)))
+    by_file = {decay.file: decay.clocks for decay in timed}
+    decays = [_told_before(one, by_file.get(one.file, ()), summit.parameters) for one in prepared.decays]
+    return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays)), summit
+
+
+def told_by_flights(
+    campaign: Campaign, prepared: Prepared, summit: Summit, fit: Callable[[Sequence[Decay]], Summit]
+) -> tuple[tuple[Decay, ...], Summit] | None:
+    """Use what the samples between release and landing, which have told the clocks, tell of the vehicle too.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    prepared
+        The decays that were fitted, their clocks set.
+    summit
+        Where that ended.
+    fit
+        Fits decays from there.
+
+    Returns
+    -------
+    decays, summit
+        With what their flights tell; None where there are no several loggers, or where during the flight the vehicle did
+        something that the model does not have.
+    """
+    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.seen}
+    flown = _released(
+        campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], summit
+    )
+    told = [one.flight for one in flown if one.flight is not None]
+    if not told:
+        return None
+    decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
+    found = fit(decays)
+    values = separated(found.parameters)
+    missed = sum(
+        one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
+    )
+    worse = max(float(np.max(found.noise / summit.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
+    return (decays, found) if found.converged and worse < _NO_WORSE else None
+
+
+def _released(campaign: Campaign, prepared: Prepared, decays: Sequence[Decay], summit: Summit) -> list[Decay]:
+    """Time the clocks of decays by their releases, for the vehicle of a fit."""
+    vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
     by_name = {
-        seen.recording.name: (drop.model_copy(update={"wheels": seen.wheels}), seen)
+        seen.recording.name: (seen, drop.model_copy(update={"wheels": seen.wheels}))
         for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
     }
-    decays = prepared.decays
-    for _ in range(_PASSES):
-        vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
-        timed = []
-        for decay in prepared.decays:
-            drop, seen = by_name[decay.file]
-            told = timed_by_release(decay, seen, drop, vehicle, campaign.load(drop.load), campaign.sensors)
-            timed.append(_put_together(told, seen.recording, summit.parameters))
-        summit = fit([told_alone(decay) for decay in timed])
-        decays = tuple(
-            _put_together(decay, by_name[decay.file][1].recording, summit.parameters)
-            for decay in timed_by_decay(timed, summit)
-        )
-    return prepared._replace(decays=decays), summit
+    return [
+        timed_by_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
+        for decay in decays
+    ]
 
 
-def _put_together(decay: Decay, recording: Recording, parameters: Mapping[str, float]) -> Decay:
-    """Shift every logger's samples to the nearest ones of the decay's clock, so that no clock is off by more than half a step.
+def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:
+    """Give what a logger's clock showed at a moment that is the same for all, s."""
+    return clock.ahead - clock.expected(parameters)
 
-    What the decay must not hold, such as a tyre in the air, is then held by none of its channels.
+
+def _told_before(decay: Decay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> Decay:
+    """Give a decay with what is known of its clocks, which were set by it as far as whole samples go.
+
+    No sample was taken before the decay's clock says: what it must not hold, such as a tyre in the air, none of its channels
+    does.
     """
-    begin = round((decay.start - recording.start) * decay.rate) - decay.earlier.shape[1]
-    length = decay.earlier.shape[1] + decay.samples
-    most = recording.values.shape[1]
-    begins = [
-        min(max(begin - round((before.ahead - now.ahead + now.expected(parameters)) * decay.rate), 0), most)
-        for before, now in zip(recording.clocks, decay.clocks, strict=True)
+    known = {clock.name: clock for clock in before}
+    if not all(clock.name in known for clock in decay.clocks):
+        return decay
+    earliest = min((clock.ahead - _moment(known[clock.name], parameters) for clock in decay.clocks), default=0.0)
+    clocks = [
+        replace(clock, late=old.late + clock.ahead - old.ahead - earliest, std=old.std, follows=old.follows)
+        for clock, old in ((clock, known[clock.name]) for clock in decay.clocks)
     ]
-    length = min([length, *(most - first for first in begins)])
-    whole = np.concatenate([decay.earlier, decay.values], axis=1)[:, :length]
-    for clock, first in zip(decay.clocks, begins, strict=True):
-        own = [channel for channel in clock.channels if decay.usable[channel]]
-        whole[own] = recording.values[own, first : first + length]
-    ahead = [
-        before.ahead - (begin - first) / decay.rate for before, first in zip(recording.clocks, begins, strict=True)
-    ]
-    clocks = tuple(
-        replace(clock, ahead=there, late=clock.late + there - clock.ahead)
-        for clock, there in zip(decay.clocks, ahead, strict=True)
-    )
-    earlier = decay.earlier.shape[1]
-    return replace(decay, earlier=whole[:, :earlier], values=whole[:, earlier:], clocks=clocks)
+    return replace(decay, clocks=tuple(clocks))

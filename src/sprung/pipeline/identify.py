@@ -29,7 +29,7 @@ from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.candidates import ENGINE, fit_from
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice, choose_model
-from sprung.pipeline.clocks import clock_reports, set_clocks
+from sprung.pipeline.clocks import clock_reports, set_clocks, told_by_flights
 from sprung.pipeline.diagnosis import (
     Bench,
     Hypothesis,
@@ -183,13 +183,40 @@ def fit_campaign(
         listed = scores(fitted.campaign, fitted.prepared.decays, fitted.summit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         fitted = _fit(campaign, tracks, extras, mended, progress)._replace(accused=fitted.accused)
-    return _with_the_fall(_with_drifts(fitted), campaign.model.fall if fall is None else fall, progress)
+    return _with_the_fall(
+        _with_flights(_with_drifts(fitted), progress), campaign.model.fall if fall is None else fall, progress
+    )
+
+
+def _is_sound(fitted: Fitted) -> bool:
+    """Say whether more of the same model is worth trying."""
+    return fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
+
+
+def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
+    """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
+    if not _is_sound(fitted) or fitted.choice.followed:
+        return fitted
+    told = told_by_flights(
+        fitted.campaign,
+        fitted.prepared,
+        fitted.summit,
+        lambda decays: fit_from(fitted.choice, decays, fitted.summit, CONVERGED, progress),
+    )
+    if told is None:
+        return fitted
+    decays, summit = told
+    return fitted._replace(
+        why=f"{fitted.why}; what the flights that told the clocks tell of the vehicle is used too",
+        prepared=fitted.prepared._replace(decays=decays),
+        summit=summit,
+        fit=describe(summit, decays),
+    )
 
 
 def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
     """Use the drops from their releases on, where that is wanted or needed, and where it says more."""
-    sound = fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
-    if wanted is False or (wanted is None and not (sound and is_needed(fitted.fit))):
+    if wanted is False or (wanted is None and not (_is_sound(fitted) and is_needed(fitted.fit))):
         return fitted
     flown = fly(fitted.campaign, fitted.choice, fitted.prepared, fitted.summit, fitted.fit, progress)
     if flown is None:
@@ -233,7 +260,10 @@ def _fit(
     prepared = _without(campaign, prepare(campaign), left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
-        campaign, prepared, lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress)
+        campaign,
+        prepared,
+        lambda known: _without(campaign, prepare(known), left_out),
+        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress),
     )
     start = None if first is None else first.parameters
     first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)

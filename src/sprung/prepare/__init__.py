@@ -2,7 +2,7 @@
 
 from sprung.prepare.alignment import align
 from sprung.prepare.coupling import by_corner, coupled
-from sprung.prepare.decay import Decay, rounding
+from sprung.prepare.decay import Decay, FromFlight, rounding
 from sprung.prepare.events import Events, Mark, Seen
 from sprung.prepare.fallen import (
     FoundDrop,
@@ -23,6 +23,7 @@ __all__ = [
     "Flight",
     "Found",
     "FoundDrop",
+    "FromFlight",
     "Mark",
     "Place",
     "Prepared",

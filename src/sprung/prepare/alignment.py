@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Fault
 from sprung.prepare.release import find_release
-from sprung.recording import Recording, merged
+from sprung.recording import ROUGHLY, Recording, merged
 
 _STANDS_OUT = 8.0
 """Peak over noise from which one logger's release is believed: others saw it too, so that it need not be so clear."""
@@ -31,7 +31,7 @@ def align(recording: Recording) -> Recording:
     Parameters
     ----------
     recording
-        Of one logger it is given back as it is.
+        Of one logger it is given back as it is. Where its clocks are known already, they are taken as they are.
 
     Returns
     -------
@@ -40,8 +40,10 @@ def align(recording: Recording) -> Recording:
     """
     if not recording.parts:
         return recording
-    releases = [_release(part) for part in recording.parts]
-    if not any(releases):  # nothing but that they were all started has tied them
+    known = {clock.name: _Told(clock.ahead, clock.std) for clock in recording.clocks}
+    set_before = any(clock.std < ROUGHLY for clock in recording.clocks)
+    told = [known.get(part.name) if set_before else _release(part) for part in recording.parts]
+    if not any(told):  # nothing but that they were all started has tied them
         return recording
     faults = [
         Fault(
@@ -51,17 +53,17 @@ def align(recording: Recording) -> Recording:
             f"others; {', '.join(part.channels)} left out of this drop",
             "Start every logger before the release. Of a wheel that did not fall, nothing is lost.",
         )
-        for part, release in zip(recording.parts, releases, strict=True)
-        if release is None and part.usable.any()
+        for part, moment in zip(recording.parts, told, strict=True)
+        if moment is None and part.usable.any()
     ]
-    together = merged(recording, [None if release is None else release.moment for release in releases])
+    together = merged(recording, [None if one is None else one.moment for one in told])
     if together.values.shape[1] < _SHORTEST * together.rate:
         what = "what its loggers recorded has hardly a moment in common; the drop is left out"
         fault = Fault("clock", recording.name, what, "Name the files of one and the same drop, each of some seconds.")
         nothing = np.full_like(recording.values, np.nan)
         return replace(recording, values=nothing, faults=(*recording.faults, fault))
-    sure = iter([release.peak > _LIVELY for release in releases if release is not None])
-    clocks = tuple(replace(clock, std=_TOLD if next(sure) else clock.std) for clock in together.clocks)
+    stds = iter([one.std for one in told if one is not None])
+    clocks = tuple(replace(clock, std=next(stds)) for clock in together.clocks)
     return replace(together, clocks=clocks, faults=(*recording.faults, *faults))
 
 
@@ -73,18 +75,20 @@ def lively(recording: Recording) -> NDArray[np.bool_]:
     return told if (told & recording.usable).any() else np.ones_like(told)
 
 
-class _Seen(NamedTuple):
-    """When a logger first moved, s on its own clock, and its largest reading, m/s² from rest."""
+class _Told(NamedTuple):
+    """A moment that is the same for all loggers, s on one's own clock, and how sure that is, s."""
 
     moment: float
-    peak: float
+    std: float
 
 
-def _release(part: Recording) -> _Seen | None:
+def _release(part: Recording) -> _Told | None:
+    """Find when a logger first moved."""
     if not part.usable.any():
         return None
     values = part.values[part.usable]
     found = find_release(values, part.rate, _STANDS_OUT)
     if found is None:
         return None
-    return _Seen(part.start + found.sample / part.rate, float(np.abs(values - found.rest.level[:, None]).max()))
+    peak = np.abs(values - found.rest.level[:, None]).max()
+    return _Told(part.start + found.sample / part.rate, _TOLD if peak > _LIVELY else ROUGHLY)

@@ -19,6 +19,37 @@ FITTED = "in the fitted vehicle every tyre is down for good"
 
 
 @dataclass(frozen=True, eq=False)
+class FromFlight:
+    """What the samples between the release and the landing tell of the vehicle, whatever the clocks that they were taken by.
+
+    Attributes
+    ----------
+    names
+        Of the vehicle's parameters, half-distances of springs and dampers apart.
+    at
+        Their values for which the rest holds, SI, shape (parameter,).
+    gradient, information
+        Of the log-likelihood of these samples by the parameters, there; shapes (parameter,), (parameter, parameter).
+    left
+        Sum of squares that is left there, over the variance of the noise.
+    samples
+        How many there are.
+    """
+
+    names: tuple[str, ...]
+    at: NDArray[np.float64]
+    gradient: NDArray[np.float64]
+    information: NDArray[np.float64]
+    left: float
+    samples: int
+
+    def missed(self, values: NDArray[np.float64]) -> float:
+        """Give what is left for a vehicle near by, from its parameters, shape (parameter,)."""
+        step = values - self.at
+        return float(self.left + step @ (self.information @ step - 2 * self.gradient))
+
+
+@dataclass(frozen=True, eq=False)
 class Decay:
     """The usable part of one drop.
 
@@ -54,6 +85,8 @@ class Decay:
         as far as the high-pass that was undone remembers it; shape (channel,).
     events
         When what happened, and why the decay has its limits.
+    flight
+        What the flight before it tells of the vehicle; None where that is not used.
     """
 
     name: str
@@ -70,6 +103,7 @@ class Decay:
     shares: tuple[float, ...] = ()
     velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     events: Events = field(default_factory=Events)
+    flight: FromFlight | None = None
 
     @cached_property
     def usable(self) -> NDArray[np.bool_]:

@@ -9,7 +9,7 @@ from sprung.recording.mending import MOST_MISSING, filled
 from sprung.recording.merging import merged
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
-from sprung.recording.recording import LoggerClock, Recording
+from sprung.recording.recording import ROUGHLY, LoggerClock, Recording
 from sprung.recording.sources import SourceFile
 from sprung.recording.whole import write_whole
 from sprung.recording.writing import write
@@ -18,6 +18,7 @@ __all__ = [
     "FILE",
     "KINDS",
     "MOST_MISSING",
+    "ROUGHLY",
     "SCHEMA_FILE",
     "SCHEMA_LINE",
     "SLOWEST",

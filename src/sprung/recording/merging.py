@@ -90,6 +90,8 @@ def _full_scales(whole: Recording) -> tuple[float | None, ...]:
 
 def _resampled(part: Recording, start: float, rate: float, samples: int) -> NDArray[np.float64]:
     """Read a slower logger's channels at other times of its own clock."""
-    values = np.full((len(part.channels), samples), np.nan)
-    values[part.usable] = on_clock(part.values[part.usable], part.time, start + np.arange(samples) / rate)
+    values, taken = np.full((len(part.channels), samples), np.nan), part.time
+    # The logger that began last or ended first did so at one of these times, but for rounding.
+    times = np.clip(start + np.arange(samples) / rate, taken[0], taken[-1])
+    values[part.usable] = on_clock(part.values[part.usable], taken, times)
     return values
