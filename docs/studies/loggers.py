@@ -12,7 +12,7 @@ from wireless import wireless
 
 import sprung
 from sprung.pipeline import Result
-from sprung.pipeline.identify import fit_campaign
+from sprung.pipeline.fitted import fit_campaign
 from sprung.vehicle import TABLE_1_CAR
 
 NOISE, APART, WANTED, LATE = 0.02, 0.5, 1.2, 0.3e-3

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from pages import VERDICTS, arguments, figures, run, table, tell, write
 
 from sprung.identification import ascend
-from sprung.pipeline.identify import fit_campaign, result_of
+from sprung.pipeline.fitted import fit_campaign
+from sprung.pipeline.identify import result_of
 from sprung.vehicle import Vehicle
 
 MASS = (400.0, 16_000.0)

@@ -11,7 +11,7 @@ from wireless import Wireless, wireless
 
 import sprung
 from sprung.pipeline import Result
-from sprung.pipeline.identify import fit_campaign
+from sprung.pipeline.fitted import fit_campaign
 from sprung.recording import Campaign
 from sprung.vehicle import TABLE_1_CAR
 

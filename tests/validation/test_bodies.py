@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.identification import Fit
-from sprung.pipeline.identify import Fitted, fit_campaign
+from sprung.pipeline.fitted import fit_campaign
+from sprung.pipeline.stand import Fitted
 from sprung.validation import body_motions, remainders, validate_drops
 from sprung.vehicle import TABLE_1_CAR
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from sprung.identification import CONVERGED, Fit, Summit, describe
 from sprung.pipeline.candidates import fit_from
 from sprung.pipeline.choice import Choice
-from sprung.pipeline.extras import Way
+from sprung.pipeline.forces import tilted
+from sprung.pipeline.way import Way
 from sprung.prepare import Decay, Flight, Prepared, flights
 from sprung.recording import Campaign
 from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
@@ -112,7 +113,7 @@ def fly(
     decays = tuple(one.decay if one else decay for one, decay in zip(found, prepared.decays, strict=True))
     airborne = replace(choice, airborne=True)
     higher = fit_from(airborne, decays, summit, CONVERGED, progress, begun)
-    way = Way(airborne, higher, decays, (), progress).tilted()
+    way = tilted(Way(airborne, higher, decays, (), progress))
     if not way.summit.converged or np.any(way.summit.noise > _NO_WORSE * summit.noise):
         return None
     now = describe(way.summit, decays)

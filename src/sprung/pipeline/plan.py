@@ -13,7 +13,9 @@ from typing import Any
 
 from sprung.errors import InputError, Problems
 from sprung.pipeline.choice import choose_model
-from sprung.pipeline.identify import as_test, fit_campaign, result_of
+from sprung.pipeline.fitted import fit_campaign
+from sprung.pipeline.identify import result_of
+from sprung.pipeline.planned import as_test
 from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up
 from sprung.recording import Campaign, Drop, ModelChoice, read, read_vehicle
 from sprung.simulation import DEFAULT_HEIGHT, Given, Setup

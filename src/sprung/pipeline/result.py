@@ -15,10 +15,10 @@ from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Un
 from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
 from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
-from sprung.pipeline.extras import Attempt
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Recorded, Series, arrays_of, packed
 from sprung.pipeline.setup import Setup
+from sprung.pipeline.way import Attempt
 from sprung.recording import write_whole
 from sprung.tables import escaped
 from sprung.validation import DropValidation, Verdict

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.pipeline.amplitude import amplitude_document, amplitudes_of, plain_trace
-from sprung.pipeline.identify import fit_campaign, result_of
+from sprung.pipeline.fitted import fit_campaign
+from sprung.pipeline.identify import result_of
 from sprung.pipeline.result import Result
 from sprung.pipeline.series import packed
 from sprung.recording import Campaign, write_whole

@@ -1,0 +1,89 @@
+"""Extras that matrices carry: fitted and weighed one by one, as that is quick, the most promising first.
+
+An extra is taken if it gains more than the Bayesian information criterion asks for its parameters (Schwarz, Ann. Stat. 6 (1978)
+461), the residuals' colour and the drops' disagreement allowed for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sprung.identification import NEAR, ascend, expected_gain
+from sprung.pipeline.candidates import ENGINE, SEPARATE, neutral_start, variants
+from sprung.pipeline.choice import Choice
+from sprung.pipeline.way import Way
+from sprung.vehicle import LINEAR_EXTRAS
+
+_WHOLLY = frozenset({"asymmetry", "rigid-axle", "engine"})
+"""Extras that look like many a mistake with sensors and loads: they explain the records wholly, or they are not there."""
+
+_UNLIKELY = 0.25
+"""Part of the gain that is asked of a larger model below which it is not even fitted."""
+
+
+def carried(way: Way) -> Way:
+    """Let the records decide at which of two heights the body is carried, where they may."""
+    if not way.choice.heights.undecided:
+        return way
+    other = way.fitting(replace(way.choice, carried_at="roll axis"))
+    return other if other.summit.loglikelihood > way.summit.loglikelihood else way
+
+
+def linear(way: Way, among: Sequence[str] = (SEPARATE, *LINEAR_EXTRAS)) -> Way:
+    """Try the extras that matrices carry, or some of them, the most promising first, until none gains what is asked."""
+    refused: set[str] = set()
+    while True:
+        still = [extra for extra in way.open_among(among) if extra not in refused]
+        promised = {extra: _promised(way, extra)[0] for extra in still}
+        hopeful = [extra for extra, gain in promised.items() if gain > _UNLIKELY * way.asked(extra)]
+        way = way.noted({extra: gain for extra, gain in promised.items() if extra not in hopeful}, False, False)
+        if not hopeful:
+            return way
+        extra = max(hopeful, key=promised.__getitem__)
+        refused |= (promised.keys() - set(hopeful)) | {extra}
+        tried = trying(way, extra)
+        gain = 2 * (tried.summit.loglikelihood - way.summit.loglikelihood) / tried.summit.disagreement
+        against = tried.against(extra, tried.inflation) if tried.summit.converged else "the fit with it did not settle"
+        enough = gain > way.asked(extra)
+        larger = tried.noted({extra: gain}, True, True)
+        if enough and not against and extra in _WHOLLY and tried.errs:
+            larger = linear(larger, [one for one in among if one not in _WHOLLY])
+            against = "it does not explain all of it, as it would if it were what is the matter" if larger.errs else ""
+        if enough and not against:
+            way = larger
+            refused.clear()
+        else:
+            way = way.noted({extra: gain}, True, False, against if enough else "")
+            way = replace(way, choice=replace(way.choice, mounted=tried.choice.mounted))
+
+
+def wanting(way: Way, extras: Sequence[str]) -> Way:
+    """Fit linear extras that are wanted, whatever they gain."""
+    for extra in extras:
+        way = trying(way, extra)
+    return way
+
+
+def _promised(way: Way, extra: str) -> tuple[float, Choice]:
+    """Give what a linear extra would gain, and the model that has it, begun where it would gain most."""
+    sensors, own = way.choice.campaign.sensors, way.summit.parameters
+    gains = [
+        (expected_gain(way.decays, one.models, sensors, one.known, neutral_start(one, own)), one)
+        for one in variants(extra, way.larger([extra]), own)
+    ]
+    gain, larger = max(gains, key=lambda each: each[0])
+    return gain / way.summit.disagreement, larger
+
+
+def trying(way: Way, extra: str) -> Way:
+    """Fit a linear extra; an engine, without which all may be wrong, from nothing as well."""
+    way.progress(f"with {extra}")
+    ends = [way.fitting(_promised(way, extra)[1])]
+    if extra == ENGINE:
+        choice = ends[0].choice
+        anew = ascend(
+            way.decays, choice.models, choice.campaign.sensors, choice.known, enough=NEAR, progress=way.progress
+        )
+        ends.append(replace(ends[0], summit=anew.after(way.summit)))
+    return max(ends, key=lambda end: (end.summit.converged, end.summit.loglikelihood))

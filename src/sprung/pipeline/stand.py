@@ -1,0 +1,186 @@
+"""How far a fit has come: the campaign as it is used, its decays, and the model so far."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from sprung.errors import Fault, Problems
+from sprung.identification import (
+    CONVERGED,
+    NEAR,
+    Fit,
+    Summit,
+    ascend,
+    ascend_from_contact,
+    describe,
+    look_around,
+)
+from sprung.pipeline.candidates import ENGINE, fit_from
+from sprung.pipeline.choice import Choice, choose_model
+from sprung.pipeline.clocks import set_clocks
+from sprung.pipeline.diagnosis import (
+    Hypothesis,
+    Suspicion,
+    suspicious,
+)
+from sprung.pipeline.forces import nonlinear, with_forces
+from sprung.pipeline.linear import carried, linear, wanting
+from sprung.pipeline.way import Attempt, Way
+from sprung.prepare import Decay, Prepared, prepare
+from sprung.recording import Campaign
+from sprung.vehicle import LINEAR_EXTRAS, Tracks
+
+
+class Fitted(NamedTuple):
+    """A campaign and its fit.
+
+    Attributes
+    ----------
+    campaign
+        What was fitted.
+    choice, why, path
+        With which model, what decided that, and what was tried.
+    prepared
+        Its decays, from where they were used.
+    summit
+        Where the fit ended.
+    fit
+        How sure it is.
+    accused
+        What is probably wrong, though nothing was done about it.
+    """
+
+    campaign: Campaign
+    choice: Choice
+    why: str
+    prepared: Prepared
+    summit: Summit
+    fit: Fit
+    path: tuple[Attempt, ...] = ()
+    accused: tuple[Fault, ...] = ()
+
+
+class Stand(NamedTuple):
+    """How far a fit has come.
+
+    Attributes
+    ----------
+    campaign
+        With what is wrong put right or left out.
+    wanted, plain
+        The model that the user wants, and that without anything the records ask for.
+    prepared
+        Its decays as they were found, before any fit.
+    way
+        Where the choice of the model stands.
+    """
+
+    campaign: Campaign
+    wanted: Choice
+    plain: Choice
+    prepared: Prepared
+    way: Way
+
+    @property
+    def open_to_forces(self) -> bool:
+        """Whether forces with laws of their own will be looked for."""
+        return any(extra not in LINEAR_EXTRAS for extra in self.wanted.free)
+
+    @property
+    def suspicion(self) -> Suspicion:
+        """Whether there is reason to look for what is wrong."""
+        return suspicious(self.campaign, self.way.decays, self.way.summit)
+
+    def with_forces(self) -> Stand:
+        """Fit the forces that are wanted, or that the records ask for."""
+        plain = replace(self.plain, carried_at=self.way.choice.carried_at)
+        way = with_forces(self.way, self.wanted) if self.wanted.nonlinear else nonlinear(self.way, plain)
+        return self._replace(way=_from_contact(way) if way.choice.nonlinear else way)
+
+    def judged(self) -> Fitted:
+        """Say how sure the fit is."""
+        way = self.way
+        way.progress("judging the fit")
+        summit, decays = look_around(way.summit), tuple(way.decays)
+        prepared = self.prepared._replace(decays=decays)
+        return Fitted(self.campaign, way.choice, way.why, prepared, summit, describe(summit, decays), way.path)
+
+
+def begun(
+    campaign: Campaign,
+    tracks: Tracks | None,
+    extras: Sequence[str] | None,
+    mended: Sequence[Hypothesis],
+    progress: Callable[[str], None],
+) -> Stand:
+    """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle."""
+    left_out = {one.drop: one.fault for one in mended if one.drop is not None}
+    for one in mended:
+        if one.drop is None:
+            changed = one.change(campaign)
+            campaign = replace(changed, faults=(*changed.faults, one.fault))
+    wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
+    # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
+    choice = wanted.having(tuple(extra for extra in wanted.linear_extras if extra != ENGINE))
+    progress("finding the decays")
+    prepared = _without(campaign, prepare(campaign), left_out)
+    _need_decays(campaign, prepared)
+    prepared, first = set_clocks(
+        campaign,
+        prepared,
+        lambda known: _without(campaign, prepare(known), left_out),
+        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress),
+    )
+    start = None if first is None else first.parameters
+    first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
+    way = carried(Way(choice, first, prepared.decays, (), progress))
+    way = linear(wanting(way, [extra for extra in wanted.linear_extras if extra not in choice.extras]))
+    way = _from_contact(way)
+    return Stand(campaign, wanted, choice, prepared, way)
+
+
+def _from_contact(way: Way) -> Way:
+    """Let the fitted vehicle say where each decay begins, and fit to the end."""
+    decays, summit = ascend_from_contact(
+        way.decays,
+        way.choice.models,
+        way.summit,
+        lambda decays, found, states: fit_from(way.choice, decays, found, CONVERGED, way.progress, states),
+    )
+    return replace(way, decays=decays, summit=summit)
+
+
+def _without(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
+    """Leave drops out of what was prepared, by their recordings."""
+    named = {one.name: (drop, one) for drop, one in zip(campaign.drops, campaign.recordings, strict=True)}
+    gone = [decay for decay in prepared.decays if decay.file in left_out]
+    return prepared._replace(
+        decays=tuple(decay for decay in prepared.decays if decay.file not in left_out),
+        left_out=(*prepared.left_out, *((*named[one.file], (*one.faults, left_out[one.file])) for one in gone)),
+    )
+
+
+def _ascend(
+    campaign: Campaign,
+    choice: Choice,
+    decays: Sequence[Decay],
+    start: Mapping[str, float] | None,
+    enough: float,
+    progress: Callable[[str], None],
+) -> Summit:
+    models, sensors, known = choice.models, campaign.sensors, choice.known
+    return ascend(decays, models, sensors, known, start=start, enough=enough, progress=progress)
+
+
+def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
+    if prepared.decays:
+        return
+    problems = Problems()
+    where = "campaign" if campaign.path is None else campaign.path.name
+    problems.add(where, "no drop that can be used", "at least one", "Read the reasons below and record again.")
+    for _, _, faults in prepared.left_out:
+        for fault in faults:
+            problems.add(fault.where, fault.what, "a usable decay", fault.do)
+    problems.raise_if_any()
