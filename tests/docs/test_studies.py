@@ -83,14 +83,14 @@ def test_the_bound_is_that_of_the_plan(campaigns: Any) -> None:
 
 
 def test_at_the_bound(tmp_path: Path) -> None:
-    page, numbers = study("at_the_bound.py", tmp_path, "--campaigns", "2", "--each", "1", "--noise", "0.1")
+    page, numbers = study("at_the_bound.py", tmp_path, "--campaigns", "1", "--each", "1", "--noise", "0.1")
     assert "| five drops, axles weighed | 0.02 |" in page
-    assert "2 campaigns in every row" in page
+    assert "1 campaigns in every row" in page
     assert "nan" not in page
     assert len(numbers["headline"]) == 6
     assert {case["vehicle"] for case in numbers["others"]} == {"Small car", "Van", "School bus"}
     for case in numbers["headline"]:
-        check_errors(case, 2)
+        check_errors(case, 1)
     for case in numbers["others"]:
         check_errors(case, 1)
         assert case["wrong_models"] == case["incomplete"] == 0
@@ -101,21 +101,21 @@ def test_at_the_bound(tmp_path: Path) -> None:
 
 
 def test_coloured(tmp_path: Path) -> None:
-    page, numbers = study("coloured.py", tmp_path, "--campaigns", "2", "--processes", "2")
-    assert "row has 2 campaigns" in page
+    page, numbers = study("coloured.py", tmp_path, "--campaigns", "1", "--processes", "2")
+    assert "row has 1 campaigns" in page
     assert [case["kind"].split(",")[0] for case in numbers["cases"]] == 2 * ["white", "low-passed", "white", "white"]
     white, low_passed, drifting, _ = numbers["cases"][:4]
-    check_errors(white, 2)
+    check_errors(white, 1)
     for case in (low_passed, drifting):
-        assert case["inflated"] == 2  # neighbours correlated to 0.9, or a drift of twice the noise, never go unseen
+        assert case["inflated"] == 1  # neighbours correlated to 0.9, or a drift of twice the noise, never go unseen
         assert case["coverage_percent"] > 50
 
 
 def test_no_guess(tmp_path: Path) -> None:
-    page, numbers = study("no_guess.py", tmp_path, "--campaigns", "3")
-    assert "3 two-axle vehicles" in page
+    page, numbers = study("no_guess.py", tmp_path, "--campaigns", "2")
+    assert "2 two-axle vehicles" in page
     assert "The optimum was missed 0 times" in page
-    assert len({vehicle["parameters"]["m_s"] for vehicle in numbers["vehicles"]}) == 3
+    assert len({vehicle["parameters"]["m_s"] for vehicle in numbers["vehicles"]}) == 2
     for vehicle in numbers["vehicles"]:
         assert abs(vehicle["gain_over_start_at_truth"]) < 0.01
         assert vehicle["verdict"] in VERDICTS

@@ -135,6 +135,8 @@ def told_by_flights(
         With what their flights tell; None where there are no several loggers, or where during the flight the vehicle did
         something that the model does not have.
     """
+    if not any(decay.clocks for decay in prepared.decays):
+        return None
     clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.seen}
     flown = _released(
         campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], summit
