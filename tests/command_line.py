@@ -88,22 +88,26 @@ class Folder:
 
 
 def linear_leafbus(folder: Path) -> Path:
-    """Copy the recordings of the bus with leaf springs, with the plain linear model asked for."""
-    shutil.copytree(LEAFBUS, folder)
-    file = folder / "campaign.toml"
+    """Copy some recordings of the bus with leaf springs, with the plain linear model asked for."""
+    drops = tuple(f"{load}_{kind}" for load in ("empty", "loaded") for kind in ("bounce", "pitch_front", "roll_left"))
+    file = _copied(LEAFBUS, folder, drops) / "campaign.toml"
     file.write_text(file.read_text().replace("[known]", "[model]\nextras = []\n\n[known]"))
     return folder
 
 
 def copy_sedan(folder: Path, drops: tuple[str, ...] = DROPS) -> Folder:
     """Copy some drops of the sedan into a folder of their own."""
+    return Folder(_copied(SEDAN, folder, drops))
+
+
+def _copied(campaign: Path, folder: Path, drops: tuple[str, ...]) -> Path:
     folder.mkdir(parents=True)
-    head, *entries = (SEDAN / "campaign.toml").read_text().split("[[drop]]")
+    head, *entries = (campaign / "campaign.toml").read_text().split("[[drop]]")
     kept = [entry for entry in entries if any(f'"{drop}.csv"' in entry for drop in drops)]
     (folder / "campaign.toml").write_text("[[drop]]".join((head, *kept)))
     for drop in drops:
-        shutil.copy(SEDAN / f"{drop}.csv", folder)
-    return Folder(folder)
+        shutil.copy(campaign / f"{drop}.csv", folder)
+    return folder
 
 
 @dataclass(frozen=True)
@@ -117,5 +121,7 @@ class Identified:
 
 def identified(campaign: Path, results: Path) -> Identified:
     return Identified(
-        run("identify", campaign, "-o", results), run("identify", campaign, "--json", "-o", results / "again"), results
+        run("identify", campaign, "-o", results),
+        run("identify", campaign, "--json", "--no-report", "-o", results / "again"),
+        results,
     )
