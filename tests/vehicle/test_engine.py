@@ -113,3 +113,10 @@ def test_beside_friction() -> None:
         assert found.value is not None
         assert found.std is not None
         assert abs(found.value - rubbing.parameters[name]) < 4 * found.std
+
+
+def test_a_body_that_could_carry_no_usual_engine_is_identified_all_the_same() -> None:
+    # Its mass sits in its middle: a tenth of it above either axle would have more pitch inertia than all of it.
+    compact = replace(TABLE_1_CAR, I_yy=200.0, name="compact")
+    result = sprung.identify(sprung.simulate(compact, loads=[BALLAST], noise=0.02, seed=1))
+    assert (result.verdict.state, result.fit.model) == ("accept", ())

@@ -180,10 +180,10 @@ def variants(extra: str, choice: Choice, own: Mapping[str, float]) -> list[Choic
     if extra != ENGINE:
         return [choice]
     mountings = mountings_of(own["a"] + own["b"])
-    return [one for one in (replace(choice, mounted=each) for each in mountings) if _has_masses(one, own)]
+    return [one for one in (replace(choice, mounted=each) for each in mountings) if has_masses(one, own)]
 
 
-def _has_masses(choice: Choice, own: Mapping[str, float]) -> bool:
+def has_masses(choice: Choice, own: Mapping[str, float]) -> bool:
     """Say whether a fit begins with a vehicle of which every part has mass."""
     start = np.array(list(start_of(choice, own).values()))
     return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in choice.models.values())

@@ -6,10 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from sprung.errors import Fault
-from sprung.identification import (
-    CONVERGED,
-    describe,
-)
+from sprung.identification import CONVERGED, describe
 from sprung.pipeline.candidates import fit_from
 from sprung.pipeline.clocks import told_by_flights
 from sprung.pipeline.diagnosis import (

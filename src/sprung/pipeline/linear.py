@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.identification import NEAR, ascend, expected_gain
-from sprung.pipeline.candidates import ENGINE, SEPARATE, neutral_start, variants
+from sprung.pipeline.candidates import ENGINE, SEPARATE, has_masses, neutral_start, variants
 from sprung.pipeline.choice import Choice
 from sprung.pipeline.way import Way
 from sprung.vehicle import LINEAR_EXTRAS
@@ -35,14 +35,15 @@ def linear(way: Way, among: Sequence[str] = (SEPARATE, *LINEAR_EXTRAS)) -> Way:
     refused: set[str] = set()
     while True:
         still = [extra for extra in way.open_among(among) if extra not in refused]
-        promised = {extra: _promised(way, extra)[0] for extra in still}
+        found = {extra: _promised(way, extra) for extra in still}
+        promised = {extra: gain for extra, (gain, _) in found.items()}
         hopeful = [extra for extra, gain in promised.items() if gain > _UNLIKELY * way.asked(extra)]
         way = way.noted({extra: gain for extra, gain in promised.items() if extra not in hopeful}, False, False)
         if not hopeful:
             return way
         extra = max(hopeful, key=promised.__getitem__)
         refused |= (promised.keys() - set(hopeful)) | {extra}
-        tried = trying(way, extra)
+        tried = _fitted(way, found[extra][1], extra)
         gain = 2 * (tried.summit.loglikelihood - way.summit.loglikelihood) / tried.summit.disagreement
         against = tried.against(extra, tried.inflation) if tried.summit.converged else "the fit with it did not settle"
         enough = gain > way.asked(extra)
@@ -68,22 +69,27 @@ def wanting(way: Way, extras: Sequence[str]) -> Way:
 def _promised(way: Way, extra: str) -> tuple[float, Choice]:
     """Give what a linear extra would gain, and the model that has it, begun where it would gain most."""
     sensors, own = way.choice.campaign.sensors, way.summit.parameters
+    larger = way.larger([extra])
     gains = [
         (expected_gain(way.decays, one.models, sensors, one.known, neutral_start(one, own)), one)
-        for one in variants(extra, way.larger([extra]), own)
+        for one in variants(extra, larger, own)
     ]
-    gain, larger = max(gains, key=lambda each: each[0])
-    return gain / way.summit.disagreement, larger
+    gain, best = max(gains, key=lambda each: each[0], default=(0.0, larger))
+    return gain / way.summit.disagreement, best
 
 
 def trying(way: Way, extra: str) -> Way:
-    """Fit a linear extra; an engine, without which all may be wrong, from nothing as well."""
+    """Fit a linear extra, begun where it promises most."""
+    return _fitted(way, _promised(way, extra)[1], extra)
+
+
+def _fitted(way: Way, larger: Choice, extra: str) -> Way:
+    """Fit a model with one more extra; with an engine, without which all may be wrong, from nothing as well."""
     way.progress(f"with {extra}")
-    ends = [way.fitting(_promised(way, extra)[1])]
+    begins = extra != ENGINE or has_masses(larger, way.summit.parameters)
+    ends = [way.fitting(larger)] if begins else []
     if extra == ENGINE:
-        choice = ends[0].choice
-        anew = ascend(
-            way.decays, choice.models, choice.campaign.sensors, choice.known, enough=NEAR, progress=way.progress
-        )
-        ends.append(replace(ends[0], summit=anew.after(way.summit)))
+        sensors, known = larger.campaign.sensors, larger.known
+        anew = ascend(way.decays, larger.models, sensors, known, enough=NEAR, progress=way.progress)
+        ends.append(replace(way, choice=larger, summit=anew.after(way.summit)))
     return max(ends, key=lambda end: (end.summit.converged, end.summit.loglikelihood))

@@ -20,11 +20,7 @@ from sprung.identification import (
 from sprung.pipeline.candidates import ENGINE, fit_from
 from sprung.pipeline.choice import Choice, choose_model
 from sprung.pipeline.clocks import set_clocks
-from sprung.pipeline.diagnosis import (
-    Hypothesis,
-    Suspicion,
-    suspicious,
-)
+from sprung.pipeline.diagnosis import Hypothesis, Suspicion, suspicious
 from sprung.pipeline.forces import nonlinear, with_forces
 from sprung.pipeline.linear import carried, linear, wanting
 from sprung.pipeline.way import Attempt, Way
