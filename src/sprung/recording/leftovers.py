@@ -1,8 +1,8 @@
 """Putting in order what a process left that was killed while it wrote: the write is finished, or undone.
 
-Where a journal says that all new files were complete, they take their places; where there is none, they go, and old files that were
-put aside come back. A file that somebody else has put there since is never touched. Files of a process that still runs are
-left alone.
+Where a journal says that all new files were complete, they take their places; where there is none, they go, and old files that
+were put aside come back. A file that somebody else has put there since is never touched. Files of a process that still runs
+are left alone.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ JOURNAL = ".sprung-{token}.journal"
 _RUN = secrets.token_hex(4)
 """This process, which may have the number of one that is gone, as in a container."""
 
-_TOKEN = r"(?P<token>(?P<process>[0-9a-f]+-[0-9a-f]{8})-[0-9a-f]{8})"
-_JOURNAL = re.compile(JOURNAL.replace(".", r"\.").format(token=_TOKEN))
-_HIDDEN = re.compile(rf"\.(?P<name>.+)\.{_TOKEN}\.(?P<state>new|old)")
+_TOKENS = r"(?P<token>(?P<process>[0-9a-f]+-[0-9a-f]{8})-[0-9a-f]{8})"
+_JOURNAL = re.compile(JOURNAL.replace(".", r"\.").format(token=_TOKENS))
+_HIDDEN = re.compile(rf"\.(?P<name>.+)\.{_TOKENS}\.(?P<state>new|old)")
 
 _LONGEST = 600.0
 """Seconds that a write may last where the system does not say whether its process still runs."""
@@ -82,7 +82,7 @@ def _finish(folder: Path, path: Path, token: str) -> None:
     """Do what a journal says: all the new files are there, under their hidden names or their own."""
     journal = json.loads(path.read_text(encoding="utf-8"))
     files, before = journal["files"], journal["before"]
-    written = {}
+    written: dict[str, str] = {}
     for name in dict.fromkeys((*files, *before)):
         target = folder / name
         new, old = hidden(target, token, "new"), hidden(target, token, "old")
@@ -94,7 +94,7 @@ def _finish(folder: Path, path: Path, token: str) -> None:
             elif name not in files and there is not None:
                 target.unlink()
         if name in files and there == files[name]:
-            written[name] = there
+            written[name] = files[name]
         for left in (new, old):
             left.unlink(missing_ok=True)
     kept = {name: one for name, one in read_manifest(folder).items() if name in files or name not in before}

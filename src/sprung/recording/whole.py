@@ -1,9 +1,9 @@
 """Files are written whole or not at all, however many belong together, and only over files that sprung wrote itself.
 
 Writing is a transaction. All new files are prepared under hidden names beside their places. A journal then says that they
-are complete; from there on the transaction can be finished by whoever comes next. The old files are put aside, the new ones take
-their names, the list of checksums is replaced, and the old files and the journal are removed. An error before the list is
-replaced undoes everything. What a process that was killed leaves is put in order by the next one that writes there.
+are complete; from there on the transaction can be finished by another process. The old files are put aside, the new ones
+take their names, the list of checksums is replaced, and the old files and the journal are removed. An error before the list
+is replaced undoes everything. What a process that was killed leaves is put in order by the next one that writes there.
 """
 
 from __future__ import annotations
