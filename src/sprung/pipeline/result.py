@@ -104,7 +104,8 @@ class Result(_Frozen):
     verdict
         ``state`` and ``reasons``.
     parameters
-        By name: value, std, interval95, unit, status, interval_from.
+        By name: value, std, interval95, unit, status, interval_from. Where the verdict is reject, only what was known exactly
+        has a value.
     derived
         The same of derived quantities: those whose profile was asked for, such as ``total_mass``, and ``I_xx_roll_axis``, the
         roll inertia about the axis of roll, where its height is given.
@@ -115,7 +116,7 @@ class Result(_Frozen):
     correlation
         Of the estimated parameters.
     modes
-        By load: the modes of the identified vehicle, lowest first.
+        By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
     validation
@@ -126,7 +127,7 @@ class Result(_Frozen):
     setup
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
-        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
     series
         By drop name: what was fitted.
     recordings
@@ -156,7 +157,9 @@ class Result(_Frozen):
     recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
 
     def _repr_html_(self) -> str:
-        """Show the verdict, the parameters and the modes in a notebook."""
+        """Show the verdict, the parameters and the modes in a notebook; of a rejected result the verdict alone."""
+        if self.verdict.state == "reject":
+            return self.verdict._repr_html_() + "".join(f"<p>{escaped(one.text)}.</p>\n" for one in self.unidentifiable)
         parts = [
             self.verdict._repr_html_(),
             parameters_table(self.vehicle.name, {**self.parameters, **self.derived}).html(),

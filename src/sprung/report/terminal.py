@@ -30,6 +30,8 @@ def result_view(result: Result) -> RenderableType:
     RenderableType
         For `text_of`.
     """
+    if result.verdict.state == "reject":
+        return _rejected_view(result)
     parts: list[RenderableType] = [
         laid_out(parameters_table(result.vehicle.name, {**result.parameters, **result.derived})),
         Text(),
@@ -50,6 +52,25 @@ def result_view(result: Result) -> RenderableType:
     if result.next_step is not None:
         parts += [Text(), next_line(result.next_step)]
     return Group(*parts)
+
+
+def _rejected_view(result: Result) -> RenderableType:
+    """Show what tells why a result was rejected, and no estimate."""
+    parts: list[RenderableType] = [Text(result.vehicle.name, style="bold")]
+    parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
+    parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
+    if result.faults:
+        parts += [fault_list(result.faults), Text()]
+    return Group(*parts, verdict_view(result))
+
+
+def residual_table(result: Result) -> RenderableType:
+    """Show how far the fitted model is from each channel, the worst first."""
+    fit = result.fit
+    worst = sorted(fit.misfit, key=lambda channel: -fit.misfit[channel])
+    rows = [[name, f"{100 * fit.misfit[name]:.1f}", f"{fit.noise[name]:.3g}"] for name in worst]
+    headers = ("channel", "model error, % of signal", "residual, m/s² rms")
+    return table("Residuals", headers, rows, headers[1:])
 
 
 def verdict_view(result: Result) -> RenderableType:
@@ -96,10 +117,13 @@ def fit_line(result: Result) -> RenderableType:
         f"Fit: {fit.method}{extras}; {_count(fit.drops, 'drop')}, {fit.samples} samples, {fit.iterations} steps, "
         f"{fit.starts_agreeing} of {fit.starts} starts agree."
     )
-    if fit.inflation > 1:
+    rejected = result.verdict.state == "reject"
+    if fit.inflation > 1 and not rejected:
         text += (
             f"\nError bars are {fit.inflation**0.5:.2f} times as wide as white noise would make them{_because(fit)}."
         )
+    if rejected:
+        return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""
     return Text(f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
 
