@@ -85,7 +85,7 @@ def interval_table(profiles: Mapping[str, Estimate]) -> RenderableType:
     rows = [[name, *_interval_cells(found), unit_text(found.unit)] for name, found in profiles.items()]
     shown = table("95 % intervals from the whole likelihood", ("parameter", "from", "to", "unit"), rows, ("from", "to"))
     if any(found.interval95 is not None and None in found.interval95 for found in profiles.values()):
-        return Group(shown, Text("< or >: open to the other side, where the recordings set no limit."))
+        return Group(shown, hanging("", "< or >: open to the other side, where the recordings set no limit."))
     return shown
 
 
@@ -125,7 +125,7 @@ def fit_line(result: Result) -> RenderableType:
     if rejected:
         return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""
-    return Text(f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
+    return hanging("", f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
 
 
 def _because(fit: FitReport) -> str:
