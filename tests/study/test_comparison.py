@@ -89,7 +89,7 @@ def test_a_damper_that_was_changed_is_found(same: list[sprung.Result], worn: spr
     assert one.interval95[0] < one.value < one.interval95[1]
     assert one.percent == pytest.approx(100 * one.value / (same[0].parameters["c_sf"].value or 0))
     assert {name for name, row in found.parameters.items() if row.differences[0].finding == "certain"} == {"c_sf"}
-    assert found.modes["empty, wheel roll, damping ratio"].differences[0].finding == "certain"
+    assert found.modes["empty, front axle hop, damping ratio"].differences[0].finding == "certain"
     together = found.joint[0]
     assert together is not None
     assert together.p < 1e-9

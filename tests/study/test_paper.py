@@ -23,7 +23,7 @@ def test_table_2_without_noise_is_exact(reproduction: PaperReproduction) -> None
 
 
 def test_table_3_is_the_model_of_tables_4_and_5(reproduction: PaperReproduction) -> None:
-    rows = {row.mode: row for row in reproduction.table3}
+    rows = {row.paper_name: row for row in reproduction.table3}
     assert list(rows) == list(TABLE_3)
     # Rows without a misprint whose mode the rounding of Table 5 leaves alone: all four printed digits.
     for mode in ("body roll", "wheel roll", "wheel articulation"):

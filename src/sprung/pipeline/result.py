@@ -172,13 +172,15 @@ class Result(_Frozen):
         seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
         return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write results.json and series.npz, whole or not at all.
 
         Parameters
         ----------
         folder
-            Made if it is missing.
+            Made if it is missing. Files that sprung wrote there are replaced.
+        overwrite
+            Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
         Returns
         -------
@@ -188,9 +190,9 @@ class Result(_Frozen):
         Raises
         ------
         InputError
-            If the folder cannot be written.
+            If such files would be overwritten, with their list, or the folder cannot be written.
         """
-        write_whole(Path(folder), self.files())
+        write_whole(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
     def files(self) -> dict[str, bytes]:
