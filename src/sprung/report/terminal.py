@@ -9,7 +9,15 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import FitReport, Result, modes_table, parameters_table, ratios_table
+from sprung.pipeline import (
+    FitReport,
+    Result,
+    characteristics_tables,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
 from sprung.tables import unit_text
@@ -33,9 +41,11 @@ def result_view(result: Result) -> RenderableType:
     if result.verdict.state == "reject":
         return _rejected_view(result)
     parts: list[RenderableType] = [
-        laid_out(parameters_table(result.vehicle.name, {**result.parameters, **result.derived})),
+        laid_out(parameters_table(result.vehicle.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
+    for table_of in characteristics_tables(result.vehicle.name, result.derived):
+        parts += [laid_out(table_of), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
