@@ -79,7 +79,8 @@ def test_a_rejected_campaign_is_no_ground_for_a_plan(leafbus: Identified, tmp_pa
     assert said.status == 3
     assert "does not explain the records" in said.json["rejected"][0]
     text = run("plan", campaign).out
-    assert "bounds do not hold" in " ".join(text.split())
+    assert (said.json["alternatives"], said.json["next_step"]["percent"]) == ([], {})
+    assert "no plan can be made from it" in " ".join(text.split())
     assert "Next:" not in text
     assert leafbus.json.json["next_step"] is None
     assert "Next:" not in leafbus.text.out

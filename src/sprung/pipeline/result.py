@@ -14,7 +14,13 @@ from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
-from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Recorded, Series, arrays_of, packed
 from sprung.pipeline.setup import Setup
@@ -32,9 +38,18 @@ class _Frozen(BaseModel):
 
 
 class VehicleName(_Frozen):
-    """Whose result it is."""
+    """Whose result it is.
+
+    Attributes
+    ----------
+    name
+        For people to read.
+    identification
+        Chassis, registration or test number, as the campaign file has it; None where it has none.
+    """
 
     name: str
+    identification: str | None = None
 
 
 class FitReport(_Frozen):
@@ -104,10 +119,13 @@ class Result(_Frozen):
     verdict
         ``state`` and ``reasons``.
     parameters
-        By name: value, std, interval95, unit, status, interval_from.
+        By name: value, std, interval95, unit, status, interval_from. Where the verdict is reject, only what was known exactly
+        has a value.
     derived
-        The same of derived quantities: those whose profile was asked for, such as ``total_mass``, and ``I_xx_roll_axis``, the
-        roll inertia about the axis of roll, where its height is given.
+        The same of quantities that follow from the parameters: masses, static loads and centre of gravity of the empty vehicle,
+        ride and hop frequency and damping ratio of each axle (`sprung.vehicle.CHARACTERISTICS` and ``WHEEL_LOADS``);
+        ``I_xx_roll_axis``, the roll inertia about the axis of roll, where its height is given; and those whose profile was
+        asked for, such as ``wheelbase``.
     scale
         Whether absolute scale is known, and what is left without it.
     unidentifiable
@@ -115,7 +133,7 @@ class Result(_Frozen):
     correlation
         Of the estimated parameters.
     modes
-        By load: the modes of the identified vehicle, lowest first.
+        By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
     validation
@@ -126,7 +144,7 @@ class Result(_Frozen):
     setup
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
-        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
     series
         By drop name: what was fitted.
     recordings
@@ -156,11 +174,14 @@ class Result(_Frozen):
     recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
 
     def _repr_html_(self) -> str:
-        """Show the verdict, the parameters and the modes in a notebook."""
+        """Show the verdict, the parameters and the modes in a notebook; of a rejected result the verdict alone."""
+        if self.verdict.state == "reject":
+            return self.verdict._repr_html_() + "".join(f"<p>{escaped(one.text)}.</p>\n" for one in self.unidentifiable)
         parts = [
             self.verdict._repr_html_(),
-            parameters_table(self.vehicle.name, {**self.parameters, **self.derived}).html(),
+            parameters_table(self.vehicle.name, {**self.parameters, **other_quantities(self.derived)}).html(),
         ]
+        parts += [table.html() for table in characteristics_tables(self.vehicle.name, self.derived)]
         parts += [f"<p>Not determined: {escaped(one.text)}.</p>\n" for one in self.unidentifiable]
         if not self.scale.known and self.scale.per_total_mass:
             parts.append(ratios_table(self.scale.per_total_mass).html())

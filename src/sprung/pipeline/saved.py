@@ -24,6 +24,7 @@ from sprung.modal import Mode, name_modes, paper_name
 from sprung.pipeline.result import SCHEMA, Result
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Everything, everything_in
+from sprung.pipeline.withholding import withhold_estimates
 from sprung.vehicle import coordinates
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."
@@ -82,11 +83,11 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
             )
     if problems or result is None:
         raise ResultFileError(problems)
-    return result.model_copy(update={"modes": _named(result.modes), **everything._asdict()})
+    return withhold_estimates(replace(result, **{"modes": _named(result.modes), **everything._asdict()}))
 
 
 def _named(modes: Mapping[str, tuple[ModeEstimate, ...]]) -> dict[str, tuple[ModeEstimate, ...]]:
-    """Name the modes of an older sprung after their shapes, as far as it kept these: it used the names of the paper's Table 3."""
+    """Name the modes of an older sprung after their shapes, as far as it kept these: it used those of the paper's Table 3."""
     if any(mode.paper_name for of_load in modes.values() for mode in of_load):
         return dict(modes)
     named = {}

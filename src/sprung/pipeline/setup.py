@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict
 
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, estimate_of
-from sprung.recording import Campaign, ModelChoice, SourceFile
+from sprung.recording import Campaign, ModelChoice, SourceFile, TestRecord
 from sprung.vehicle import DERIVED, Load, Sensor
 
 _LIBRARIES = ("numpy", "scipy")
@@ -60,6 +60,8 @@ class Setup(BaseModel):
         The campaign file and the recordings, as they were read; empty where there were none.
     software
         Versions by name.
+    test
+        When, where and by whom the vehicle was tested, as far as the campaign file says it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -72,6 +74,7 @@ class Setup(BaseModel):
     options: dict[str, str]
     files: tuple[SourceFile, ...] = ()
     software: dict[str, str]
+    test: TestRecord = TestRecord()
 
 
 def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: Mapping[str, object]) -> Setup:
@@ -103,6 +106,7 @@ def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: 
             "Python": platform.python_version(),
             **{name: version(name) for name in _LIBRARIES},
         },
+        test=campaign.test,
     )
 
 

@@ -34,7 +34,7 @@ class Validation:
     load
         Of the drops from which `amplitudes` are.
     amplitudes
-        Frequency and damping of each mode of the body against amplitude.
+        Frequency and damping of each mode of the body against amplitude; empty where the verdict is reject.
     """
 
     result: Result
@@ -128,7 +128,9 @@ def validate(
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
     asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
     result = result_of(fitted, progress=progress, options=asked)
-    progress("following the modes of the body through the decays")
     motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    if result.verdict.state == "reject":
+        return Validation(result, motions, EMPTY.name, ())
+    progress("following the modes of the body through the decays")
     amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

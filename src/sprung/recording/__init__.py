@@ -1,6 +1,15 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
-from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, drop_names, kind_of, recording_names
+from sprung.recording.campaign import (
+    KINDS,
+    Campaign,
+    Drop,
+    ModelChoice,
+    TestRecord,
+    drop_names,
+    kind_of,
+    recording_names,
+)
 from sprung.recording.formats import Table, read_table, to_sep005
 from sprung.recording.formats.resampled import SLOWEST
 from sprung.recording.gaps import gap, gaps_in
@@ -30,6 +39,7 @@ __all__ = [
     "Recording",
     "SourceFile",
     "Table",
+    "TestRecord",
     "VehicleFile",
     "drop_names",
     "files_named_after",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import itertools
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -189,6 +190,21 @@ class ModelChoice(BaseModel):
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
+class TestRecord(BaseModel):
+    """``[test]``: when, where and by whom the vehicle was tested; for the record, no number depends on it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    date: dt.date | None = None
+    """Day of the test: 2026-11-22, without quotes."""
+    operator: str | None = Field(default=None, min_length=1)
+    """Who did the test."""
+    place: str | None = Field(default=None, min_length=1)
+    """Where it was done."""
+    remarks: str | None = Field(default=None, min_length=1)
+    """Whatever else belongs into the record: tyre pressures, fuel, weather."""
+
+
 @dataclass(frozen=True, eq=False)
 class Campaign:
     """All drops of one vehicle, and what was measured beforehand.
@@ -215,6 +231,10 @@ class Campaign:
         Where the campaign file is; None for a campaign made in memory.
     files
         What was read: the campaign file and the recordings, with their checksums.
+    identification
+        Of the vehicle: chassis, registration or test number; None where nobody gave it.
+    test
+        When, where and by whom the vehicle was tested, as far as the campaign file says it.
     """
 
     name: str
@@ -231,6 +251,8 @@ class Campaign:
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
 
     @property
     def heights(self) -> Heights:

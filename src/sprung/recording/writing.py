@@ -93,11 +93,14 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
 def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, Any]:
     heights = ("cg_height", "wheel_height", "roll_axis_height")
     vehicle: dict[str, Any] = {"name": campaign.name}
+    if campaign.identification is not None:
+        vehicle["identification"] = campaign.identification
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
     sections = {
         "vehicle": vehicle,
+        "test": written(campaign.test),
         "known": {name: _measured(known) for name, known in campaign.known.items()},
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],

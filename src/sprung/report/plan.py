@@ -30,13 +30,13 @@ def plan_view(plan: Plan) -> RenderableType:
     RenderableType
         For `text_of`.
     """
+    if plan.rejected:
+        head = hanging("", Text(f"{plan.vehicle}: the campaign is rejected; no plan can be made from it.", style="bold red"))
+        return Group(head, *(hanging("  - ", reason) for reason in plan.rejected))
     parts = [plan_table(plan), Text()]
     reasons = [hanging("  - ", reason) for reason in _reasons(plan)]
     if reasons:
         parts += [Text("Not determined", style="bold"), *reasons, Text()]
-    if plan.rejected:
-        head = hanging("", Text("The campaign is rejected, so that these bounds do not hold:", style="bold red"))
-        return Group(*parts, head, *(hanging("  - ", reason) for reason in plan.rejected))
     return Group(*parts, next_line(plan.next_step.text))
 
 
