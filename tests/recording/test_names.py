@@ -49,7 +49,8 @@ def test_a_drop_with_a_name_is_fitted_like_any_other(folder: Folder) -> None:
         named,
         drops=tuple(drop.model_copy(update={"name": None}) for drop in named.drops),
         recordings=tuple(
-            replace(recording, name=str(drop.file)) for recording, drop in zip(named.recordings, named.drops, strict=True)
+            replace(recording, name=str(drop.file))
+            for recording, drop in zip(named.recordings, named.drops, strict=True)
         ),
     )
     results = [sprung.identify(campaign) for campaign in (named, plain)]
