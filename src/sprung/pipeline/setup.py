@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, estimate_of
@@ -41,7 +41,8 @@ class Before:
     missed: float | None = None
 
 
-class Setup(BaseModel):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
     """What an identification began with.
 
     Attributes
@@ -62,7 +63,7 @@ class Setup(BaseModel):
         Versions by name.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    __pydantic_config__ = ConfigDict(extra="forbid")
 
     known: dict[str, Before]
     heights: dict[str, float]

@@ -31,7 +31,7 @@ def result_view(result: Result) -> RenderableType:
         For `text_of`.
     """
     parts: list[RenderableType] = [
-        laid_out(parameters_table(result.vehicle.name, {**result.parameters, **result.derived})),
+        laid_out(parameters_table(result.name, {**result.parameters, **result.derived})),
         Text(),
     ]
     if profiles := _profiles(result):
