@@ -31,7 +31,9 @@ def plan_view(plan: Plan) -> RenderableType:
         For `text_of`.
     """
     if plan.rejected:
-        head = hanging("", Text(f"{plan.vehicle}: the campaign is rejected; no plan can be made from it.", style="bold red"))
+        head = hanging(
+            "", Text(f"{plan.vehicle}: the campaign is rejected; no plan can be made from it.", style="bold red")
+        )
         return Group(head, *(hanging("  - ", reason) for reason in plan.rejected))
     parts = [plan_table(plan), Text()]
     reasons = [hanging("  - ", reason) for reason in _reasons(plan)]

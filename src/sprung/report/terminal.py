@@ -41,10 +41,10 @@ def result_view(result: Result) -> RenderableType:
     if result.verdict.state == "reject":
         return _rejected_view(result)
     parts: list[RenderableType] = [
-        laid_out(parameters_table(result.vehicle.name, {**result.parameters, **other_quantities(result.derived)})),
+        laid_out(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
-    for table_of in characteristics_tables(result.vehicle.name, result.derived):
+    for table_of in characteristics_tables(result.name, result.derived):
         parts += [laid_out(table_of), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
@@ -66,7 +66,7 @@ def result_view(result: Result) -> RenderableType:
 
 def _rejected_view(result: Result) -> RenderableType:
     """Show what tells why a result was rejected, and no estimate."""
-    parts: list[RenderableType] = [Text(result.vehicle.name, style="bold")]
+    parts: list[RenderableType] = [Text(result.name, style="bold")]
     parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
     parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
     if result.faults:
