@@ -140,7 +140,7 @@ def _blocks(table: Table, columns: Sequence[_Column], width: int) -> list[Line] 
 def _listed(columns: Sequence[_Column], width: int) -> list[Line]:
     """Arrange every row as a list of its cells, each behind its header; a dash stands for an empty one."""
     name, *others = columns
-    lines: list[Line] = []
+    lines = [Line(line, "dim") for line in wrapped(name.header, width) if line]
     for i, cell in enumerate(name.cells):
         lines += [Line(line, "bold") for line in wrapped(cell, width) if line]
         for column in others:
