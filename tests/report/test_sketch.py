@@ -22,9 +22,9 @@ KNOWN = {"a": Known(1.25), "b": Known(1.51), "t_f": Known(0.74), "t_r": Known(0.
 CORNERS = [("fl", 0.1, 0.7), ("fr", 0.1, -0.7), ("rl", -2.9, 0.7), ("rr", -2.9, -0.7)]
 SENSORS = (
     *(Sensor(channel=f"body_{name}", on="body", position=(x, y, 0.6)) for name, x, y in CORNERS),
-    *(Sensor(channel=f"wheel_{name}", on=name) for name, *_ in CORNERS),
+    *(Sensor(channel=f"wheel_{name}", on=name) for name in WHEELS),
 )
-LOAD = Load(name="sand", items=({"mass": 140, "position": (-1.0, 0.3, 0.7)},))
+LOAD = Load(name="sand", items=(Item(mass=140, position=(-1.0, 0.3, 0.7)),))
 
 
 def campaign(**changes: Any) -> Campaign:
