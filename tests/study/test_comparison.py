@@ -10,6 +10,7 @@ import pytest
 from rich.console import Console
 from scipy.stats import binom, kstest
 
+import goldens
 import sprung
 from command_line import Run, run
 from sprung.errors import InputError
@@ -41,7 +42,7 @@ def worn() -> sprung.Result:
 
 @pytest.fixture(scope="module")
 def rejected() -> sprung.Result:
-    return sprung.load(Path(__file__).parents[1] / "report" / "reject.json", series=False)
+    return goldens.stored_result("reject")
 
 
 @pytest.fixture(scope="module")
