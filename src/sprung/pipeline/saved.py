@@ -83,7 +83,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
             )
     if problems or result is None:
         raise ResultFileError(problems)
-    return withhold_estimates(replace(result, **{"modes": _named(result.modes), **everything._asdict()}))
+    return withhold_estimates(result.model_copy(update={"modes": _named(result.modes), **everything._asdict()}))
 
 
 def _named(modes: Mapping[str, tuple[ModeEstimate, ...]]) -> dict[str, tuple[ModeEstimate, ...]]:
