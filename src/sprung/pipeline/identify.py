@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, conclude, mode_estimates
+from sprung.identification import Fit, characteristics_of, conclude, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.check import check_prepared
@@ -19,7 +19,7 @@ from sprung.pipeline.clocks import clock_reports
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.planned import as_test
 from sprung.pipeline.profiles import check_asked, profiles_of
-from sprung.pipeline.result import FitReport, Result, VehicleName
+from sprung.pipeline.result import FitReport, Result, TestedVehicle
 from sprung.pipeline.series import Series
 from sprung.pipeline.setup import setup_of
 from sprung.pipeline.stand import Fitted
@@ -29,7 +29,7 @@ from sprung.planning import next_step
 from sprung.prepare import Decay
 from sprung.recording import Campaign
 from sprung.validation import BodyMotion, Misfit, body_motions, judge, judge_residuals, validate_drops
-from sprung.vehicle import Tracks
+from sprung.vehicle import EMPTY, Tracks
 
 METHOD = "joint maximum likelihood"
 
@@ -120,11 +120,12 @@ def result_of(
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     result = Result(
         version=version("sprung"),
-        vehicle=VehicleName(name=campaign.name),
+        tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else next_step(as_test(fitted)).text,
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
+            **({} if rejected else characteristics_of(fit, choice.known, choice.models[EMPTY.name])),
             **about_roll_axis(fit, choice.heights),
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
         },

@@ -35,18 +35,17 @@ def withhold_estimates(result: Result) -> Result:
     parameters = {name: without_value(found) for name, found in result.parameters.items()}
     names = tuple(name for name, found in parameters.items() if found.status == "unidentifiable")
     text = ": ".join((NO_ESTIMATES, *result.verdict.reasons[:1]))
-    return result.model_copy(
-        update={
-            "parameters": parameters,
-            "derived": {name: without_value(found) for name, found in result.derived.items()},
-            "scale": Scale(result.scale.known, {}),
-            "unidentifiable": (Unidentifiable(names, text),) if names else (),
-            "correlation": Correlation((), ()),
-            "modes": dict.fromkeys(result.modes, ()),
-            "amplitude": (),
-            "next_step": None,
-            "setup": None if result.setup is None else _without_findings(result.setup),
-        }
+    return replace(
+        result,
+        parameters=parameters,
+        derived={name: without_value(found) for name, found in result.derived.items()},
+        scale=Scale(result.scale.known, {}),
+        unidentifiable=(Unidentifiable(names, text),) if names else (),
+        correlation=Correlation((), ()),
+        modes=dict.fromkeys(result.modes, ()),
+        amplitude=(),
+        next_step=None,
+        setup=None if result.setup is None else _without_findings(result.setup),
     )
 
 
@@ -59,4 +58,4 @@ def without_value(found: Estimate) -> Estimate:
 
 def _without_findings(setup: Setup) -> Setup:
     known = {name: replace(one, found=without_value(one.found)) for name, one in setup.known.items()}
-    return setup.model_copy(update={"known": known})
+    return replace(setup, known=known)

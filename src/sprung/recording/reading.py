@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem, Problems, did_you_mean
-from sprung.recording.campaign import Campaign, Drop, ModelChoice, recording_names
+from sprung.recording.campaign import Campaign, Drop, ModelChoice, TestRecord, recording_names
 from sprung.recording.checks import check, refused_unit
 from sprung.recording.formats import Signals, Table, from_sep005, read_table, split_unit
 from sprung.recording.loggers import Wanted, named_apart, recording_of_drop
@@ -40,7 +40,7 @@ class VehicleFile:
         Its parameters.
     sensors, loads, drops
         As in a `Campaign`; the drops have no recordings.
-    wheelbase, wheel_height, roll_axis_height, known, model
+    wheelbase, wheel_height, roll_axis_height, known, model, identification, test
         As in a `Campaign`: what the simulated campaign may say about itself.
     path
         Where the file is.
@@ -56,6 +56,8 @@ class VehicleFile:
     known: Mapping[str, Known] = field(default_factory=dict)
     model: ModelChoice = field(default_factory=ModelChoice)
     path: Path | None = None
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
 
 
 def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Campaign:
@@ -115,6 +117,8 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
         model=draft.file.model,
         path=path,
         files=_sources(files, path, signals or {}),
+        identification=vehicle.identification,
+        test=draft.file.test,
     )
 
 
@@ -155,6 +159,8 @@ def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
         known={name: measured.known for name, measured in draft.file.known.items()},
         model=draft.file.model,
         path=path,
+        identification=section.identification,
+        test=draft.file.test,
     )
 
 

@@ -6,10 +6,11 @@ import csv
 import io
 import re
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import tomli_w
+from pydantic import TypeAdapter
 
 from sprung.recording.formats import split_unit
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
@@ -24,14 +25,12 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Mapping, Sequence
 
-    from pydantic import BaseModel
-
     from sprung.estimate import Known
     from sprung.recording.campaign import Campaign, Drop
     from sprung.recording.recording import Recording
 
 
-def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
+def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a campaign into a folder, whole or not at all.
 
     The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
@@ -43,7 +42,9 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     campaign
         The campaign.
     folder
-        Where to; made if it does not exist. Files of the same names in it are replaced.
+        Where to; made if it does not exist. Files that an earlier call wrote there are replaced.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -53,7 +54,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
     pieces = [recording.parts or (recording,) for recording in campaign.recordings]
     names = tuple(_file_names(campaign.drops, pieces))
@@ -65,7 +66,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     }
     files[SCHEMA_FILE] = schema_text().encode()
     files[FILE] = SCHEMA_LINE.encode() + _toml(_document(campaign, names))
-    write_whole(folder, files)
+    write_whole(folder, files, overwrite=overwrite)
     return Path(folder) / FILE
 
 
@@ -91,11 +92,14 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
 def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, Any]:
     heights = ("cg_height", "wheel_height", "roll_axis_height")
     vehicle: dict[str, Any] = {"name": campaign.name}
+    if campaign.identification is not None:
+        vehicle["identification"] = campaign.identification
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
     sections = {
         "vehicle": vehicle,
+        "test": written(campaign.test),
         "known": {name: _measured(known) for name, known in campaign.known.items()},
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],
@@ -108,7 +112,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
 
 
-def written(record: BaseModel, *without: str) -> dict[str, Any]:
+def written(record: object, *without: str) -> dict[str, Any]:
     """Give the keys of a record that say more than their defaults, as TOML holds them.
 
     Parameters
@@ -118,7 +122,9 @@ def written(record: BaseModel, *without: str) -> dict[str, Any]:
     *without
         Keys to leave out.
     """
-    return record.model_dump(exclude_defaults=True, exclude_none=True, exclude=set(without))
+    adapter: TypeAdapter[Any] = TypeAdapter(type(record))
+    plain = adapter.dump_python(record, exclude_defaults=True, exclude_none=True, exclude=set(without))
+    return cast("dict[str, Any]", plain)
 
 
 def _measured(known: Known) -> float | dict[str, float]:

@@ -9,7 +9,15 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import FitReport, Result, modes_table, parameters_table, ratios_table
+from sprung.pipeline import (
+    FitReport,
+    Result,
+    characteristics_tables,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
 from sprung.tables import unit_text
@@ -33,9 +41,11 @@ def result_view(result: Result) -> RenderableType:
     if result.verdict.state == "reject":
         return _rejected_view(result)
     parts: list[RenderableType] = [
-        laid_out(parameters_table(result.vehicle.name, {**result.parameters, **result.derived})),
+        laid_out(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
+    for table_of in characteristics_tables(result.name, result.derived):
+        parts += [laid_out(table_of), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
@@ -56,7 +66,7 @@ def result_view(result: Result) -> RenderableType:
 
 def _rejected_view(result: Result) -> RenderableType:
     """Show what tells why a result was rejected, and no estimate."""
-    parts: list[RenderableType] = [Text(result.vehicle.name, style="bold")]
+    parts: list[RenderableType] = [Text(result.name, style="bold")]
     parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
     parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
     if result.faults:
@@ -85,7 +95,7 @@ def interval_table(profiles: Mapping[str, Estimate]) -> RenderableType:
     rows = [[name, *_interval_cells(found), unit_text(found.unit)] for name, found in profiles.items()]
     shown = table("95 % intervals from the whole likelihood", ("parameter", "from", "to", "unit"), rows, ("from", "to"))
     if any(found.interval95 is not None and None in found.interval95 for found in profiles.values()):
-        return Group(shown, Text("< or >: open to the other side, where the recordings set no limit."))
+        return Group(shown, hanging("", "< or >: open to the other side, where the recordings set no limit."))
     return shown
 
 
@@ -125,7 +135,7 @@ def fit_line(result: Result) -> RenderableType:
     if rejected:
         return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""
-    return Text(f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
+    return hanging("", f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
 
 
 def _because(fit: FitReport) -> str:
