@@ -58,7 +58,7 @@ class DropReport:
     load
         Name of the load on the vehicle.
     start, end
-        Of the decay; None where none was used.
+        Of the decay, as the recording shows it, the same from `check` and in a result; None where none was used.
     faults
         Codes.
     kind
@@ -68,10 +68,14 @@ class DropReport:
     wheels_seen
         Which wheels the release shows to have fallen; as stated where no sensor tells. None without a release.
     release, landing, last_lift_off
-        First motion; when the last wheel that fell met the ground; the last moment a tyre may have been off it. None
-        where the records do not tell.
+        First motion; when the last wheel that fell met the ground; the last moment, not before the landing, at which a tyre may
+        have been off the ground once more. They follow each other in this order, and ``start`` follows them. None where the
+        records do not tell, the last also where no tyre can have been off the ground again.
     why_start, why_end
         The reason for each limit of the decay, in words.
+    fit_start, why_fit
+        From where a fit uses the drop, and why, where that is not ``start``: it knows to the sample when the last tyre of the
+        fitted vehicle is down, or uses the fall too. None and empty from `check`.
     rate
         Samples per second.
     channels
@@ -95,6 +99,8 @@ class DropReport:
     last_lift_off: float | None = None
     why_start: str = ""
     why_end: str = ""
+    fit_start: float | None = None
+    why_fit: str = ""
     rate: float | None = None
     channels: tuple[ChannelReport, ...] = ()
     clocks: tuple[ClockReport, ...] = ()
@@ -175,7 +181,7 @@ def _report(
     return DropReport(
         file=recording.name,
         load=drop.load,
-        start=None if decay is None else decay.start,
+        start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
         faults=tuple(fault.code for fault in faults),
         kind=drop.kind,
@@ -186,6 +192,8 @@ def _report(
         last_lift_off=events.last_lift_off,
         why_start=events.why_start,
         why_end=events.why_end,
+        fit_start=decay.start if decay is not None and events.why_fit else None,
+        why_fit=events.why_fit,
         rate=recording.rate,
         channels=tuple(_channels(seen, decay, faults, sensors)),
         name=name,
