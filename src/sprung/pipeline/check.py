@@ -84,6 +84,8 @@ class DropReport:
         For several loggers how their clocks stood, as the fit found it.
     name
         The drop's short name, by which its series are found.
+    title
+        The name that the campaign gives it; empty where it gives none.
     """
 
     file: str
@@ -105,6 +107,12 @@ class DropReport:
     channels: tuple[ChannelReport, ...] = ()
     clocks: tuple[ClockReport, ...] = ()
     name: str = ""
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """What to call it: the name that the campaign gives it, or else its recording."""
+        return self.title or self.file
 
     @property
     def contradicted(self) -> bool:
@@ -179,7 +187,7 @@ def _report(
     released = None if seen.release is None else recording.start + seen.release / recording.rate
     events = Events(release=released) if decay is None else decay.events
     return DropReport(
-        file=recording.name,
+        file=recording.name if drop.name is None else drop.recording or recording.name,
         load=drop.load,
         start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
@@ -197,6 +205,7 @@ def _report(
         rate=recording.rate,
         channels=tuple(_channels(seen, decay, faults, sensors)),
         name=name,
+        title=drop.name or "",
     )
 
 

@@ -1,6 +1,15 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
-from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, TestRecord, drop_names, kind_of
+from sprung.recording.campaign import (
+    KINDS,
+    Campaign,
+    Drop,
+    ModelChoice,
+    TestRecord,
+    drop_names,
+    kind_of,
+    recording_names,
+)
 from sprung.recording.formats import Table, read_table, to_sep005
 from sprung.recording.formats.resampled import SLOWEST
 from sprung.recording.gaps import gap, gaps_in
@@ -43,6 +52,7 @@ __all__ = [
     "read",
     "read_table",
     "read_vehicle",
+    "recording_names",
     "schema_text",
     "to_sep005",
     "write",
