@@ -18,7 +18,9 @@ def test_a_direction_that_the_parameters_imitate_tells_nothing() -> None:
         np.testing.assert_allclose(information, own, atol=1e-9 * 1e5)
         np.testing.assert_allclose(left, score - 40.0 * common, atol=1e-9 * 300)
         drops = np.stack([left * share for share in (0.2, 0.3, 0.5)])
-        found = Corners(tuple("abcd"), drops, np.stack([own * 0.3, own * 0.3, own * 0.4]), left, information, np.zeros((1, 4)))
+        found = Corners(
+            tuple("abcd"), drops, np.stack([own * 0.3, own * 0.3, own * 0.4]), left, information, np.zeros((1, 4))
+        )
         assert found.worth > 0
         assert np.linalg.eigvalsh(found.covariance).min() > 0
         assert 0 < found.gain <= found.worth

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from pydantic import ValidationError
 
+from sprung.errors import InputError
 from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Added, Item, Load, Vehicle
 
 CAR_MASS = TABLE_1_CAR.matrices().M
@@ -101,7 +102,6 @@ def test_empty_adds_nothing() -> None:
 @pytest.mark.parametrize(
     ("given_load", "message"),
     [
-        ({"name": "x"}, "a load needs items"),
         ({"name": "empty", "added": {"mass": 1}}, "give this load another name"),
         ({"name": "x", "added": {"mass": 1}, "items": [{"mass": 1, "on": "fl"}]}, "not both"),
         ({"name": "x", "items": [{"mass": 1}]}, "either a position on the body or the wheel"),
@@ -113,3 +113,8 @@ def test_empty_adds_nothing() -> None:
 def test_a_load_that_cannot_be_is_refused(given_load: dict[str, object], message: str) -> None:
     with pytest.raises(ValidationError, match=message):
         Load.model_validate(given_load)
+
+
+def test_a_load_of_which_nothing_is_known_adds_nothing_in_silence() -> None:
+    with pytest.raises(InputError, match=r"load 'x': found neither items nor added"):
+        Load(name="x").elements()

@@ -143,6 +143,7 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable
     problems = Problems()
     _check_wanted(wanted, problems)
     problems.raise_if_any()
+    campaign.require_complete()
     fitted = fit_campaign(campaign, progress=progress)
     verdict = result_of(fitted).verdict
     progress("weighing the alternatives")

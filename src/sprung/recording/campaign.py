@@ -11,8 +11,9 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from sprung.errors import Fault
+from sprung.errors import Fault, InputError
 from sprung.estimate import Known
+from sprung.recording.completeness import Missing
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
 from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel
@@ -45,6 +46,8 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
 class Drop(BaseModel):
     """One release off the blocks, as a campaign file describes it."""
 
+    # Where it is not known yet, the load is empty text and there are no wheels.
+
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     file: str | None = None
@@ -55,7 +58,7 @@ class Drop(BaseModel):
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
     """Name of the load on the vehicle."""
-    wheels: tuple[Wheel, ...] = Field(default=("fl", "fr", "rl", "rr"), min_length=1)
+    wheels: tuple[Wheel, ...] = Field(default=("fl", "fr", "rl", "rr"), json_schema_extra={"minItems": 1})
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
     """Of the blocks, m."""
@@ -207,6 +210,8 @@ class Campaign:
         Where the campaign file is; None for a campaign made in memory.
     files
         What was read: the campaign file and the recordings, with their checksums.
+    missing
+        What the campaign file does not say yet, of a campaign that was read although it is not complete.
     """
 
     name: str
@@ -223,11 +228,24 @@ class Campaign:
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
+    missing: tuple[Missing, ...] = ()
 
     @property
     def heights(self) -> Heights:
         """How high things are, as far as it was measured."""
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
+
+    def require_complete(self) -> None:
+        """Refuse a campaign that does not say everything that an identification needs.
+
+        Raises
+        ------
+        InputError
+            With everything that is missing.
+        """
+        needed = [one.problem for one in self.missing if one.needed]
+        if needed:
+            raise InputError(needed)
 
     def load(self, name: str) -> Load:
         """Give the load of that name.

@@ -76,6 +76,9 @@ def _unknown(geometry: Geometry) -> Iterator[str]:
     placeless = [sensor.channel for sensor in geometry.sensors if sensor.on == "body" and sensor.position is None]
     if placeless:
         yield f"position{'s' * (len(placeless) > 1)} of {', '.join(placeless)}"
+    stationless = [sensor.channel for sensor in geometry.sensors if sensor.on is None]
+    if stationless:
+        yield f"wheel station{'s' * (len(stationless) > 1)} of {', '.join(stationless)}"
     for load in geometry.loads:
         if not load.items:
             yield f"where load {load.name} lies" + (f" ({load.mass:g} kg in all)" if load.added is not None else "")
