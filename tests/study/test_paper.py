@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
+from layouts import check_view_is_whole
+from sprung.report import paper_view
 from sprung.study import PaperReproduction, reproduce
 from sprung.study.misprints import find_misprints, table_2_misfits, table_3_misfits
+from sprung.study.paper import CAR_LOAD, fit_all_records
+from sprung.study.paper_method import FIVE_BUMPS, bump_campaign
 from sprung.study.printed import TABLE_2, TABLE_3
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR
 
@@ -45,6 +49,16 @@ def test_noise_ruins_the_papers_method(reproduction: PaperReproduction) -> None:
     assert 0.01 < errors[1e-4] < 5
     assert errors[1e-2] > 20
     assert all(point.joint_fit is None for point in reproduction.noise)
+
+
+def test_every_width_shows_all_of_it(reproduction: PaperReproduction) -> None:
+    check_view_is_whole(paper_view(reproduction), tables=4)
+
+
+def test_corners_that_the_vehicle_imitates_overflow_nothing() -> None:
+    # The second draw of this noise: warnings are errors here.
+    campaign = bump_campaign(TABLE_1_CAR, CAR_LOAD, FIVE_BUMPS, noise=0.01, seed=1)
+    assert set(fit_all_records(campaign)) >= set(TABLE_2)
 
 
 def test_the_joint_fit_stands_beside_it() -> None:

@@ -2,6 +2,7 @@
 
 from sprung.identification.added_mass import added_mass
 from sprung.identification.beyond import ascend_stepped, lost_without, prospects
+from sprung.identification.characteristics import characteristics_of
 from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK, told_directions
 from sprung.identification.contact import ascend_from_contact, clear_of_splines
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
@@ -49,6 +50,7 @@ __all__ = [
     "ascend",
     "ascend_from_contact",
     "ascend_stepped",
+    "characteristics_of",
     "clear_of_splines",
     "conclude",
     "corrections",

@@ -1,7 +1,14 @@
 """The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
 
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
-from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    meaning_of,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.identify import identify
 from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
@@ -28,6 +35,7 @@ __all__ = [
     "Series",
     "Setup",
     "Validation",
+    "characteristics_tables",
     "check",
     "draft",
     "identify",
@@ -37,6 +45,7 @@ __all__ = [
     "modes",
     "modes_of_recordings",
     "modes_table",
+    "other_quantities",
     "parameters_table",
     "plan",
     "plan_campaign",

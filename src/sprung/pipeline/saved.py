@@ -19,12 +19,12 @@ from pydantic import ValidationError
 
 from sprung.errors import Problem, Problems, ResultFileError
 from sprung.estimate import Estimate
-from sprung.identification import UNNAMED, ModeEstimate
-from sprung.modal import Mode, name_modes, paper_name
+from sprung.pipeline.plain import record_from
 from sprung.pipeline.result import SCHEMA, Result
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Everything, everything_in
-from sprung.vehicle import coordinates
+from sprung.pipeline.withholding import withhold_estimates
+from sprung.vehicle import UNKNOWN_KEY
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."
 _ROUNDING = 1e-6
@@ -62,12 +62,13 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
     problems = Problems()
     seals = document.pop(SEALS, {})
     try:
-        result = Result.model_validate(document)
+        result = record_from(Result, document)
     except ValidationError as error:
         result = None
         for what in error.errors():
             place = ".".join(str(part) for part in what["loc"])
-            problems.add(f"{path}: {place}", what["msg"], *_as_written(document))
+            found = "a key that no result has" if what["type"] == UNKNOWN_KEY else what["msg"]
+            problems.add(f"{path}: {place}", found, *_as_written(document))
     if result is not None:
         for where, found in _contradictions(result):
             problems.add(f"{path}: {where}", found, *_as_written(document))
@@ -82,25 +83,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
             )
     if problems or result is None:
         raise ResultFileError(problems)
-    return result.model_copy(update={"modes": _named(result.modes), **everything._asdict()})
-
-
-def _named(modes: Mapping[str, tuple[ModeEstimate, ...]]) -> dict[str, tuple[ModeEstimate, ...]]:
-    """Name the modes of an older sprung after their shapes, as far as it kept these: it used the names of the paper's Table 3."""
-    if any(mode.paper_name for of_load in modes.values() for mode in of_load):
-        return dict(modes)
-    named = {}
-    for load_name, of_load in modes.items():
-        shapes = [np.array([complex(*part) for part in mode.motion]) for mode in of_load]
-        if any(len(shape) < len(coordinates(())) for shape in shapes):
-            return dict(modes)
-        given = [Mode(complex(*mode.pole), shape) for mode, shape in zip(of_load, shapes, strict=True)]
-        names = {one.pole: one.name for one in name_modes(given)}
-        named[load_name] = tuple(
-            replace(mode, name=names[complex(*mode.pole)] or UNNAMED, paper_name=paper_name(names[complex(*mode.pole)]))
-            for mode in of_load
-        )
-    return named
+    return withhold_estimates(replace(result, **everything._asdict()))
 
 
 def _document(path: Path) -> dict[str, Any]:

@@ -34,7 +34,7 @@ class Validation:
     load
         Of the drops from which `amplitudes` are.
     amplitudes
-        Frequency and damping of each mode of the body against amplitude.
+        Frequency and damping of each mode of the body against amplitude; empty where the verdict is reject.
     """
 
     result: Result
@@ -44,7 +44,7 @@ class Validation:
 
     def document(self) -> dict[str, Any]:
         """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
-        result = self.result.model_dump(mode="json", by_alias=True)
+        result = self.result.document()
         kept = ("sprung", "vehicle", "verdict", "validation", "faults")
         return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 
@@ -129,7 +129,9 @@ def validate(
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
     asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
     result = result_of(fitted, progress=progress, options=asked)
-    progress("following the modes of the body through the decays")
     motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    if result.verdict.state == "reject":
+        return Validation(result, motions, EMPTY.name, ())
+    progress("following the modes of the body through the decays")
     amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

@@ -1,6 +1,6 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
-from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, drop_names, kind_of
+from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, TestRecord, drop_names, kind_of
 from sprung.recording.completeness import Missing
 from sprung.recording.formats import Table, read_table, to_sep005
 from sprung.recording.formats.resampled import SLOWEST
@@ -32,6 +32,7 @@ __all__ = [
     "Recording",
     "SourceFile",
     "Table",
+    "TestRecord",
     "VehicleFile",
     "drop_names",
     "files_named_after",

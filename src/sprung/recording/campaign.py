@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import itertools
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from sprung.errors import Fault, InputError
 from sprung.estimate import Known
 from sprung.recording.completeness import Missing
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
-from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel
+from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, record
 
 KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
@@ -43,22 +44,21 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
     return KINDS.get(frozenset(wheels), " ".join(wheels))
 
 
-class Drop(BaseModel):
+@record
+class Drop:
     """One release off the blocks, as a campaign file describes it."""
 
     # Where it is not known yet, the load is empty text and there are no wheels.
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
     file: str | None = None
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
-    files: tuple[str, ...] = Field(default=(), max_length=64)
+    files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
     """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
     window: tuple[Finite, Finite] | None = None
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
     """Name of the load on the vehicle."""
-    wheels: tuple[Wheel, ...] = Field(default=("fl", "fr", "rl", "rr"), json_schema_extra={"minItems": 1})
+    wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
     """Of the blocks, m."""
@@ -169,10 +169,9 @@ def _shared_beginning(texts: Sequence[str]) -> str:
     return texts[0][: (*alike, False).index(False)]
 
 
-class ModelChoice(BaseModel):
+@record
+class ModelChoice:
     """What the user says about the model; what is left out, sprung decides."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     tracks: Literal["shared", "separate"] | None = None
     """One half-distance per axle, or those of springs and dampers apart."""
@@ -182,6 +181,20 @@ class ModelChoice(BaseModel):
     """Never these, whatever else sprung chooses."""
     fall: bool | None = None
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
+
+
+@record
+class TestRecord:
+    """``[test]``: when, where and by whom the vehicle was tested; for the record, no number depends on it."""
+
+    date: dt.date | None = None
+    """Day of the test: 2026-11-22, without quotes."""
+    operator: Annotated[str, Field(min_length=1)] | None = None
+    """Who did the test."""
+    place: Annotated[str, Field(min_length=1)] | None = None
+    """Where it was done."""
+    remarks: Annotated[str, Field(min_length=1)] | None = None
+    """Whatever else belongs into the record: tyre pressures, fuel, weather."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,6 +225,10 @@ class Campaign:
         What was read: the campaign file and the recordings, with their checksums.
     missing
         What the campaign file does not say yet, of a campaign that was read although it is not complete.
+    identification
+        Of the vehicle: chassis, registration or test number; None where nobody gave it.
+    test
+        When, where and by whom the vehicle was tested, as far as the campaign file says it.
     """
 
     name: str
@@ -229,6 +246,8 @@ class Campaign:
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
     missing: tuple[Missing, ...] = ()
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
 
     @property
     def heights(self) -> Heights:

@@ -84,8 +84,10 @@ def missing_in_file(draft: Draft[CampaignFile]) -> Iterator[Missing]:
             where, do = draft.where("load", index), "A load needs items = [...] or added = {...}."
             yield Missing(_item(("load", index, "items")), Problem(where, "neither items nor added", "what it is", do))
     for index, drop in zip(draft.numbered("drop"), file.drop, strict=True):
-        wheels, load = "a list of the wheels that fell, not empty", "'empty' or the name of a [[load]], not empty"
-        for key, found, known, expected in (("load", '""', drop.load, load), ("wheels", "[]", drop.wheels, wheels)):
+        for key, found, known, expected in (
+            ("load", '""', bool(drop.load), "'empty' or the name of a [[load]], not empty"),
+            ("wheels", "[]", bool(drop.wheels), "a list of the wheels that fell, not empty"),
+        ):
             if not known and ("drop", index, key) not in draft.gaps:
                 problem = Problem(draft.where("drop", index, key), found, expected, "Correct it.")
                 yield Missing(_item(("drop", index, key)), problem)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
-from sprung.recording.campaign import Campaign, Drop, ModelChoice, recording_names
+from sprung.recording.campaign import Campaign, Drop, ModelChoice, TestRecord, recording_names
 from sprung.recording.checks import check, refused_unit
 from sprung.recording.completeness import missing_in_file
 from sprung.recording.document import toml_document
@@ -42,7 +42,7 @@ class VehicleFile:
         Its parameters.
     sensors, loads, drops
         As in a `Campaign`; the drops have no recordings.
-    wheelbase, wheel_height, roll_axis_height, known, model
+    wheelbase, wheel_height, roll_axis_height, known, model, identification, test
         As in a `Campaign`: what the simulated campaign may say about itself.
     path
         Where the file is.
@@ -58,6 +58,8 @@ class VehicleFile:
     known: Mapping[str, Known] = field(default_factory=dict)
     model: ModelChoice = field(default_factory=ModelChoice)
     path: Path | None = None
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
 
 
 def read(path: str | os.PathLike[str], *, signals: Signals | None = None, complete: bool = True) -> Campaign:
@@ -73,8 +75,9 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None, comple
         (time,), ``unit_str``, and ``fs`` in Hz or ``time`` in s. Unit and direction of a sensor in the campaign file hold for
         them as for a file.
     complete
-        Whether the file must say everything that an identification needs. Otherwise what it does not say is in `Campaign.missing`,
-        recordings that cannot be read are left out and named in its faults, and `sprung.check` can judge the others.
+        Whether the file must say everything that an identification needs. Otherwise what it does not say is in
+        `Campaign.missing`, recordings that cannot be read are left out and named in its faults, and `sprung.check` can judge
+        the others.
 
     Returns
     -------
@@ -158,6 +161,8 @@ def read_document(
         path=path,
         files=_sources(files, path, signals or {}),
         missing=missing,
+        identification=vehicle.identification,
+        test=draft.file.test,
     )
 
 
@@ -201,6 +206,8 @@ def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
         known={name: measured.known for name, measured in draft.file.known.items()},
         model=draft.file.model,
         path=path,
+        identification=section.identification,
+        test=draft.file.test,
     )
 
 

@@ -1,4 +1,4 @@
-"""The page of `sprung check`: what is usable and what is missing, the sketch, and every drop with its recording and its faults."""
+"""The page of `sprung check`: what is usable and what is missing, the sketch, every drop with its recording and its faults."""
 
 from __future__ import annotations
 

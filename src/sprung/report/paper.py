@@ -60,7 +60,7 @@ def _modes(rows: Sequence[ModeRow]) -> RenderableType:
 def _misprints(misprints: Sequence[Misprint]) -> RenderableType:
     lines: list[RenderableType] = [Text("Misprints", style="bold")]
     for misprint in misprints:
-        lines.append(Text.assemble((misprint.where, "bold"), f": {misprint.printed}"))
+        lines.append(hanging("", Text.assemble((misprint.where, "bold"), f": {misprint.printed}")))
         lines.append(hanging("  should be: ", misprint.should_be))
         lines.append(hanging("  because:   ", misprint.reason))
     return Group(*lines)

@@ -66,7 +66,7 @@ def motions(result: Result, few: bool) -> Context | None:
     if not result.validation and not groups:
         return None
     return {
-        "overview": validation_table(result.vehicle.name, result.validation),
+        "overview": validation_table(result.name, result.validation),
         "columns": COLUMNS,
         "groups": [
             {"title": f"{load}: {len(pictures)} drop{'s' * (len(pictures) > 1)}", "pictures": pictures, "open": few}
