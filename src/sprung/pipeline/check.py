@@ -121,7 +121,7 @@ class Check:
     faults
         Everything that is wrong, the harmless included.
     recorded
-        Each drop's whole recording, to draw.
+        Whole recordings, to draw: of the drops in their order, without the last ones, which could not be read.
     campaign
         What was judged; None where only its reports are at hand.
     missing
@@ -235,7 +235,15 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
     everything = (*campaign.faults, *of_drops, *of_left_out)
+    reports += [_unread(drop, everything) for drop in campaign.unread]
     return Check(tuple(reports), everything, recorded, campaign, campaign.missing)
+
+
+def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
+    """Report a drop whose recording could not be read."""
+    file = drop.recording or drop.name
+    codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
+    return DropReport(file, drop.load, None, None, codes, kind=kind_of(drop.wheels), wheels=drop.wheels, name=drop.name)
 
 
 def _report(

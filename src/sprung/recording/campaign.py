@@ -225,6 +225,9 @@ class Campaign:
         What was read: the campaign file and the recordings, with their checksums.
     missing
         What the campaign file does not say yet, of a campaign that was read although it is not complete.
+    unread
+        Drops whose recordings could not be read, of a campaign that was read although it is not complete; they are not among
+        `drops`.
     identification
         Of the vehicle: chassis, registration or test number; None where nobody gave it.
     test
@@ -246,6 +249,7 @@ class Campaign:
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
     missing: tuple[Missing, ...] = ()
+    unread: tuple[Drop, ...] = ()
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
 

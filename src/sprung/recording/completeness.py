@@ -21,7 +21,7 @@ _ITEMS = {
     ("sensor", "on"): "wheel stations of sensors",
     ("sensor", "unit"): "sensor units",
     ("sensor", "high_pass"): "lower limits of AC-coupled sensors",
-    ("load", "items"): "masses and places of loads",
+    ("load", "items"): "load items",
     ("drop", "load"): "loads of drops",
     ("drop", "wheels"): "dropped wheels",
 }

@@ -144,11 +144,11 @@ def read_document(
         unread.raise_if_any()
     _refuse_unusable(recordings)
     vehicle = draft.file.vehicle
-    numbered = zip(draft.numbered("drop"), draft.file.drop, strict=True)
+    drops = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     return Campaign(
         name=vehicle.name or _printable(path.absolute().parent.name),
         sensors=sensors,
-        drops=tuple(drop for index, drop in numbered if index in read),
+        drops=tuple(drop for index, drop in drops.items() if index in read),
         recordings=recordings,
         loads=_loads(draft.file),
         wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
@@ -161,6 +161,7 @@ def read_document(
         path=path,
         files=_sources(files, path, signals or {}),
         missing=missing,
+        unread=tuple(drop for index, drop in drops.items() if index not in read),
         identification=vehicle.identification,
         test=draft.file.test,
     )

@@ -151,7 +151,7 @@ def _limits(drop: DropReport) -> str:
 
 
 def _contradiction(drop: DropReport) -> str:
-    if not drop.contradicted:
+    if not drop.contradicted or "wheels" in drop.faults:  # the fault says it already
         return ""
     seen = ", ".join(drop.wheels_seen or ()) or "no wheel"
     return f"The campaign says that {', '.join(drop.wheels)} fell; the release shows that {seen} fell."

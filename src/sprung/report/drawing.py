@@ -24,10 +24,10 @@ def draw_check(check: Check) -> dict[str, str]:
     Returns
     -------
     dict
-        SVG text by file name, in the campaign's order; the same for the same recordings.
+        SVG text by file name, in the campaign's order, of the recordings that could be read; the same for the same recordings.
     """
     drawn = {}
-    for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=True):
+    for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=False):
         pictures = [picture for picture in (whole_picture(drop, recorded), near_picture(drop, recorded)) if picture]
         drawn[name] = sheet(drop.file, list(_said(drop)), pictures)
     return drawn
