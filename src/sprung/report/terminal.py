@@ -13,6 +13,7 @@ from sprung.pipeline import (
     FitReport,
     Result,
     characteristics_tables,
+    derived_table,
     modes_table,
     other_quantities,
     parameters_table,
@@ -20,6 +21,7 @@ from sprung.pipeline import (
 )
 from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
+from sprung.report.words import record_of
 from sprung.tables import unit_text
 
 COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
@@ -39,11 +41,13 @@ def result_view(result: Result) -> RenderableType:
         For `text_of`.
     """
     parts: list[RenderableType] = [
+        *(hanging(f"{name}: ", told) for name, told in record_of(result)),
+        *([Text()] if list(record_of(result)) else []),
         laid_out(parameters_table(result.vehicle.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
-    for table_of in characteristics_tables(result.vehicle.name, result.derived):
-        parts += [laid_out(table_of), Text()]
+    if characteristics_tables(result.vehicle.name, result.derived):
+        parts += [laid_out(derived_table(result.vehicle.name, result.derived)), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:

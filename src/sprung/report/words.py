@@ -44,6 +44,22 @@ def verdict_words(result: Result) -> VerdictWords:
     return _WORDS[result.verdict.state]
 
 
+def record_of(result: Result) -> Iterator[tuple[str, str]]:
+    """Return what the campaign file says of the test and the vehicle, for the record: names and texts.
+
+    Parameters
+    ----------
+    result
+        The result.
+    """
+    if result.vehicle.identification is not None:
+        yield "Vehicle identification", result.vehicle.identification
+    if result.setup is not None:
+        for name, told in result.setup.test:
+            if told is not None:
+                yield name.capitalize(), str(told)
+
+
 def facts_of(result: Result) -> Iterator[tuple[str, str]]:
     """Give what one wants to know first, each with its name.
 
@@ -72,10 +88,10 @@ def facts_of(result: Result) -> Iterator[tuple[str, str]]:
         yield "Least certain", f"{least[1]}, to {percent_text(least[0])} %"
     if result.validation:
         left_over = [drop.residual for drop in result.validation.values()]
-        yield "Left unexplained", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
+        yield "Residual", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
     predicted = [drop.predicted_residual for drop in result.validation.values() if drop.predicted_residual is not None]
     if predicted:
-        yield "Left by the others' prediction", f"{min(predicted):.2f} to {max(predicted):.2f} times the noise"
+        yield "Residual as predicted by the other drops", f"{min(predicted):.2f} to {max(predicted):.2f} times the noise"
 
 
 def _model(result: Result) -> str:
