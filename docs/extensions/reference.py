@@ -45,7 +45,7 @@ ROOMS = (
 def command_reference() -> str:
     """Write one section for each command: what it does, how it is called, its arguments and options, an example."""
     group: Any = typer.main.get_command(commands)
-    return "\n\n".join("\n\n".join(_command(name, command)) for name, command in group.commands.items())
+    return "\n\n".join("\n\n".join(_command(name, group.commands[name])) for name in group.list_commands(None))
 
 
 def _command(name: str, command: Any) -> Iterator[str]:

@@ -17,6 +17,7 @@ import pytest
 from rich.console import Console
 
 import sprung
+from layouts import check_view_is_whole
 from sprung.errors import Fault
 from sprung.estimate import Estimate, Known
 from sprung.pipeline import ChannelReport, Check, DropReport, Result
@@ -78,6 +79,7 @@ def test_a_result(name: str, regenerate: bool) -> None:
     if regenerate:
         path.write_text(sprung.identify(RESULTS[name]()).to_json(), encoding="utf-8")
     result = sprung.load(path, series=False)
+    check_view_is_whole(result_view(result), tables=2)
     compare(name, text_of(result_view(result), CONSOLE), regenerate)
 
 
@@ -124,6 +126,7 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     derived = {"total_mass": Estimate(1553.1, 5.0, (1543.4, 1562.9), "kg", "estimated", "profile")}
     fit = result.fit.model_copy(update={"inflated_by": "coloured residuals", "most_coloured": "wheel_rl"})
     changed = result.model_copy(update={"parameters": parameters, "derived": derived, "fit": fit})
+    check_view_is_whole(result_view(changed), tables=3)
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
 
 
@@ -140,6 +143,7 @@ def test_two_results_beside_each_other(regenerate: bool) -> None:
     """With dampers of which one is 8 standard uncertainties, and so 5.7 of the difference, stronger."""
     first = sprung.load(HERE / "accept.json", series=False)
     found = sprung.compare([first, changed(first, "c_sf", 8.0)], names=["before", "after"])
+    check_view_is_whole(comparison_view(found), tables=3)
     compare("comparison", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
@@ -150,6 +154,7 @@ def test_many_results_beside_each_other(regenerate: bool) -> None:
     others = [changed(first, "c_sf", 30.0), sprung.load(HERE / "reject.json", series=False)]
     names = [*(f"car {i + 1}" for i in range(len(alike))), "worn", "bus"]
     found = sprung.compare([*alike, *others], names=names)
+    check_view_is_whole(comparison_view(found), tables=3)
     compare("comparisons", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
@@ -162,6 +167,7 @@ def test_a_check(regenerate: bool) -> None:
     )
     clipped = Fault("clipped", "empty_bounce.csv: wheel_fl", "14 samples are at full scale", "Use a larger range.")
     check = Check((bounce(), roll(), left_out()), (clipped, gap, late))
+    check_view_is_whole(check_view(check), tables=2)
     compare("check", text_of(check_view(check), CONSOLE), regenerate)
 
 

@@ -10,6 +10,7 @@ from typing import Annotated, Optional
 import typer
 
 import sprung
+from sprung.cli import completing
 from sprung.cli.app import CampaignFile, Json, app
 from sprung.cli.output import REJECTED, advancing, complain, say, say_json, working
 from sprung.errors import Fault, InputError, Problem
@@ -56,7 +57,9 @@ def compare(
     results: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RESULTS...", help="Two results folders or more, or their results.json; the first is the reference."
+            metavar="RESULTS...",
+            help="Two results folders or more, or their results.json; the first is the reference.",
+            autocompletion=completing.results,
         ),
     ],
     as_json: Json = False,
@@ -78,13 +81,15 @@ def modal(
         typer.Argument(
             metavar="CAMPAIGN",
             help="campaign.toml, or the folder it is in; or a recording, or a folder of nothing but them.",
+            autocompletion=completing.campaigns,
         ),
     ],
     method: Annotated[
         str,
         typer.Option(
+            autocompletion=completing.methods,
             help="ml, the likeliest modes, with uncertainty; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
-            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd."
+            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd.",
         ),
     ] = "ml",
     order: Annotated[
@@ -135,7 +140,9 @@ def simulate(
     vehicle: Annotated[
         Path,
         typer.Argument(
-            metavar="VEHICLE.toml", help="Its parameters; sensors, loads and drops where not the usual ones."
+            metavar="VEHICLE.toml",
+            help="Its parameters; sensors, loads and drops where not the usual ones.",
+            autocompletion=completing.campaigns,
         ),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The campaign folder to write.")],
@@ -160,7 +167,9 @@ def plan(
     source: Annotated[
         Path,
         typer.Argument(
-            metavar="VEHICLE.toml|CAMPAIGN", help="A vehicle as it is thought to be, or a campaign to go on from."
+            metavar="VEHICLE.toml|CAMPAIGN",
+            help="A vehicle as it is thought to be, or a campaign to go on from.",
+            autocompletion=completing.campaigns,
         ),
     ],
     wanted: Annotated[float, typer.Option(help="Percent that no parameter's uncertainty is to exceed.")] = 1.0,

@@ -10,7 +10,7 @@ from sprung.identification.inflation import corrections, of_colour
 from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, inflation_of, residual_records
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood, Place
-from sprung.identification.modes import ModeEstimate, mode_estimates
+from sprung.identification.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.prediction import Prediction, predictions
 from sprung.identification.profile import profiled
@@ -27,6 +27,7 @@ __all__ = [
     "NO_INFORMATION",
     "RANK",
     "STARTS",
+    "UNNAMED",
     "USUAL_ENGINE",
     "USUAL_MOUNTING",
     "Coordinates",

@@ -7,7 +7,7 @@ from sprung.modal.identified import Modes, Rejected
 from sprung.modal.maximum_likelihood import cramer_rao_bound, maximum_likelihood
 from sprung.modal.methods import APPROXIMATE, DEFAULT, METHODS, Method, identify_modes
 from sprung.modal.modes import Mode, Spread, modes_from, similarity
-from sprung.modal.naming import MODE_NAMES, in_coordinates, modes_of, name_by_sensors, name_modes
+from sprung.modal.naming import MODE_NAMES, in_coordinates, modes_of, name_by_sensors, name_modes, paper_name
 from sprung.modal.peaks import fft_frequencies
 from sprung.modal.stabilisation import Criteria, Diagram, stabilisation_diagram
 from sprung.modal.sums import BLOCK, blocks, correlate, gram, waves
@@ -43,6 +43,7 @@ __all__ = [
     "modes_of",
     "name_by_sensors",
     "name_modes",
+    "paper_name",
     "similarity",
     "stabilisation_diagram",
     "state_matrix",

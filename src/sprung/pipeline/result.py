@@ -119,7 +119,8 @@ class Result(_Frozen):
     verdict
         ``state`` and ``reasons``.
     parameters
-        By name: value, std, interval95, unit, status, interval_from.
+        By name: value, std, interval95, unit, status, interval_from. Where the verdict is reject, only what was known exactly
+        has a value.
     derived
         The same of quantities that follow from the parameters: masses, static loads and centre of gravity of the empty vehicle,
         ride and hop frequency and damping ratio of each axle (`sprung.vehicle.CHARACTERISTICS` and ``WHEEL_LOADS``);
@@ -132,7 +133,7 @@ class Result(_Frozen):
     correlation
         Of the estimated parameters.
     modes
-        By load: the modes of the identified vehicle, lowest first.
+        By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
     validation
@@ -143,7 +144,7 @@ class Result(_Frozen):
     setup
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
-        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
     series
         By drop name: what was fitted.
     recordings
@@ -173,7 +174,9 @@ class Result(_Frozen):
     recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
 
     def _repr_html_(self) -> str:
-        """Show the verdict, the parameters and the modes in a notebook."""
+        """Show the verdict, the parameters and the modes in a notebook; of a rejected result the verdict alone."""
+        if self.verdict.state == "reject":
+            return self.verdict._repr_html_() + "".join(f"<p>{escaped(one.text)}.</p>\n" for one in self.unidentifiable)
         parts = [
             self.verdict._repr_html_(),
             parameters_table(self.vehicle.name, {**self.parameters, **other_quantities(self.derived)}).html(),
@@ -190,13 +193,15 @@ class Result(_Frozen):
         seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
         return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write results.json and series.npz, whole or not at all.
 
         Parameters
         ----------
         folder
-            Made if it is missing.
+            Made if it is missing. Files that sprung wrote there are replaced.
+        overwrite
+            Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
         Returns
         -------
@@ -206,9 +211,9 @@ class Result(_Frozen):
         Raises
         ------
         InputError
-            If the folder cannot be written.
+            If such files would be overwritten, with their list, or the folder cannot be written.
         """
-        write_whole(Path(folder), self.files())
+        write_whole(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
     def files(self) -> dict[str, bytes]:

@@ -7,6 +7,7 @@ from sprung.recording.gaps import gap, gaps_in
 from sprung.recording.loggers import files_named_after
 from sprung.recording.mending import MOST_MISSING, filled
 from sprung.recording.merging import merged
+from sprung.recording.ownership import overwriting_problems
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
 from sprung.recording.recording import ROUGHLY, LoggerClock, Recording
@@ -38,6 +39,7 @@ __all__ = [
     "gaps_in",
     "kind_of",
     "merged",
+    "overwriting_problems",
     "read",
     "read_table",
     "read_vehicle",

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from sprung.recording.recording import Recording
 
 
-def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
+def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a campaign into a folder, whole or not at all.
 
     The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
@@ -43,7 +43,9 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     campaign
         The campaign.
     folder
-        Where to; made if it does not exist. Files of the same names in it are replaced.
+        Where to; made if it does not exist. Files that an earlier call wrote there are replaced.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -53,7 +55,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
     pieces = [recording.parts or (recording,) for recording in campaign.recordings]
     names = tuple(_file_names(campaign.drops, pieces))
@@ -65,7 +67,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     }
     files[SCHEMA_FILE] = schema_text().encode()
     files[FILE] = SCHEMA_LINE.encode() + _toml(_document(campaign, names))
-    write_whole(folder, files)
+    write_whole(folder, files, overwrite=overwrite)
     return Path(folder) / FILE
 
 

@@ -25,6 +25,7 @@ from sprung.report.pictures import (
     whole_picture,
 )
 from sprung.report.plan import plan_view
+from sprung.report.sketch import VehicleSketch, drawing_svg, vehicle_sketch
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
@@ -41,6 +42,7 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
+    "VehicleSketch",
     "amplitude_pictures",
     "channels_picture",
     "check_view",
@@ -49,6 +51,7 @@ __all__ = [
     "draft_view",
     "draw_check",
     "draw_validation",
+    "drawing_svg",
     "modes_view",
     "motion_picture",
     "near_picture",
@@ -63,6 +66,7 @@ __all__ = [
     "svg_of",
     "text_of",
     "validation_view",
+    "vehicle_sketch",
     "whole_picture",
     "wire_car",
     "write_check",

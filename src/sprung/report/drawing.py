@@ -46,7 +46,7 @@ def _said(drop: DropReport) -> Iterator[tuple[str, bool]]:
         yield f"the release shows {', '.join(drop.wheels_seen or ()) or 'no wheel'} to have fallen", True
 
 
-def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
+def write_check(check: Check, folder: Path, *, overwrite: bool = False) -> tuple[Path, ...]:
     """Draw every drop into a folder, all of them or none.
 
     Parameters
@@ -54,7 +54,9 @@ def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
     check
         From `sprung.check`.
     folder
-        Made if it does not exist. Files of the same names in it are replaced.
+        Made if it does not exist. Files that sprung wrote there are replaced.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -64,10 +66,10 @@ def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If such files would be overwritten, or the folder cannot be written.
     """
     drawings = draw_check(check)
-    write_whole(folder, {name: text.encode() for name, text in drawings.items()})
+    write_whole(folder, {name: text.encode() for name, text in drawings.items()}, overwrite=overwrite)
     return tuple(folder / name for name in drawings)
 
 

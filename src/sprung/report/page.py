@@ -14,6 +14,7 @@ from sprung.report import sections
 from sprung.report.embedded import figure_json
 from sprung.report.palette import DARK, LIGHT
 from sprung.report.picture import Picture
+from sprung.report.sketch import Drawing, drawing_svg
 from sprung.report.style import alone_style, role_rules
 from sprung.report.svg import lower, svg_of
 from sprung.report.words import facts_of, record_of, verdict_words
@@ -88,6 +89,7 @@ def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
     parts = (
         ("characteristics", "Masses, ride and wheel hop", "characteristics.html", sections.characteristics(result)),
         ("parameters", "Parameters", "parameters.html", sections.parameters(result)),
+        ("geometry", "Geometry, sensors and loads", "geometry.html", sections.geometry(result)),
         ("known", "Known beforehand", "known.html", sections.known(result)),
         ("recordings", "Recordings", "recordings.html", sections.recordings(result, unfolded)),
         ("spectra", "Spectra", "pictures.html", sections.spectra(result)),
@@ -106,8 +108,13 @@ def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
         data = "" if unfolded else f'<script type="application/json" class="data">{figure_json(picture)}</script>'
         return Markup(svg_of(picture, style) + data)  # noqa: S704 (they escape their words)
 
+    def sketch(drawing: Drawing) -> Markup:
+        return Markup(drawing_svg(drawing, style))  # noqa: S704 (it escapes its words)
+
     macros = _ENVIRONMENT.get_template("macros.html").module
     for anchor, title, template, context in parts:
         if context is not None:
-            body = _ENVIRONMENT.get_template(template).render(macros=macros, draw=draw, style=Markup(style), **context)  # noqa: S704 (made here)
+            body = _ENVIRONMENT.get_template(template).render(
+                macros=macros, draw=draw, sketch=sketch, style=Markup(style), **context
+            )  # noqa: S704 (made here)
             yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)

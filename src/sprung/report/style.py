@@ -20,7 +20,8 @@ def role_rules() -> Iterator[str]:
 
 def alone_style() -> str:
     """Give the style of a picture that stands alone, or where that of its page does not reach: the light one."""
-    own = files("sprung.report").joinpath("templates", "picture.css").read_text(encoding="utf-8")
-    rules = "\n".join([*role_rules(), own])
+    templates = files("sprung.report").joinpath("templates")
+    own = [templates.joinpath(name).read_text(encoding="utf-8") for name in ("picture.css", "sketch.css")]
+    rules = "\n".join([*role_rules(), *own])
     light = re.sub(r"var\(--(\w+)\)", lambda found: LIGHT[found[1]], rules)
     return f"<style>{light}</style>"

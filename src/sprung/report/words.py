@@ -91,7 +91,10 @@ def facts_of(result: Result) -> Iterator[tuple[str, str]]:
         yield "Residual", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
     predicted = [drop.predicted_residual for drop in result.validation.values() if drop.predicted_residual is not None]
     if predicted:
-        yield "Residual as predicted by the other drops", f"{min(predicted):.2f} to {max(predicted):.2f} times the noise"
+        yield (
+            "Residual as predicted by the other drops",
+            f"{min(predicted):.2f} to {max(predicted):.2f} times the noise",
+        )
 
 
 def _model(result: Result) -> str:
