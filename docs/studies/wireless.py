@@ -13,15 +13,19 @@ import sprung
 from sprung.estimate import Known
 from sprung.recording import Campaign, Recording, merged
 from sprung.simulation import default_sensors
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
 
 Real = NDArray[np.float64]
 
 REST, AFTER = 0.6, 2.9
 """s that a logger records before and after the release, if it starts when it should."""
 
-BAGS = Load.model_validate(
-    {"name": "bags", "items": [{"mass": 80, "position": (-1.0, 0.4, 0.5)}, {"mass": 60, "position": (-2.0, -0.4, 0.5)}]}
+BAGS = record_of(
+    Load,
+    {
+        "name": "bags",
+        "items": [{"mass": 80, "position": (-1.0, 0.4, 0.5)}, {"mass": 60, "position": (-2.0, -0.4, 0.5)}],
+    },
 )
 
 
@@ -106,7 +110,7 @@ def wireless(
         whole = Recording(f"{drop.name}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
         recordings.append(merged(whole, [part.start for part in parts]))
     drops = tuple(
-        drop.model_copy(update={"file": None, "files": tuple(part.name for part in recording.parts)})
+        replace(drop, file=None, files=tuple(part.name for part in recording.parts))
         for drop, recording in zip(together.drops, recordings, strict=True)
     )
     campaign = replace(

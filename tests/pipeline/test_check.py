@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,10 +19,10 @@ from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, drop_from_blocks
 REST = 0.4  # s before the release, as `simulate` has it
 
 
-def changed(campaign: Campaign, change: dict[str, object], drop: int = 0) -> Campaign:
+def changed(campaign: Campaign, change: dict[str, Any], drop: int = 0) -> Campaign:
     """Say something else of a drop."""
     drops = list(campaign.drops)
-    drops[drop] = drops[drop].model_copy(update=change)
+    drops[drop] = replace(drops[drop], **change)
     return replace(campaign, drops=tuple(drops))
 
 

@@ -109,7 +109,7 @@ def test_modes_carry_both_names_and_true_uncertainty(sedan: sprung.Result) -> No
 def test_saved_and_loaded_results_are_the_same(sedan: sprung.Result, tmp_path: Path) -> None:
     folder = sedan.save(tmp_path / "results")
     again = sprung.load(folder)
-    assert again == sedan.model_copy(update={"series": again.series, "recordings": again.recordings})
+    assert again == replace(sedan, series=again.series, recordings=again.recordings)
     assert again.to_json() == sedan.to_json()
     for name, series in sedan.series.items():
         np.testing.assert_array_equal(again.series[name].measured, series.measured)

@@ -31,7 +31,7 @@ def by_two_loggers(campaign: Campaign) -> Campaign:
         )
         whole = Recording(f"{drop.name}*", one.channels, np.empty((len(one.channels), 0)), 0.0, 1.0, parts=parts)
         recordings.append(merged(whole, [part.start for part in parts]))
-        drops.append(drop.model_copy(update={"file": None, "files": tuple(part.name for part in parts)}))
+        drops.append(replace(drop, file=None, files=tuple(part.name for part in parts)))
     return replace(campaign, drops=tuple(drops), recordings=tuple(recordings))
 
 

@@ -10,6 +10,7 @@ import html
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -124,8 +125,8 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     for name, interval in limits.items():
         parameters[name] = dataclasses.replace(parameters[name], interval95=interval, interval_from="profile")
     derived = {"total_mass": Estimate(1553.1, 5.0, (1543.4, 1562.9), "kg", "estimated", "profile")}
-    fit = result.fit.model_copy(update={"inflated_by": "coloured residuals", "most_coloured": "wheel_rl"})
-    changed = result.model_copy(update={"parameters": parameters, "derived": derived, "fit": fit})
+    fit = replace(result.fit, inflated_by="coloured residuals", most_coloured="wheel_rl")
+    changed = replace(result, parameters=parameters, derived=derived, fit=fit)
     check_view_is_whole(result_view(changed), tables=3)
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
 
@@ -136,7 +137,7 @@ def changed(result: sprung.Result, name: str, by: float) -> sprung.Result:
     assert one.value is not None
     assert one.std is not None
     moved = {**result.parameters, name: dataclasses.replace(one, value=one.value + by * one.std)}
-    return result.model_copy(update={"parameters": moved})
+    return replace(result, parameters=moved)
 
 
 def test_two_results_beside_each_other(regenerate: bool) -> None:

@@ -107,7 +107,7 @@ def hostile() -> Campaign:
         TABLE_1_CAR, drops=[{"load": "empty"}, {"wheels": ["rl", "rr"], "load": "empty"}], noise=0.02, seed=1
     )
     name = '</script><script>alert("1")</script>&amp;'
-    sensors = (made.sensors[0].model_copy(update={"channel": name}), *made.sensors[1:])
+    sensors = (replace(made.sensors[0], channel=name), *made.sensors[1:])
     recordings = tuple(replace(one, channels=(name, *one.channels[1:])) for one in made.recordings)
     return replace(made, name=f"{name}\x1b[31m", sensors=sensors, recordings=recordings)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -168,7 +169,7 @@ def test_what_was_known_in_both_is_given(same: list[sprung.Result]) -> None:
 
 
 def test_about_other_axes_inertias_are_not_compared(same: list[sprung.Result]) -> None:
-    other = same[1].model_copy(update={"fit": same[1].fit.model_copy(update={"axes": "about something else"})})
+    other = replace(same[1], fit=replace(same[1].fit, axes="about something else"))
     found = sprung.compare([same[0], other])
     assert "other axes" in found.parameters["I_xx"].differences[0].why
     assert found.parameters["m_s"].differences[0].p is not None

@@ -19,7 +19,7 @@ from sprung.pipeline.clocks import clock_reports
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.planned import as_test
 from sprung.pipeline.profiles import check_asked, profiles_of
-from sprung.pipeline.result import FitReport, Result, VehicleName
+from sprung.pipeline.result import FitReport, Result, TestedVehicle
 from sprung.pipeline.series import Series
 from sprung.pipeline.setup import setup_of
 from sprung.pipeline.stand import Fitted
@@ -120,7 +120,7 @@ def result_of(
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     result = Result(
         version=version("sprung"),
-        vehicle=VehicleName(name=campaign.name, identification=campaign.identification),
+        tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else next_step(as_test(fitted)).text,
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, estimate_of
@@ -41,7 +41,8 @@ class Before:
     missed: float | None = None
 
 
-class Setup(BaseModel):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
     """What an identification began with.
 
     Attributes
@@ -64,7 +65,7 @@ class Setup(BaseModel):
         When, where and by whom the vehicle was tested, as far as the campaign file says it.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    __pydantic_config__ = ConfigDict(extra="forbid")
 
     known: dict[str, Before]
     heights: dict[str, float]
@@ -74,7 +75,7 @@ class Setup(BaseModel):
     options: dict[str, str]
     files: tuple[SourceFile, ...] = ()
     software: dict[str, str]
-    test: TestRecord = TestRecord()
+    test: TestRecord = field(default_factory=TestRecord)
 
 
 def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: Mapping[str, object]) -> Setup:

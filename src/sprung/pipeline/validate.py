@@ -44,7 +44,7 @@ class Validation:
 
     def document(self) -> dict[str, Any]:
         """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
-        result = self.result.model_dump(mode="json", by_alias=True)
+        result = self.result.document()
         kept = ("sprung", "vehicle", "verdict", "validation", "faults")
         return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 

@@ -94,7 +94,7 @@ def prepare(campaign: Campaign) -> Prepared:
     for i in contradicted(campaign.drops, fell):
         fault = other_wheels(campaign.drops[i], fell[i], recordings[i].name)
         recordings[i] = replace(recordings[i], faults=(*recordings[i].faults, fault))
-        drops[i] = campaign.drops[i].model_copy(update={"wheels": as_seen(campaign.drops[i], fell[i])})
+        drops[i] = replace(campaign.drops[i], wheels=as_seen(campaign.drops[i], fell[i]))
     campaign = replace(campaign, recordings=tuple(recordings), drops=tuple(drops))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []

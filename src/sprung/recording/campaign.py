@@ -8,15 +8,15 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from sprung.errors import Fault
 from sprung.estimate import Known
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
-from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel
+from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, record
 
 KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
@@ -43,20 +43,19 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
     return KINDS.get(frozenset(wheels), " ".join(wheels))
 
 
-class Drop(BaseModel):
+@record
+class Drop:
     """One release off the blocks, as a campaign file describes it."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     file: str | None = None
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
-    files: tuple[str, ...] = Field(default=(), max_length=64)
+    files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
     """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
     window: tuple[Finite, Finite] | None = None
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
     """Name of the load on the vehicle."""
-    wheels: tuple[Wheel, ...] = Field(default=("fl", "fr", "rl", "rr"), min_length=1)
+    wheels: Annotated[tuple[Wheel, ...], Field(min_length=1)] = ("fl", "fr", "rl", "rr")
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
     """Of the blocks, m."""
@@ -167,10 +166,9 @@ def _shared_beginning(texts: Sequence[str]) -> str:
     return texts[0][: (*alike, False).index(False)]
 
 
-class ModelChoice(BaseModel):
+@record
+class ModelChoice:
     """What the user says about the model; what is left out, sprung decides."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     tracks: Literal["shared", "separate"] | None = None
     """One half-distance per axle, or those of springs and dampers apart."""
@@ -182,18 +180,17 @@ class ModelChoice(BaseModel):
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
-class TestRecord(BaseModel):
+@record
+class TestRecord:
     """``[test]``: when, where and by whom the vehicle was tested; for the record, no number depends on it."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     date: dt.date | None = None
     """Day of the test: 2026-11-22, without quotes."""
-    operator: str | None = Field(default=None, min_length=1)
+    operator: Annotated[str, Field(min_length=1)] | None = None
     """Who did the test."""
-    place: str | None = Field(default=None, min_length=1)
+    place: Annotated[str, Field(min_length=1)] | None = None
     """Where it was done."""
-    remarks: str | None = Field(default=None, min_length=1)
+    remarks: Annotated[str, Field(min_length=1)] | None = None
     """Whatever else belongs into the record: tyre pressures, fuel, weather."""
 
 

@@ -114,6 +114,11 @@ class _Toml(GenerateJsonSchema):
         numbers = written.pop("prefixItems", None)
         return written if numbers is None else written | {"items": numbers[0]}
 
+    def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
+        written = super().dataclass_schema(schema)
+        written.pop("title", None)
+        return written
+
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
         written = super().model_schema(schema)
         written.pop("title", None)  # a class's name means nothing to who writes a file

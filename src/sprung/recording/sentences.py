@@ -10,6 +10,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from sprung.errors import Problem, did_you_mean
+from sprung.vehicle import UNKNOWN_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -60,7 +61,7 @@ def problems_of(
 def _problem(model: type[BaseModel], detail: ErrorDetails, file: str, document: Mapping[str, Any]) -> Problem:
     schema = model.model_json_schema()
     place, kind = _written(document, detail["loc"]), detail["type"]
-    if kind == "extra_forbidden":
+    if kind in {"extra_forbidden", UNKNOWN_KEY}:
         where = where_in(file, place, document)
         if place[0] == "drop" and place[-1] == "files":
             return Problem(where, *_SEVERAL_LOGGERS)

@@ -6,10 +6,11 @@ import csv
 import io
 import re
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import tomli_w
+from pydantic import TypeAdapter
 
 from sprung.recording.formats import split_unit
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
@@ -23,8 +24,6 @@ from sprung.vehicle import EMPTY, Sensor
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Mapping, Sequence
-
-    from pydantic import BaseModel
 
     from sprung.estimate import Known
     from sprung.recording.campaign import Campaign, Drop
@@ -113,7 +112,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
 
 
-def written(record: BaseModel, *without: str) -> dict[str, Any]:
+def written(record: object, *without: str) -> dict[str, Any]:
     """Give the keys of a record that say more than their defaults, as TOML holds them.
 
     Parameters
@@ -123,7 +122,9 @@ def written(record: BaseModel, *without: str) -> dict[str, Any]:
     *without
         Keys to leave out.
     """
-    return record.model_dump(exclude_defaults=True, exclude_none=True, exclude=set(without))
+    adapter: TypeAdapter[Any] = TypeAdapter(type(record))
+    plain = adapter.dump_python(record, exclude_defaults=True, exclude_none=True, exclude=set(without))
+    return cast("dict[str, Any]", plain)
 
 
 def _measured(known: Known) -> float | dict[str, float]:

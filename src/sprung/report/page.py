@@ -63,7 +63,7 @@ def page_of(result: Result, unfolded: bool = False) -> str:
         result=result,
         verdict=verdict_words(result),
         record=record,
-        running_head=_css_text(" · ".join([result.vehicle.name, *(told for name, told in record if name == "Date")])),
+        running_head=_css_text(" · ".join([result.name, *(told for name, told in record if name == "Date")])),
         facts=facts_of(result),
         sections=list(_sections(result, unfolded)),
         light=LIGHT,
@@ -112,9 +112,8 @@ def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
         return Markup(drawing_svg(drawing, style))  # noqa: S704 (it escapes its words)
 
     macros = _ENVIRONMENT.get_template("macros.html").module
+    tools = {"macros": macros, "draw": draw, "sketch": sketch, "style": Markup(style)}  # noqa: S704 (made here)
     for anchor, title, template, context in parts:
         if context is not None:
-            body = _ENVIRONMENT.get_template(template).render(
-                macros=macros, draw=draw, sketch=sketch, style=Markup(style), **context
-            )  # noqa: S704 (made here)
+            body = _ENVIRONMENT.get_template(template).render(**tools, **context)
             yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)

@@ -44,11 +44,11 @@ def result_view(result: Result) -> RenderableType:
         return _rejected_view(result)
     parts: list[RenderableType] = [
         *_record(result),
-        laid_out(parameters_table(result.vehicle.name, {**result.parameters, **other_quantities(result.derived)})),
+        laid_out(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
-    if characteristics_tables(result.vehicle.name, result.derived):
-        parts += [laid_out(derived_table(result.vehicle.name, result.derived)), Text()]
+    if characteristics_tables(result.name, result.derived):
+        parts += [laid_out(derived_table(result.name, result.derived)), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
@@ -69,7 +69,7 @@ def result_view(result: Result) -> RenderableType:
 
 def _rejected_view(result: Result) -> RenderableType:
     """Show what tells why a result was rejected, and no estimate."""
-    parts: list[RenderableType] = [*_record(result), Text(result.vehicle.name, style="bold")]
+    parts: list[RenderableType] = [*_record(result), Text(result.name, style="bold")]
     parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
     parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
     if result.faults:

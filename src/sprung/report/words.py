@@ -52,12 +52,18 @@ def record_of(result: Result) -> Iterator[tuple[str, str]]:
     result
         The result.
     """
-    if result.vehicle.identification is not None:
-        yield "Vehicle identification", result.vehicle.identification
+    if result.tested_vehicle.identification is not None:
+        yield "Vehicle identification", result.tested_vehicle.identification
     if result.setup is not None:
-        for name, told in result.setup.test:
+        test = result.setup.test
+        for name, told in (
+            ("Date", test.date),
+            ("Operator", test.operator),
+            ("Place", test.place),
+            ("Remarks", test.remarks),
+        ):
             if told is not None:
-                yield name.capitalize(), str(told)
+                yield name, str(told)
 
 
 def facts_of(result: Result) -> Iterator[tuple[str, str]]:

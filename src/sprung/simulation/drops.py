@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -106,7 +107,7 @@ def simulate(
     released, accelerations = [], []
     for drop in setup.drops:
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
-        released.append(drop.model_copy(update={"height": height}))
+        released.append(replace(drop, height=height))
         with problems.collecting():
             fall = drop_from_blocks(
                 vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity

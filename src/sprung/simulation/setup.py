@@ -87,7 +87,8 @@ class Setup:
         check_unlike("loads", "name", [load.name for load in given_loads], problems)
         check_unlike("drops", "file", [drop.file for drop in chosen_drops if drop.file is not None], problems)
         # A load that is faulty itself has been named above, and the drops with it are not at fault.
-        names = {load.name for load in all_loads} | {str(dict(load).get("name")) for load in loads or ()}
+        names = {load.name for load in all_loads}
+        names |= {load.name if isinstance(load, Load) else str(load.get("name")) for load in loads or ()}
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
         return cls(

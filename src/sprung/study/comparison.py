@@ -207,7 +207,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     modes = _tested(_modes(read, labels))
     return Comparison(
         results=tuple(
-            Compared(label, one.vehicle.name, one.verdict.state, one.verdict.reasons)
+            Compared(label, one.name, one.verdict.state, one.verdict.reasons)
             for label, one in zip(labels, read, strict=True)
         ),
         per_total_mass=ratios,
@@ -247,7 +247,7 @@ def _labels(given: Sequence[Result | str | Path], read: Sequence[Result]) -> tup
         parts = [one[:-1] for one in parts]
     while all(parts) and len({one[0] for one in parts}) == 1:
         parts = [one[1:] for one in parts]
-    called = ["/".join(one) or result.vehicle.name for one, result in zip(parts, read, strict=True)]
+    called = ["/".join(one) or result.name for one, result in zip(parts, read, strict=True)]
     return tuple(
         name if called.count(name) == 1 else f"{name} ({called[: i + 1].count(name)})" for i, name in enumerate(called)
     )
@@ -386,8 +386,8 @@ def _notes(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> Itera
             )
         if one.parameters == read[0].parameters and one.fit == read[0].fit:
             yield f"{labels[0]} and {label} are the same result"
-        if one.vehicle != read[0].vehicle:
-            yield f"{labels[0]} is of '{read[0].vehicle.name}', {label} of '{one.vehicle.name}'"
+        if one.name != read[0].name:
+            yield f"{labels[0]} is of '{read[0].name}', {label} of '{one.name}'"
 
 
 def _model(result: Result) -> str:

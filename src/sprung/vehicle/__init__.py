@@ -37,6 +37,7 @@ from sprung.vehicle.parameters import (
     separate_names,
     separated,
 )
+from sprung.vehicle.record import UNKNOWN_KEY, problems_of_record, record, record_of
 from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
 from sprung.vehicle.rough import Block, decays_with_forces, drops_with_forces
 from sprung.vehicle.rows import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
@@ -58,6 +59,7 @@ __all__ = [
     "PARAMETERS",
     "SCHOOL_BUS",
     "TABLE_1_CAR",
+    "UNKNOWN_KEY",
     "WHEELS",
     "WHEELS_AT",
     "WHEEL_LOADS",
@@ -105,7 +107,10 @@ __all__ = [
     "half_distances",
     "half_sine_bump",
     "parameter_names",
+    "problems_of_record",
     "quantity",
+    "record",
+    "record_of",
     "separate_names",
     "separated",
     "seven_degrees_of_freedom",

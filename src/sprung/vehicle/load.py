@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
+from sprung.vehicle.record import record
 from sprung.vehicle.rows import Wheel
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -22,10 +23,9 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 """A number in a campaign file: neither infinite nor NaN."""
 
 
-class Item(BaseModel):
+@record
+class Item:
     """One piece of a load: a mass at a place."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass: Positive
     """kg."""
@@ -61,10 +61,9 @@ class Item(BaseModel):
                     yield Element("spring", -self.mass * heights.tipping(z), row)
 
 
-class Added(BaseModel):
+@record
+class Added:
     """A load of which only totals are known, taken as centred on the body's centre of gravity (the paper's bus)."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass: NotNegative
     """kg, on the body."""
@@ -88,12 +87,11 @@ class Added(BaseModel):
         yield Element("mass", self.m_ur, rows.wheel("rr"))
 
 
-class Load(BaseModel):
+@record
+class Load:
     """A known load: a list of items, or totals. The load named ``empty`` has neither and always exists."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-    name: str = Field(min_length=1)
+    name: Annotated[str, Field(min_length=1)]
     """What the drops call it."""
     items: tuple[Item, ...] = ()
     """Its pieces, each a mass at a place."""

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from sprung.vehicle import rows
 from sprung.vehicle.load import Finite, Positive
+from sprung.vehicle.record import record
 from sprung.vehicle.rows import Row
 
 
-class Sensor(BaseModel):
+@record
+class Sensor:
     """One accelerometer, as a campaign file describes it."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-    channel: str = Field(min_length=1)
+    channel: Annotated[str, Field(min_length=1)]
     """Column or channel name in the recordings."""
     on: Literal["body", "fl", "fr", "rl", "rr"]
     """The body, or a wheel station."""

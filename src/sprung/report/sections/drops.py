@@ -73,7 +73,7 @@ def motions(result: Result, unfolded: bool) -> Context | None:
     if not result.validation and not groups:
         return None
     return {
-        "overview": validation_table(result.vehicle.name, result.validation),
+        "overview": validation_table(result.name, result.validation),
         "columns": COLUMNS,
         "groups": [
             {"title": f"{load}: {len(drops)} drop{'s' * (len(drops) > 1)}", "drops": drops}

@@ -32,7 +32,7 @@ def symbol(name: str) -> Markup:
 
 def characteristics(result: Result) -> Context | None:
     """Show masses, loads, centre of gravity, ride and wheel hop."""
-    tables = characteristics_tables(result.vehicle.name, result.derived)
+    tables = characteristics_tables(result.name, result.derived)
     return {"tables": tables} if tables else None
 
 

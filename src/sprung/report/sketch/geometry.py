@@ -123,10 +123,10 @@ def _of_result(result: Result) -> Geometry:
     }
     setup = result.setup
     if setup is None:
-        return _geometry(result.vehicle.name, lengths, {}, (), (), result.fit.tracks == "separate", identified=True)
+        return _geometry(result.name, lengths, {}, (), (), result.fit.tracks == "separate", identified=True)
     lengths = {name: Length(one.value, one.std) for name, one in setup.known.items()} | lengths
     return _geometry(
-        result.vehicle.name,
+        result.name,
         lengths,
         setup.heights,
         setup.sensors,
