@@ -44,7 +44,7 @@ def names_of(shapes: Sequence[Sequence[complex]], *, poles: Sequence[complex] = 
 def mirrored(shape: np.ndarray, mirror: tuple[np.ndarray, list[int]]) -> np.ndarray:
     """Look at a shape in a mirror: coordinates change sign, wheels change places."""
     sign, order = mirror
-    return np.concatenate([sign[:3], np.ones(4)]) * shape[order]
+    return np.asarray(np.concatenate([sign[:3], np.ones(4)]) * shape[order])
 
 
 @pytest.mark.parametrize("wheels", [AXLES, ALL_FOUR, (*AXLES[:2], *ALL_FOUR[2:]), (*ALL_FOUR[:2], *AXLES[2:])])

@@ -22,9 +22,9 @@ KNOWN = {"a": Known(1.25), "b": Known(1.51), "t_f": Known(0.74), "t_r": Known(0.
 CORNERS = [("fl", 0.1, 0.7), ("fr", 0.1, -0.7), ("rl", -2.9, 0.7), ("rr", -2.9, -0.7)]
 SENSORS = (
     *(Sensor(channel=f"body_{name}", on="body", position=(x, y, 0.6)) for name, x, y in CORNERS),
-    *(Sensor.model_validate({"channel": f"wheel_{name}", "on": name}) for name, *_ in CORNERS),
+    *(Sensor(channel=f"wheel_{name}", on=name) for name, *_ in CORNERS),
 )
-LOAD = Load.model_validate({"name": "sand", "items": [{"mass": 140, "position": (-1.0, 0.3, 0.7)}]})
+LOAD = Load(name="sand", items=({"mass": 140, "position": (-1.0, 0.3, 0.7)},))
 
 
 def campaign(**changes: Any) -> Campaign:
@@ -136,7 +136,7 @@ def test_usual_vehicles_are_legible(vehicle: Vehicle) -> None:
 
 def test_names_are_escaped_and_shortened() -> None:
     odd = ('<b> & "c"', "d" * 200, "x\x07y", *(sensor.channel for sensor in SENSORS[3:]))
-    renamed = tuple(s.model_copy(update={"channel": name}) for s, name in zip(SENSORS, odd, strict=True))
+    renamed = tuple(replace(s, channel=name) for s, name in zip(SENSORS, odd, strict=True))
     plan, _ = vehicle_sketch(campaign(sensors=renamed)).drawings
     svg = drawing_svg(plan)
     assert "<b>" not in svg
