@@ -85,7 +85,7 @@ def _css_text(text: str) -> Markup:
 
 
 def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
-    style = alone_style() if unfolded else ""
+    style = alone_style(halo=False) if unfolded else ""
     parts = (
         ("characteristics", "Masses, ride and wheel hop", "characteristics.html", sections.characteristics(result)),
         ("parameters", "Parameters", "parameters.html", sections.parameters(result)),

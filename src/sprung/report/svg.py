@@ -19,7 +19,7 @@ _HEIGHT = 96.0
 _LEFT, _BELOW, _GAP = 58.0, 34.0, 9.0
 """Units left of the panels, below the last, and between panels."""
 
-_MOST, _LEAST = 290.0, 0.5
+_MOST, _LEAST = 280.0, 0.5
 """Height of a picture on paper, units, and part of their height that its panels keep at the least."""
 
 _NAME = 18
