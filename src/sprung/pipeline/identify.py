@@ -87,6 +87,7 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
+    campaign.require_complete()
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
     options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}

@@ -12,8 +12,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from sprung.errors import Fault
+from sprung.errors import Fault, InputError
 from sprung.estimate import Known
+from sprung.recording.completeness import Missing
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
 from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, record
@@ -47,6 +48,8 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
 class Drop:
     """One release off the blocks, as a campaign file describes it."""
 
+    # Where it is not known yet, the load is empty text and there are no wheels.
+
     file: str | None = None
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
     files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
@@ -57,7 +60,7 @@ class Drop:
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
     """Name of the load on the vehicle."""
-    wheels: Annotated[tuple[Wheel, ...], Field(min_length=1)] = ("fl", "fr", "rl", "rr")
+    wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
     """Of the blocks, m."""
@@ -228,6 +231,11 @@ class Campaign:
         Where the campaign file is; None for a campaign made in memory.
     files
         What was read: the campaign file and the recordings, with their checksums.
+    missing
+        What the campaign file does not say yet, of a campaign that was read although it is not complete.
+    unread
+        Drops whose recordings could not be read, of a campaign that was read although it is not complete; they are not among
+        `drops`.
     identification
         Of the vehicle: chassis, registration or test number; None where nobody gave it.
     test
@@ -248,6 +256,8 @@ class Campaign:
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
+    missing: tuple[Missing, ...] = ()
+    unread: tuple[Drop, ...] = ()
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
 
@@ -255,6 +265,18 @@ class Campaign:
     def heights(self) -> Heights:
         """How high things are, as far as it was measured."""
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
+
+    def require_complete(self) -> None:
+        """Refuse a campaign that does not say everything that an identification needs.
+
+        Raises
+        ------
+        InputError
+            With everything that is missing.
+        """
+        needed = [one.problem for one in self.missing if one.needed]
+        if needed:
+            raise InputError(needed)
 
     def load(self, name: str) -> Load:
         """Give the load of that name.

@@ -104,6 +104,8 @@ def _check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
     """Bounce, pitch and roll are three unknowns: three sensors not on one line tell them apart."""
     if not draft.complete("sensor") or _left_to_defaults(draft, "sensor"):
         return
+    if any(sensor.on == "body" and sensor.position is None for sensor in draft.file.sensor):
+        return  # said already
     placed = [
         sensor.position[:2] for sensor in draft.file.sensor if sensor.on == "body" and sensor.position is not None
     ]
@@ -136,7 +138,7 @@ def _check_loads(draft: Draft[CampaignFile], problems: Problems) -> None:
     written = draft.document.get("load", [])
     names = {"empty"} | {entry.get("name") for entry in written if isinstance(entry, dict)}
     for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
-        if drop.load not in names and ("load" in draft.document or draft.complete("load")):
+        if drop.load and drop.load not in names and ("load" in draft.document or draft.complete("load")):
             do = did_you_mean(drop.load, [name for name in names if isinstance(name, str)])
             problems.add(draft.where("drop", index, "load"), f"'{drop.load}'", "'empty' or the name of a [[load]]", do)
 
