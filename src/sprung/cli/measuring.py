@@ -23,6 +23,7 @@ def check(
         typer.Argument(
             metavar="CAMPAIGN",
             help="campaign.toml, complete or not, or the folder it is in; or a folder of nothing but recordings.",
+            autocompletion=completing.campaigns,
         ),
     ],
     output: Annotated[

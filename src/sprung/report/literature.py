@@ -33,8 +33,8 @@ def _profiled(result: Result) -> bool:
 
 _WORKS = (
     Work(
-        "A New Physical Parameter Identification Method for Two-Axis On-Road Vehicles: Simulation and Experiment. Research "
-        "article, Shock and Vibration.",
+        "A New Physical Parameter Identification Method for Two-Axis On-Road Vehicles: Simulation and Experiment. "
+        "Shock and Vibration 2015, article 191050, doi:10.1155/2015/191050.",
         "the vehicle of seven degrees of freedom, drop tests with and without a known added mass, figures 7 to 9",
     ),
     Work(
