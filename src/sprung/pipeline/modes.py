@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from sprung.errors import Problems
 from sprung.identification import UNNAMED, ModeEstimate
 from sprung.modal import (
+    APPROXIMATE,
     DEFAULT,
     Diagram,
     Mode,
     Modes,
     ModeTrace,
     complexity,
+    confirmed,
     fft_frequencies,
     follow_modes,
     identify_modes,
@@ -255,6 +257,10 @@ def examined(
         Front axle to the body's centre of gravity, m, if known.
     """
     found = identify_modes(records, rate, method, order)
+    drawn = stabilisation_diagram(records, rate) if diagram else None
+    # Of recordings alone nothing else is known by which an invented mode would stand out.
+    if not sensors and order is None and method not in APPROXIMATE:
+        found = confirmed(found, records, rate, drawn)
     names = (
         _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
     )
@@ -271,7 +277,7 @@ def examined(
         drops,
         tuple((one.pole, one.reason) for one in found.rejected),
         _unresolved(estimates, sensors, len(drops)),
-        stabilisation_diagram(records, rate) if diagram else None,
+        drawn,
     )
 
 
