@@ -186,7 +186,7 @@ def test_a_drop_that_ends_with_its_window_says_so(car: Campaign) -> None:
 
 def test_the_document_is_json_and_has_what_the_contract_says(seen: Check) -> None:
     document = json.loads(json.dumps(seen.document(), allow_nan=False))
-    assert document.keys() == {"drops", "faults"}
+    assert document.keys() == {"drops", "faults", "missing"}
     for drop in document["drops"]:
         assert drop.keys() >= {"file", "load", "start", "end", "faults"}
     again = TypeAdapter(tuple[DropReport, ...]).validate_json(json.dumps(document["drops"]))

@@ -16,15 +16,15 @@ from sprung.recording import Campaign, ModelChoice
 from sprung.report import vehicle_sketch
 from sprung.report.sketch import Disc, Drawing, Stroke, Words, drawing_svg
 from sprung.report.sketch.labels import Box, text_box
-from sprung.vehicle import EMPTY, SCHOOL_BUS, Load, Sensor, Vehicle
+from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Item, Load, Sensor, Vehicle
 
 KNOWN = {"a": Known(1.25), "b": Known(1.51), "t_f": Known(0.74), "t_r": Known(0.70, 0.01)}
 CORNERS = [("fl", 0.1, 0.7), ("fr", 0.1, -0.7), ("rl", -2.9, 0.7), ("rr", -2.9, -0.7)]
 SENSORS = (
     *(Sensor(channel=f"body_{name}", on="body", position=(x, y, 0.6)) for name, x, y in CORNERS),
-    *(Sensor(channel=f"wheel_{name}", on=name) for name, *_ in CORNERS),
+    *(Sensor(channel=f"wheel_{name}", on=name) for name in WHEELS),
 )
-LOAD = Load(name="sand", items=({"mass": 140, "position": (-1.0, 0.3, 0.7)},))
+LOAD = Load(name="sand", items=(Item(mass=140, position=(-1.0, 0.3, 0.7)),))
 
 
 def campaign(**changes: Any) -> Campaign:

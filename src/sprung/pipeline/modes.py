@@ -189,6 +189,7 @@ def modes(
     InputError
         If there is no such method or no drop can be used.
     """
+    campaign.require_complete()
     decays = prepare(campaign).decays
     if not decays:
         problems = Problems()

@@ -95,7 +95,7 @@ def suspension_jump(
     window = slice(release.sample, release.sample + max(int(np.ceil(_JUMP * rate)), 2))
     jumps: dict[Wheel, float] = {}
     for channel, sensor in enumerate(sensors):
-        if sensor.on != "body" and sensor.on in dropped:
+        if sensor.on is not None and sensor.on != "body" and sensor.on in dropped:
             lowest = float(values[channel, window].min() - release.rest.level[channel])
             jumps[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
     return jumps
@@ -135,7 +135,7 @@ def find_decay(
         None where no wheel that can be judged ever left the ground and came back.
     """
     reading = values - release.rest.level[:, None] + STANDARD_GRAVITY
-    body = [i for i, s in enumerate(sensors) if s.on == "body" and not np.isnan(values[i]).any()]
+    body = [i for i, s in enumerate(sensors) if s.position is not None and not np.isnan(values[i]).any()]
     if len(body) < 3:
         return None
     places = np.array([sensors[i].position for i in body], dtype=float)
@@ -144,7 +144,7 @@ def find_decay(
     first = last = 0
     longest, impact, spike = int(_LONGEST * rate), int(_IMPACT * rate), 2 * int(_SPIKE * rate / 2) + 1
     for channel, sensor in enumerate(sensors):
-        if sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
+        if sensor.on is None or sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
             continue
         x = 0.0 if sensor.on in WHEELS[:2] else -wheelbase
         y = half_track if sensor.on in ("fl", "rl") else -half_track

@@ -45,6 +45,11 @@ _NEAR_END = 2.0
 
 _ALLOWED_FOR = "a fall and two periods of wheel hop after the release, as no sensor tells when the wheels landed"
 
+_NOT_PLACED = (
+    "a fall and two periods of wheel hop after the release, as the landing follows from the positions of the body sensors, "
+    "which are not known"
+)
+
 _TYPICAL_SUSPENSION = 70.0
 """Static suspension force over unsprung mass, m/s², for a wheel that no release has weighed: between car and bus."""
 
@@ -98,6 +103,9 @@ def prepare(campaign: Campaign) -> Prepared:
         fault = other_wheels(campaign.drops[i], fell[i], recordings[i].name)
         recordings[i] = replace(recordings[i], faults=(*recordings[i].faults, fault))
         drops[i] = replace(campaign.drops[i], wheels=as_seen(campaign.drops[i], fell[i]))
+    for i, drop in enumerate(drops):
+        if not drop.wheels:
+            drops[i] = replace(drop, wheels=as_seen(drop, fell[i]))
     campaign = replace(campaign, recordings=tuple(recordings), drops=tuple(drops))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
@@ -287,9 +295,10 @@ def _landing(
     possible = release.sample + int(fall * recording.rate)
     guessed = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
-    found = find_decay(
-        recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
-    ) or Landing(possible, guessed, _ALLOWED_FOR)
+    found = find_decay(recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase)
+    if found is None:
+        placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.on == "body")
+        found = Landing(possible, guessed, _ALLOWED_FOR if placed else _NOT_PLACED)
     judged = {sensor.on for sensor, used in zip(campaign.sensors, recording.usable, strict=True) if used}
     if not judged.issuperset(drop.wheels):  # a wheel fell that nobody watched
         later = guessed > found.certain

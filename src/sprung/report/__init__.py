@@ -2,6 +2,7 @@
 
 from sprung.report.car import BODY_EDGES, STRUTS, wire_car
 from sprung.report.check import check_view
+from sprung.report.check_page import CHECK_FILE, check_page
 from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
@@ -32,6 +33,7 @@ from sprung.report.validation import draw_validation, validation_view, write_val
 
 __all__ = [
     "BODY_EDGES",
+    "CHECK_FILE",
     "LIGHT",
     "STRUTS",
     "Band",
@@ -45,6 +47,7 @@ __all__ = [
     "VehicleSketch",
     "amplitude_pictures",
     "channels_picture",
+    "check_page",
     "check_view",
     "comparison_view",
     "decays_by_load",

@@ -30,7 +30,7 @@ def recordings(result: Result, few: bool, unfolded: bool) -> Context:
         opened = opened or show
         drawn.append(
             {
-                "file": drop.file,
+                "file": drop.label,
                 "said": f"{drop.kind}, {drop.load}",
                 "wrong": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
                 "limits": _limits(drop),

@@ -249,14 +249,14 @@ def _marks(
     wheel: Callable[[Wheel], tuple[float, float]],
 ) -> _Marks:
     """Place sensors and loads that have a known place."""
-    stations = ["body", *WHEELS]
+    stations: list[str | None] = ["body", *WHEELS, None]
 
     def marks(frame: Frame) -> list[Mark]:
         found = []
         for sensor in sorted(drawn.geometry.sensors, key=lambda one: stations.index(one.on)):
             if sensor.position is not None:
                 found.append(Mark(frame.at(*project(sensor.position)), shortened(sensor.channel), "sensor"))
-            elif sensor.on != "body":
+            elif sensor.on is not None and sensor.on != "body":
                 found.append(Mark(frame.at(*wheel(sensor.on)), shortened(sensor.channel), "sensor", False))
         for load in drawn.geometry.loads:
             for item in load.items:
@@ -382,5 +382,5 @@ def _scale_bar(drawn: Proportions, scale: float, y: float) -> Iterator[Shape]:
 
 def _described(geometry: Geometry) -> str:
     known = [f"wheelbase {geometry.wheelbase.text}", f"a {geometry.a.text}", f"b {geometry.b.text}"]
-    placed = sum(sensor.position is not None or sensor.on != "body" for sensor in geometry.sensors)
+    placed = sum(sensor.position is not None or sensor.on in WHEELS for sensor in geometry.sensors)
     return f"{', '.join(known)}; {placed} of {len(geometry.sensors)} sensors with a known place; {len(geometry.loads)} loads."
