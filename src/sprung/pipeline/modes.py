@@ -324,10 +324,10 @@ def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: in
     wheels = len({sensor.on for sensor in sensors} - {"body"})
     told = [mode for mode in modes if not mode.name.startswith("body")]
     if len(told) < wheels:
-        these = "1 drop of this load tells" if drops == 1 else f"{drops} drops of this load tell"
+        these = "1 drop of this load shows" if drops == 1 else f"{drops} drops of this load show"
         said.append(
-            f"{wheels} wheels hop in {wheels} modes, of which {these} {len(told)}: each may stand for several that are "
-            "close, and its name for one of them. Drops of other wheels would tell them apart."
+            f"{wheels} wheels have {wheels} modes of hop and tramp, of which {these} {len(told)}: each may stand for several "
+            "close ones, and its name for one of them. Drops of other wheels would separate them."
         )
     return tuple(said)
 

@@ -40,7 +40,7 @@ def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Pi
         note = "not measured by the sensors in use" if np.isnan(measured[i]).all() else _note(motion, drop)
         panels += compared(f"{motion}, {_UNITS[i]}", series.time, measured[i], simulated[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
-    told = "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each what is left."
+    told = "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each the residual."
     return Picture(name, x, tuple(panels), told)
 
 
