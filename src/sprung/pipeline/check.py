@@ -255,9 +255,11 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
 
 def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
-    file = drop.recording or drop.name
+    file = drop.recording or drop.label
     codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
-    return DropReport(file, drop.load, None, None, codes, kind=kind_of(drop.wheels), wheels=drop.wheels, name=drop.name)
+    return DropReport(
+        file, drop.load, None, None, codes, kind=kind_of(drop.wheels), wheels=drop.wheels, name=drop.label
+    )
 
 
 def _report(
