@@ -232,7 +232,7 @@ def test_wireless_loggers_that_all_call_their_channel_z(
     for drop, recording in zip(campaign.drops, campaign.recordings, strict=True):
         for logger, values in zip(loggers, recording.values, strict=True):
             first = int(random.integers(0, 60))  # no two are started together
-            path = tmp_path / f"{drop.name}_{logger}.csv"
+            path = tmp_path / f"{drop.label}_{logger}.csv"
             write_table(path, values[None, first:], recording.rate, ("z",), start=float(random.uniform(0, 100)))
     draft = sprung.draft(tmp_path)
     assert {sensor.logger: sensor.on for sensor in draft.sensors} == dict(zip(loggers, truth().values(), strict=True))

@@ -62,7 +62,7 @@ class DropReport:
     load
         Name of the load on the vehicle.
     start, end
-        Of the decay; None where none was used.
+        Of the decay, as the recording shows it, the same from `check` and in a result; None where none was used.
     faults
         Codes.
     kind
@@ -72,10 +72,14 @@ class DropReport:
     wheels_seen
         Which wheels the release shows to have fallen; as stated where no sensor tells. None without a release.
     release, landing, last_lift_off
-        First motion; when the last wheel that fell met the ground; the last moment a tyre may have been off it. None
-        where the records do not tell.
+        First motion; when the last wheel that fell met the ground; the last moment, not before the landing, at which a tyre may
+        have been off the ground once more. They follow each other in this order, and ``start`` follows them. None where the
+        records do not tell, the last also where no tyre can have been off the ground again.
     why_start, why_end
         The reason for each limit of the decay, in words.
+    fit_start, why_fit
+        From where a fit uses the drop, and why, where that is not ``start``: it knows to the sample when the last tyre of the
+        fitted vehicle is down, or uses the fall too. None and empty from `check`.
     rate
         Samples per second.
     channels
@@ -84,6 +88,8 @@ class DropReport:
         For several loggers how their clocks stood, as the fit found it.
     name
         The drop's short name, by which its series are found.
+    title
+        The name that the campaign gives it; empty where it gives none.
     """
 
     file: str
@@ -99,10 +105,18 @@ class DropReport:
     last_lift_off: float | None = None
     why_start: str = ""
     why_end: str = ""
+    fit_start: float | None = None
+    why_fit: str = ""
     rate: float | None = None
     channels: tuple[ChannelReport, ...] = ()
     clocks: tuple[ClockReport, ...] = ()
     name: str = ""
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """What to call it: the name that the campaign gives it, or else its recording."""
+        return self.title or self.file
 
     @property
     def contradicted(self) -> bool:
@@ -241,9 +255,10 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
 
 def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
-    file = drop.recording or drop.name
+    file = drop.recording or drop.label
     codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
-    return DropReport(file, drop.load, None, None, codes, kind=kind_of(drop.wheels), wheels=drop.wheels, name=drop.name)
+    kind, title = kind_of(drop.wheels), drop.name or ""
+    return DropReport(file, drop.load, None, None, codes, kind=kind, wheels=drop.wheels, name=drop.label, title=title)
 
 
 def _report(
@@ -253,9 +268,9 @@ def _report(
     released = None if seen.release is None else recording.start + seen.release / recording.rate
     events = Events(release=released) if decay is None else decay.events
     return DropReport(
-        file=recording.name,
+        file=recording.name if drop.name is None else drop.recording or recording.name,
         load=drop.load,
-        start=None if decay is None else decay.start,
+        start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
         faults=tuple(fault.code for fault in faults),
         kind=kind_of(drop.wheels or seen.wheels),
@@ -266,9 +281,12 @@ def _report(
         last_lift_off=events.last_lift_off,
         why_start=events.why_start,
         why_end=events.why_end,
+        fit_start=decay.start if decay is not None and events.why_fit else None,
+        why_fit=events.why_fit,
         rate=recording.rate,
         channels=tuple(_channels(seen, decay, faults, sensors)),
         name=name,
+        title=drop.name or "",
     )
 
 

@@ -58,7 +58,8 @@ class Landing(NamedTuple):
     landed
         First sample after the last wheel that fell met the ground; None where no sensor tells.
     lifted
-        Last sample at which a tyre may have been off the ground; None where no sensor tells.
+        Last sample, not before that, at which a tyre may have been off the ground once more; None where none can have been, or
+        no sensor tells.
     """
 
     possible: int
@@ -163,7 +164,7 @@ def find_decay(
     why = (
         "no tyre can be off the ground any more" if last > first else "every wheel that fell has landed and stays down"
     )
-    return Landing(possible, max(first, last), why, first or None, max(first, last) - 1)
+    return Landing(possible, max(first, last), why, first or None, last - 1 if last > first else None)
 
 
 def steepest_rise(reading: Real, release: int) -> int:

@@ -1,6 +1,15 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
-from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, TestRecord, drop_names, kind_of
+from sprung.recording.campaign import (
+    KINDS,
+    Campaign,
+    Drop,
+    ModelChoice,
+    TestRecord,
+    drop_names,
+    kind_of,
+    recording_names,
+)
 from sprung.recording.completeness import Missing
 from sprung.recording.formats import Table, read_table, to_sep005
 from sprung.recording.formats.resampled import SLOWEST
@@ -46,6 +55,7 @@ __all__ = [
     "read_document",
     "read_table",
     "read_vehicle",
+    "recording_names",
     "schema_text",
     "to_sep005",
     "write",

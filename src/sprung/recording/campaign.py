@@ -54,6 +54,8 @@ class Drop:
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
     files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
     """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
+    name: str | None = Field(default=None, min_length=1)
+    """What to call it everywhere, unlike every other drop's; its recording's name where it is left out."""
     window: tuple[Finite, Finite] | None = None
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
@@ -77,6 +79,8 @@ class Drop:
             raise ValueError("name either the file or, where several loggers recorded it, the files")
         if len(set(self.files)) != len(self.files):
             raise ValueError("name each file once")
+        if self.name is not None and (not self.name.isprintable() or {"/", "\\"} & set(self.name)):
+            raise ValueError("a drop's name is printable text without / and \\")
         if self.window is not None and self.window[1] <= self.window[0]:
             raise ValueError(f"the window must end after {self.window[0]:g} s, where it begins")
         return self
@@ -96,8 +100,10 @@ class Drop:
         return shared if shared is None or self.window is None else f"{shared} from {self.window[0]:g} s"
 
     @property
-    def name(self) -> str:
-        """Short name: the recording's without its folder and ending, or made from the load and the wheels."""
+    def label(self) -> str:
+        """Short name: its own, the recording's without its folder and ending, or made from the load and the wheels."""
+        if self.name is not None:
+            return self.name
         if self.file is not None:
             return PurePath(self.file).stem + self._from
         shared = PurePath(self._shared).stem.replace("*", "").strip("_-. ") if self.files else ""
@@ -116,7 +122,7 @@ class Drop:
     @property
     def _long_name(self) -> str:
         """Name that says which folder the first of its files is in."""
-        path = PurePath(next(iter(self.recordings), self.name))
+        path = PurePath(next(iter(self.recordings), self.label))
         return "_".join([*path.parts[:-1], path.stem]) + self._from
 
     @property
@@ -138,11 +144,11 @@ def drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     tuple of str
         In the same order.
     """
-    return _told_apart([(drop.name, drop._long_name) for drop in drops])
+    return _told_apart([(drop.label,) if drop.name else (drop.label, drop._long_name) for drop in drops])
 
 
 def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
-    """Say what to call every drop's recording, no two alike: what its files have in common, or the first of them.
+    """Say what to call every drop's recording, no two alike: the drop's own name, or what its files have in common.
 
     Parameters
     ----------
@@ -150,7 +156,9 @@ def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
         All of a campaign.
     """
     firsts = [(f"{drop.files[0]} and {len(drop.files) - 1} more",) if drop.files[1:] else () for drop in drops]
-    return _told_apart([(drop.recording or drop.name, *first) for drop, first in zip(drops, firsts, strict=True)])
+    return _told_apart(
+        [(drop.name or drop.recording or drop.label, *first) for drop, first in zip(drops, firsts, strict=True)]
+    )
 
 
 def _told_apart(names: Sequence[Sequence[str]]) -> tuple[str, ...]:

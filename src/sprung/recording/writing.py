@@ -76,7 +76,7 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
     for drop, of_drop in zip(drops, pieces, strict=True):
         own = []
         for file in [piece.name for piece in of_drop] if len(of_drop) > 1 else [drop.file]:
-            path = PurePosixPath(file or drop.name)
+            path = PurePosixPath(file or drop.label)
             if path.is_absolute() or ".." in path.parts:
                 path = PurePosixPath(path.name)
             plain = path.with_name(path.stem if file else path.name)

@@ -26,7 +26,7 @@ from sprung.report.pictures import (
     whole_picture,
 )
 from sprung.report.plan import plan_view
-from sprung.report.sketch import VehicleSketch, drawing_svg, vehicle_sketch
+from sprung.report.sketch import VehicleSketch, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
@@ -46,6 +46,7 @@ __all__ = [
     "Rule",
     "VehicleSketch",
     "amplitude_pictures",
+    "blank_sketch",
     "channels_picture",
     "check_page",
     "check_view",
@@ -64,6 +65,7 @@ __all__ = [
     "pdf_of",
     "plan_view",
     "result_view",
+    "sketch_sheet",
     "spectra_picture",
     "stability_picture",
     "svg_of",

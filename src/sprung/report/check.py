@@ -112,7 +112,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
         length = "" if drop.start is None or drop.end is None else f"{drop.end - drop.start:.2f}"
         if drop.start is None:
             moments[-1] = "left out"
-        rows.append([drop.file, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
+        rows.append([drop.label, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
     title = "Drops, s on each recording's own clock; the decay is used from ... to"
     spare = ("length", "faults", "load", "lift-off", "landing", "release")
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)
@@ -129,13 +129,13 @@ def _reasons(drops: Sequence[DropReport]) -> Iterator[str]:
         reasons: defaultdict[str, list[str]] = defaultdict(list)
         for drop in used:
             if why := getattr(drop, f"why_{side}"):
-                reasons[why].append(drop.file)
+                reasons[why].append(drop.label)
         for why, files in reasons.items():
             yield f"{'from' if side == 'start' else 'to'}: {why} ({_which(files, len(used))})"
     rates: defaultdict[str, list[str]] = defaultdict(list)
     for drop in drops:
         if drop.rate is not None:
-            rates[f"{drop.rate:.6g} samples per second"].append(drop.file)
+            rates[f"{drop.rate:.6g} samples per second"].append(drop.label)
     for rate, files in rates.items():
         yield f"{rate} ({_which(files, len(drops))})"
 
@@ -148,7 +148,7 @@ def _which(files: Sequence[str], everything: int) -> str:
 
 def _otherwise(drop: DropReport) -> str:
     seen = ", ".join(drop.wheels_seen or ()) or "no wheel"
-    return f"{drop.file}: {', '.join(drop.wheels)} stated to be dropped; the release shows {seen} to have fallen"
+    return f"{drop.label}: {', '.join(drop.wheels)} stated to be dropped; the release shows {seen} to have fallen"
 
 
 def channels_table(drops: Sequence[DropReport]) -> Table:
@@ -167,7 +167,7 @@ def channels_table(drops: Sequence[DropReport]) -> Table:
     for name, found in by_name.items():
         noise = [channel.noise for _, channel in found if channel.noise is not None]
         peaks = [channel.peak for _, channel in found if channel.peak is not None]
-        out = [drop.file for drop, channel in found if drop.start is not None and not channel.used]
+        out = [drop.label for drop, channel in found if drop.start is not None and not channel.used]
         usual, most = (figures(size(noise), 2) if noise else "-" for size in (median, max))
         peak = figures(max(peaks), 3) if peaks else "-"
         rows.append([name, found[0][1].on or "a wheel", usual, most, peak, _which(out, len(found)) if out else ""])

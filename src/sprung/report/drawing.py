@@ -29,7 +29,7 @@ def draw_check(check: Check) -> dict[str, str]:
     drawn = {}
     for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=False):
         pictures = [picture for picture in (whole_picture(drop, recorded), near_picture(drop, recorded)) if picture]
-        drawn[name] = sheet(drop.file, list(_said(drop)), pictures)
+        drawn[name] = sheet(drop.label, list(_said(drop)), pictures)
     return drawn
 
 
@@ -82,7 +82,7 @@ def write_check(
 
 def _names(check: Check) -> Iterator[str]:
     """Name each drop's drawing after its recording, no two alike."""
-    return file_names([str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
+    return file_names([drop.title or str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
 
 
 def file_names(drops: Iterable[str]) -> Iterator[str]:

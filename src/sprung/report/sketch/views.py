@@ -320,8 +320,10 @@ def _half_distances(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
             yield Stroke(((line, low), (line, high)), "dimension", dashed, arrows="both")
             anchor: Anchor = "start" if way > 0 else "end"
             middle, beside = (low + high) / 2, line + 5.0 * way
-            yield Words(name, (beside, middle - 2.0), "dimension", anchor, symbol=True)
-            yield Words(length.text, (beside, middle + LINE - 1.5), "dimension", anchor)
+            # Springs above the centreline, dampers below it, however short the dimension line is.
+            upper = min(middle - 2.0, low - LINE - 3.5) if springs else max(middle - 2.0, low + 10.5)
+            yield Words(name, (beside, upper), "dimension", anchor, symbol=True)
+            yield Words(length.text, (beside, upper + LINE), "dimension", anchor)
 
 
 def _seats(frame: Frame, x: float, y: float, springs: bool, dashed: bool) -> Iterator[Shape]:
@@ -372,7 +374,8 @@ def _gravity(centre: Point, dashed: bool) -> Iterator[Shape]:
 
 def _scale_bar(drawn: Proportions, scale: float, y: float) -> Iterator[Shape]:
     if not drawn.to_scale:
-        yield Words("not to scale: no length is known", (4.0, y + 3.5), "dimension")
+        why = "" if drawn.geometry.blank else ": no length is known"
+        yield Words(f"not to scale{why}", (4.0, y + 3.5), "dimension")
         return
     yield Stroke(((4.0, y), (4.0 + scale, y)), "dimension")
     for x in (4.0, 4.0 + scale):
