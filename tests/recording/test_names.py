@@ -47,7 +47,7 @@ def test_a_drop_with_a_name_is_fitted_like_any_other(folder: Folder) -> None:
     named = sprung.read(folder.path)
     plain = replace(
         named,
-        drops=tuple(drop.model_copy(update={"name": None}) for drop in named.drops),
+        drops=tuple(replace(drop, name=None) for drop in named.drops),
         recordings=tuple(
             replace(recording, name=str(drop.file))
             for recording, drop in zip(named.recordings, named.drops, strict=True)

@@ -95,6 +95,7 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     derived = {"total_mass": Estimate(1553.1, 5.0, (1543.4, 1562.9), "kg", "estimated", "profile")}
     fit = replace(result.fit, inflated_by="coloured residuals", most_coloured="wheel_rl")
     changed = replace(result, parameters=parameters, derived=derived, fit=fit)
+    check_view_is_whole(result_view(changed), tables=3)
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
 
 

@@ -17,7 +17,7 @@ SEEDS = 200
 def decaying(peak: float) -> np.ndarray:
     """A roll of 1.6 Hz and damping ratio 0.4, with its peak as a multiple of the noise."""
     motion: np.ndarray = np.exp(-4 * TIME) * np.sin(2 * np.pi * 1.6 * TIME)
-    return peak * NOISE * motion / np.abs(motion).max()
+    return np.asarray(peak * NOISE * motion / np.abs(motion).max())
 
 
 def seen(motion: np.ndarray, noise: np.ndarray) -> BodyMotion:
@@ -71,7 +71,8 @@ def test_what_the_sensors_do_not_tell_is_no_motion() -> None:
 )
 def test_the_picture_says_which_of_both(over_noise: dict[str, float | None], said: str) -> None:
     values = np.tile(decaying(8.0), (3, 1)).astype(np.float32)
-    series = Series(("a",), TIME, values[:1], values[:1], values, values)
+    one = values[:1].astype(np.float64)
+    series = Series(("a",), TIME, one, one, values, values)
     drop = DropValidation(0.01, 0.02, None, 0.01, 1.0, None, None, 0.0, None, over_noise=over_noise)
     picture = motion_picture("drop", series, drop)
     assert picture is not None

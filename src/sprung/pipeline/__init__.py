@@ -3,6 +3,7 @@
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
 from sprung.pipeline.displays import (
     characteristics_tables,
+    derived_table,
     meaning_of,
     modes_table,
     other_quantities,
@@ -37,6 +38,7 @@ __all__ = [
     "Validation",
     "characteristics_tables",
     "check",
+    "derived_table",
     "draft",
     "identify",
     "is_recordings",

@@ -84,6 +84,29 @@ def other_quantities(derived: Mapping[str, Estimate]) -> dict[str, Estimate]:
     return {name: found for name, found in derived.items() if name not in {**CHARACTERISTICS, **WHEEL_LOADS}}
 
 
+def derived_table(vehicle: str, derived: Mapping[str, Estimate]) -> Table:
+    """Show masses, loads, centre of gravity, ride and wheel hop by their names, one below the other.
+
+    Parameters
+    ----------
+    vehicle
+        Whose they are.
+    derived
+        By name; others than these are left out.
+
+    Returns
+    -------
+    Table
+    """
+    rows = []
+    for name in (name for _, *names in _CHARACTERISTICS for name in names if name in derived):
+        value, std, _, unit, _ = value_cells(derived[name])
+        rows.append((name, value, std, unit, meaning_of(name)))
+    headers = ("empty vehicle", "value", "±", "unit", "meaning")
+    title = f"{vehicle}: masses, ride and wheel hop, one standard uncertainty"
+    return Table(title, headers, tuple(rows), frozenset(("value", "±")), ("meaning",))
+
+
 def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tuple[Table, ...]:
     """Show masses, loads, centre of gravity, ride and wheel hop, axle by axle.
 

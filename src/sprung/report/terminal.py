@@ -13,6 +13,7 @@ from sprung.pipeline import (
     FitReport,
     Result,
     characteristics_tables,
+    derived_table,
     modes_table,
     other_quantities,
     parameters_table,
@@ -20,6 +21,7 @@ from sprung.pipeline import (
 )
 from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
+from sprung.report.words import record_of
 from sprung.tables import unit_text
 
 COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
@@ -41,11 +43,12 @@ def result_view(result: Result) -> RenderableType:
     if result.verdict.state == "reject":
         return _rejected_view(result)
     parts: list[RenderableType] = [
+        *_record(result),
         laid_out(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
-    for table_of in characteristics_tables(result.name, result.derived):
-        parts += [laid_out(table_of), Text()]
+    if characteristics_tables(result.name, result.derived):
+        parts += [laid_out(derived_table(result.name, result.derived)), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
@@ -66,12 +69,18 @@ def result_view(result: Result) -> RenderableType:
 
 def _rejected_view(result: Result) -> RenderableType:
     """Show what tells why a result was rejected, and no estimate."""
-    parts: list[RenderableType] = [Text(result.name, style="bold")]
+    parts: list[RenderableType] = [*_record(result), Text(result.name, style="bold")]
     parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
     parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
     return Group(*parts, verdict_view(result))
+
+
+def _record(result: Result) -> list[RenderableType]:
+    """Show what the campaign file says of the test and the vehicle; nothing where it says nothing."""
+    lines: list[RenderableType] = [hanging(f"{name}: ", told) for name, told in record_of(result)]
+    return [*lines, Text()] if lines else []
 
 
 def residual_table(result: Result) -> RenderableType:

@@ -8,7 +8,7 @@ import numpy as np
 from markupsafe import Markup
 
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import Result, Setup, meaning_of, ratios_table
+from sprung.pipeline import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
 from sprung.report.pictures import (
     half_width,
     limits_percent,
@@ -30,9 +30,15 @@ def symbol(name: str) -> Markup:
     return Markup("{}<sub>{}</sub>").format(letter, below) if below else Markup("{}").format(letter)
 
 
+def characteristics(result: Result) -> Context | None:
+    """Show masses, loads, centre of gravity, ride and wheel hop."""
+    tables = characteristics_tables(result.name, result.derived)
+    return {"tables": tables} if tables else None
+
+
 def parameters(result: Result) -> Context:
     """Show every parameter with its interval; of a rejected result none."""
-    found = {} if result.verdict.state == "reject" else {**result.parameters, **result.derived}
+    found = {} if result.verdict.state == "reject" else {**result.parameters, **other_quantities(result.derived)}
     half = half_width(found)
     rows = [_parameter(name, one, half) for name, one in found.items()]
     profiled = [name for name, one in found.items() if one.interval_from == "profile"]
