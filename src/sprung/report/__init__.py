@@ -29,6 +29,7 @@ from sprung.report.plan import plan_view
 from sprung.report.sketch import VehicleSketch, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
+from sprung.report.truth import truth_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [
@@ -70,6 +71,7 @@ __all__ = [
     "stability_picture",
     "svg_of",
     "text_of",
+    "truth_view",
     "validation_view",
     "vehicle_sketch",
     "whole_picture",
