@@ -114,7 +114,8 @@ def modal(
     start: Annotated[
         Optional[float],  # noqa: UP045 (typer reads it)
         typer.Option(
-            help="Of recordings alone: where the free decay begins, s on their clock (default: at the largest reading)."
+            help="Of recordings alone: where the free decay begins, s on their clock "
+            "(default: after the landing of each drop that is found, else at the largest reading)."
         ),
     ] = None,
     diagram: Annotated[bool, typer.Option("--diagram", help="Draw a stabilisation diagram beside it.")] = False,
