@@ -9,19 +9,19 @@ import typer
 from typer.core import TyperGroup
 
 import sprung
-from sprung.cli.output import INTERRUPTED, complain, say
+from sprung.cli.output import say
+from sprung.cli.stopping import was_stopped
 
 
 class Commands(TyperGroup):
-    """The commands; Ctrl-C ends any of them with the shell's own status and without a traceback."""
+    """The commands; Ctrl-C and SIGTERM end any of them with the shell's own status and without a traceback."""
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that was asked for."""
         try:
             return super().invoke(ctx)
-        except KeyboardInterrupt:
-            complain("sprung was interrupted.")
-            raise SystemExit(INTERRUPTED) from None
+        except KeyboardInterrupt as stopped:
+            raise SystemExit(was_stopped(stopped)) from None
 
 
 app = typer.Typer(
@@ -35,6 +35,12 @@ app = typer.Typer(
 )
 
 CampaignFile = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.")]
+Force = Annotated[
+    bool,
+    typer.Option(
+        "--force", help="Overwrite files that sprung did not write, or that were changed since it wrote them."
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
 
 

@@ -10,9 +10,10 @@ from typing import Annotated, Optional
 import typer
 
 import sprung
-from sprung.cli.app import CampaignFile, Json, app
-from sprung.cli.output import REJECTED, advancing, complain, say, say_json, working
-from sprung.errors import Fault, InputError, Problem
+from sprung.cli.app import CampaignFile, Force, Json, app
+from sprung.cli.output import REJECTED, complain, say, say_json, working
+from sprung.errors import Fault, InputError, Omissions, Problem
+from sprung.progress import Step
 
 
 @app.command(epilog="Example: [bold]sprung check campaign.toml --no-drawings[/bold]")
@@ -25,24 +26,25 @@ def check(
         ),
     ] = None,
     drawings: Annotated[bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file.")] = True,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Read and judge the recordings, identify nothing; draw each drop."""
-    with working("reading the recordings"):
-        read = sprung.read(campaign)
-        found = sprung.check(read)
+    with working("reading the recordings") as progress:
+        read = sprung.read(campaign, progress=progress)
+        found = sprung.check(read, progress=progress)
     if not found.usable:
         raise InputError(
             Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
         )
     drawn: tuple[Path, ...] = ()
+    omissions = Omissions()
     if drawings:
         folder = (output or (read.path or campaign).parent / "check").resolve()
-        try:
-            with working("drawing"):
-                drawn = sprung.report.write_check(found, folder)
-        except InputError as error:
-            complain(f"No drawings: {error}")
+        with working("drawing"), omissions.noting("The drops"):
+            drawn = sprung.report.write_check(found, folder, overwrite=force)
+    for omission in omissions.sentences:
+        complain(omission)
     if as_json:
         say_json({**found.document(), "drawings": [str(path) for path in drawn]})
     else:
@@ -109,16 +111,24 @@ def modal(
     as_json: Json = False,
 ) -> None:
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
-    with working("reading the recordings"):
+    with working("reading the recordings") as progress:
         if sprung.is_recordings(campaign):
             found = sprung.modes_of_recordings(
-                campaign, method=method, order=order, start=start, amplitude=amplitude, diagram=diagram
+                campaign,
+                method=method,
+                order=order,
+                start=start,
+                amplitude=amplitude,
+                diagram=diagram,
+                progress=progress,
             )
             faults: tuple[Fault, ...] = ()
         else:
-            read = sprung.read(campaign)
-            found = sprung.modes(read, method=method, order=order, amplitude=amplitude, diagram=diagram)
-            faults = sprung.check(read).faults
+            read = sprung.read(campaign, progress=progress)
+            found = sprung.modes(
+                read, method=method, order=order, amplitude=amplitude, diagram=diagram, progress=progress
+            )
+            faults = sprung.check(read, progress=progress).faults
     if as_json:
         say_json(
             {
@@ -142,12 +152,14 @@ def simulate(
     rate: Annotated[float, typer.Option(max=1e5, help="Samples per second.")] = 500.0,
     noise: Annotated[float, typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square.")] = 0.02,
     seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 1,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
-    with working("simulating"):
-        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed)
-        written = sprung.write(campaign, output)
+    with working("reading the vehicle") as progress:
+        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
+        progress(Step("writing the campaign"))
+        written = sprung.write(campaign, output, overwrite=force)
     if as_json:
         say_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
     else:
@@ -188,12 +200,13 @@ def plan(
 @app.command(epilog="Example: [bold]sprung new measurements[/bold]")
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder with the recordings.")],
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Draft campaign.toml from recordings: find the drops in them, tell the sensors, mark what is missing."""
-    with advancing("looking for drops") as progress:
-        drafted = sprung.draft(folder, progress=progress)
-        written = drafted.write()
+    with working("looking for drops") as progress:
+        drafted = sprung.draft(folder, progress=progress, overwrite=force)
+        written = drafted.write(overwrite=force)
     if as_json:
         say_json(drafted.document())
     else:

@@ -3,7 +3,7 @@
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
 from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
 from sprung.pipeline.drafting import Draft, draft
-from sprung.pipeline.identify import identify
+from sprung.pipeline.identify import Identification, identify, identify_campaign, with_amplitudes
 from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.recordings import is_recordings, modes_of_recordings
@@ -21,6 +21,7 @@ __all__ = [
     "DropReport",
     "FitReport",
     "FoundMode",
+    "Identification",
     "LoadModes",
     "ModesByLoad",
     "Recorded",
@@ -31,6 +32,7 @@ __all__ = [
     "check",
     "draft",
     "identify",
+    "identify_campaign",
     "is_recordings",
     "load",
     "meaning_of",
@@ -43,4 +45,5 @@ __all__ = [
     "plan_file",
     "ratios_table",
     "validate",
+    "with_amplitudes",
 ]

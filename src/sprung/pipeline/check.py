@@ -12,6 +12,7 @@ from sprung.errors import Fault
 from sprung.pipeline.clocks import ClockReport
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
+from sprung.progress import Progress, silent
 from sprung.recording import Campaign, Drop, drop_names
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
@@ -134,19 +135,21 @@ class Check:
         return {"drops": [asdict(drop) for drop in self.drops], "faults": [asdict(fault) for fault in self.faults]}
 
 
-def check(campaign: Campaign) -> Check:
+def check(campaign: Campaign, *, progress: Progress = silent) -> Check:
     """Judge the recordings of a campaign.
 
     Parameters
     ----------
     campaign
         From `sprung.read`.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
     Check
     """
-    return check_prepared(campaign, prepare(campaign))
+    return check_prepared(campaign, prepare(campaign, progress))
 
 
 def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:

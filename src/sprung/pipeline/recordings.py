@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sprung.errors import Problems
 from sprung.modal import DEFAULT
 from sprung.pipeline.modes import ModesByLoad, examined
+from sprung.progress import Progress, counted, silent
 from sprung.recording import FILE, Table, read_table
 from sprung.units import acceleration_factor
 
@@ -60,6 +61,7 @@ def modes_of_recordings(
     start: float | None = None,
     amplitude: bool = False,
     diagram: bool = False,
+    progress: Progress = silent,
 ) -> ModesByLoad:
     """Find the modes common to free decays that nothing is known of but their recordings.
 
@@ -71,6 +73,8 @@ def modes_of_recordings(
         As for `modes`.
     start
         Where the free decay begins, s on the files' own clock; unless given, at each recording's largest reading.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -84,7 +88,8 @@ def modes_of_recordings(
     """
     problems = Problems()
     tables: list[tuple[Path, Table]] = []
-    for file in recordings_in(Path(path)):
+    files = recordings_in(Path(path))
+    for file in counted(progress, "reading the recordings", files):
         with problems.collecting():
             tables.append((file, read_table(file)))
     problems.raise_if_any()
@@ -116,7 +121,17 @@ def modes_of_recordings(
         records.append(values)
     problems.raise_if_any()
     names = tuple(file.stem for file, _ in tables)
-    numbered = examined(records, rates[0], method, order, tuple(channels), names, amplitude=amplitude, diagram=diagram)
+    numbered = examined(
+        records,
+        rates[0],
+        method,
+        order,
+        tuple(channels),
+        names,
+        amplitude=amplitude,
+        diagram=diagram,
+        progress=progress,
+    )
     return ModesByLoad({RECORDINGS: numbered})
 
 

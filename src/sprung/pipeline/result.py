@@ -127,6 +127,8 @@ class Result(_Frozen):
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
         Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
+    omissions
+        What decorates a result and could not be made, a sentence each, such as the amplitude curves.
     series
         By drop name: what was fitted.
     recordings
@@ -152,6 +154,7 @@ class Result(_Frozen):
     next_step: str | None = None
     setup: Setup | None = None
     amplitude: Amplitudes = ()
+    omissions: tuple[str, ...] = ()
     series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
     recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
 

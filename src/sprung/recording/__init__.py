@@ -13,7 +13,7 @@ from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
 from sprung.recording.recording import ROUGHLY, LoggerClock, Recording
 from sprung.recording.sources import SourceFile
 from sprung.recording.whole import write_whole
-from sprung.recording.writing import write
+from sprung.recording.writing import campaign_files, write
 
 __all__ = [
     "FILE",
@@ -31,6 +31,7 @@ __all__ = [
     "SourceFile",
     "Table",
     "VehicleFile",
+    "campaign_files",
     "drop_names",
     "files_named_after",
     "filled",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem, Problems, did_you_mean
+from sprung.progress import Progress, counted, silent
 from sprung.recording.campaign import Campaign, Drop, ModelChoice, recording_names
 from sprung.recording.checks import check, refused_unit
 from sprung.recording.formats import Signals, Table, from_sep005, read_table, split_unit
@@ -58,7 +59,7 @@ class VehicleFile:
     path: Path | None = None
 
 
-def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Campaign:
+def read(path: str | os.PathLike[str], *, signals: Signals | None = None, progress: Progress = silent) -> Campaign:
     """Read a campaign and its recordings.
 
     Parameters
@@ -70,6 +71,8 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
         of dictionaries as SEP005 of the SDyPy project proposes them, one per signal, with ``name``, ``data`` of shape
         (time,), ``unit_str``, and ``fs`` in Hz or ``time`` in s. Unit and direction of a sensor in the campaign file hold for
         them as for a file.
+    progress
+        Called with each recording that is begun.
 
     Returns
     -------
@@ -92,12 +95,12 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
     draft = understand(CampaignFile, path, problems)
     check(draft, problems)
     files = _files(draft, problems)
-    tables = _tables(files, path.parent, signals or {}, problems)
+    tables = _tables(files, path.parent, signals or {}, problems, progress)
     _check_signals(draft, files, signals or {}, problems)
     _check_channels(draft, tables, problems)
     _check_starts_and_ends(draft, tables, problems)
     sensors = named_apart(draft.file.sensor)
-    recordings = _recordings(draft, sensors, tables, problems)
+    recordings = _recordings(draft, sensors, tables, problems, progress)
     problems.raise_if_any()
     _refuse_unusable(recordings)
     vehicle = draft.file.vehicle
@@ -197,12 +200,13 @@ def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, tuple[st
 
 
 def _tables(
-    files: Mapping[int, Sequence[str]], folder: Path, signals: Signals, problems: Problems
+    files: Mapping[int, Sequence[str]], folder: Path, signals: Signals, problems: Problems, progress: Progress
 ) -> dict[int, dict[str, Table]]:
     """Read every recording that can be read, each once; by the drop's index and the recording's name."""
     others = {Path(file).name for names in files.values() for file in names}
     read_already: dict[str, Table] = {}
-    for file in dict.fromkeys(file for names in files.values() for file in names):
+    each = tuple(dict.fromkeys(file for names in files.values() for file in names))
+    for file in counted(progress, "reading the recordings", each):
         try:
             read_already[file] = (
                 from_sep005(signals[file], Path(file).name) if file in signals else read_table(folder / file, others)
@@ -259,6 +263,7 @@ def _recordings(
     sensors: Sequence[Sensor],
     tables: Mapping[int, Mapping[str, Table]],
     problems: Problems,
+    progress: Progress,
 ) -> tuple[Recording, ...]:
     pairs = [
         Wanted(written, named)
@@ -268,7 +273,8 @@ def _recordings(
     understood = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
     recordings: list[Recording] = []
-    for of_drop, drop, name in zip(tables.values(), drops, recording_names(drops), strict=True):
+    names = counted(progress, "checking the clocks and units of the recordings", tuple(recording_names(drops)))
+    for of_drop, drop, name in zip(tables.values(), drops, names, strict=True):
         with problems.collecting():
             recordings.append(recording_of_drop(of_drop, pairs, drop, name))
     return tuple(recordings)

@@ -6,10 +6,18 @@ from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
-from sprung.report.folder import write_report, write_results
+from sprung.report.folder import (
+    REPORT_FILES,
+    RESULT_FILES,
+    Saved,
+    add_report,
+    save_result,
+    write_report,
+    write_results,
+)
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
-from sprung.report.page import page_of
+from sprung.report.page import drawn_page, page_of
 from sprung.report.palette import LIGHT
 from sprung.report.paper import paper_view
 from sprung.report.paper_copy import pdf_of
@@ -32,6 +40,8 @@ from sprung.report.validation import draw_validation, validation_view, write_val
 __all__ = [
     "BODY_EDGES",
     "LIGHT",
+    "REPORT_FILES",
+    "RESULT_FILES",
     "STRUTS",
     "Band",
     "Curve",
@@ -41,6 +51,8 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
+    "Saved",
+    "add_report",
     "amplitude_pictures",
     "channels_picture",
     "check_view",
@@ -49,6 +61,7 @@ __all__ = [
     "draft_view",
     "draw_check",
     "draw_validation",
+    "drawn_page",
     "modes_view",
     "motion_picture",
     "near_picture",
@@ -58,6 +71,7 @@ __all__ = [
     "pdf_of",
     "plan_view",
     "result_view",
+    "save_result",
     "spectra_picture",
     "stability_picture",
     "svg_of",
