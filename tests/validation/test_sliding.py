@@ -13,8 +13,21 @@ from sprung.vehicle import Vehicle
 M_U = 30.0
 K_T = (2 * np.pi * 27) ** 2 * M_U
 STIFF = Vehicle(
-    **{"m_s": 1380, "I_yy": 2440, "I_xx": 380, "m_uf": M_U, "m_ur": 33, "k_sf": 17000, "k_sr": 22000, "k_tf": K_T},
-    **{"k_tr": K_T * 1.1, "c_sf": 3000, "c_sr": 3000, "a": 1.25, "b": 1.51, "t_f": 0.74, "t_r": 0.74},
+    m_s=1380,
+    I_yy=2440,
+    I_xx=380,
+    m_uf=M_U,
+    m_ur=33,
+    k_sf=17000,
+    k_sr=22000,
+    k_tf=K_T,
+    k_tr=K_T * 1.1,
+    c_sf=3000,
+    c_sr=3000,
+    a=1.25,
+    b=1.51,
+    t_f=0.74,
+    t_r=0.74,
 )
 
 
