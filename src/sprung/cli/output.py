@@ -72,15 +72,15 @@ class StatusLine:
     def text(self) -> str:
         """Return the line without its turning sign."""
         now = self._clock()
-        line = f"{_minutes(now - self._began)} {self._step}"
-        in_stage, done = now - self._stage_began, self._step.done
+        elapsed, in_stage, done = _minutes(now - self._began), now - self._stage_began, self._step.done
         if done is None or not 0 < done < 1 or in_stage < _SOON:
-            return line
-        return f"{line} (about {_minutes(in_stage * (1 - done) / done)} more)"
+            return f"{elapsed} {self._step}"
+        return f"{elapsed} (about {_minutes(in_stage * (1 - done) / done)} more) {self._step}"
 
-    def __rich__(self) -> Spinner:
-        self._spinner.update(text=Text(self.text(), no_wrap=True, overflow="ellipsis"))
-        return self._spinner
+    def __rich__(self) -> Text:
+        frames = self._spinner.frames
+        turning = frames[int(8 * self._clock()) % len(frames)]
+        return Text(f"{turning} {self.text()}", no_wrap=True, overflow="ellipsis")
 
 
 def _minutes(seconds: float) -> str:
