@@ -64,7 +64,7 @@ def test_simulate_refuses_recordings_of_the_users(vehicle_file: Path, tmp_path: 
 @pytest.mark.parametrize("command", ["identify", "validate", "check"])
 def test_edited_results_are_refused_and_nothing_else_is_touched(tmp_path: Path, command: str) -> None:
     folder = copy_sedan(tmp_path / "campaign", DROPS[:1])
-    name = {"identify": "results.json", "validate": "validation.json", "check": "empty_bounce.svg"}[command]
+    name = {"identify": "results.json", "validate": "validation.json", "check": "check.html"}[command]
     output = tmp_path / "out"
     output.mkdir()
     (output / name).write_text("mine")
@@ -173,3 +173,14 @@ def ignored() -> Iterator[None]:
 def test_who_wants_sigterm_ignored_gets_it_ignored(one_drop_folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sprung.recording.reading.check", stopping(signal.SIGTERM))
     assert run("check", one_drop_folder.path, "--no-drawings").status == 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there, nothing else can catch these signals")
+@pytest.mark.parametrize(
+    ("number", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
+)
+def test_a_signal_before_the_command_begins(
+    monkeypatch: pytest.MonkeyPatch, number: int, status: int, word: str
+) -> None:
+    monkeypatch.setattr(import_module("sprung.cli.app").Commands, "parse_args", stopping(number))
+    assert run("schema") == Run(status, "", f"sprung was {word}.\n")

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import dataclasses
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -121,7 +122,7 @@ def test_what_is_written_is_read_back(campaign: Campaign) -> None:
         assert getattr(back, field) == getattr(campaign, field)
     for old, new in zip(campaign.drops, back.drops, strict=True):
         assert new.file is not None
-        assert new.model_copy(update={"file": old.file}) == old
+        assert replace(new, file=old.file) == old
         assert new.name == old.name
     for before, after in zip(campaign.recordings, back.recordings, strict=True):
         assert after.channels == before.channels

@@ -9,8 +9,9 @@ import traceback
 from sprung.cli import identifying as identifying
 from sprung.cli import measuring as measuring
 from sprung.cli.app import app
-from sprung.cli.output import BAD_INPUT, DEFECT, complain
-from sprung.cli.stopping import stopping_like_ctrl_c, was_stopped
+from sprung.cli.helping import readable
+from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, complain
+from sprung.cli.stopping import stopped_before, stopping_like_ctrl_c, was_stopped
 from sprung.errors import SprungError
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -31,10 +32,14 @@ def _run() -> None:
         os.environ.setdefault(variable, "1")
     try:
         app(prog_name="sprung")
+    except SystemExit as leaving:
+        if leaving.code == INTERRUPTED and (stopped := stopped_before(leaving)) is not None:
+            raise SystemExit(was_stopped(stopped)) from None
+        raise
     except KeyboardInterrupt as stopped:
         raise SystemExit(was_stopped(stopped)) from None
     except SprungError as error:
-        complain(f"{_headline(error)}\n{error}")
+        complain(readable(f"{_headline(error)}\n{error}"))
         raise SystemExit(BAD_INPUT) from None
     except Exception as error:
         complain(f"{traceback.format_exc()}\n{_report(error)}")

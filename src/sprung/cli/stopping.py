@@ -38,3 +38,13 @@ def was_stopped(stopped: KeyboardInterrupt) -> int:
     terminated = isinstance(stopped, Terminated)
     complain("sprung was terminated." if terminated else "sprung was interrupted.")
     return TERMINATED if terminated else INTERRUPTED
+
+
+def stopped_before(leaving: SystemExit) -> KeyboardInterrupt | None:
+    """Return what stopped the program before it came to its command, while the command line took it for Ctrl-C."""
+    error: BaseException | None = leaving
+    while error is not None and not error.__suppress_context__:
+        error = error.__cause__ or error.__context__
+        if isinstance(error, KeyboardInterrupt):
+            return error
+    return error.__cause__ if error is not None and isinstance(error.__cause__, KeyboardInterrupt) else None

@@ -1,7 +1,15 @@
 """The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
 
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
-from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    derived_table,
+    meaning_of,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.identify import Identification, identify, identify_campaign, with_amplitudes
 from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
@@ -29,7 +37,9 @@ __all__ = [
     "Series",
     "Setup",
     "Validation",
+    "characteristics_tables",
     "check",
+    "derived_table",
     "draft",
     "identify",
     "identify_campaign",
@@ -39,6 +49,7 @@ __all__ = [
     "modes",
     "modes_of_recordings",
     "modes_table",
+    "other_quantities",
     "parameters_table",
     "plan",
     "plan_campaign",

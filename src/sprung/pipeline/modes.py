@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Problems
-from sprung.identification import ModeEstimate
+from sprung.identification import UNNAMED, ModeEstimate
 from sprung.modal import (
     DEFAULT,
     Diagram,
@@ -23,6 +23,7 @@ from sprung.modal import (
     follow_modes,
     identify_modes,
     name_by_sensors,
+    paper_name,
     stabilisation_diagram,
 )
 from sprung.pipeline.displays import found_modes_table
@@ -182,13 +183,15 @@ def modes(
     Returns
     -------
     ModesByLoad
-        A dict by load, lowest frequency first. Names are the paper's seven, by the shapes at the sensors.
+        A dict by load, lowest frequency first. Named by the shapes at the sensors: one of
+        `sprung.modal.MODE_NAMES`, or ``unnamed``.
 
     Raises
     ------
     InputError
         If there is no such method or no drop can be used.
     """
+    campaign.require_complete()
     decays = prepare(campaign, progress).decays
     if not decays:
         problems = Problems()
@@ -325,7 +328,7 @@ def _names(found: Modes, named: Sequence[Mode]) -> list[str]:
     names = []
     for mode in found:
         own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
-        names.append(left.pop(own).name or "unnamed")
+        names.append(left.pop(own).name or UNNAMED)
     return names
 
 
@@ -357,6 +360,7 @@ def _estimate(mode: Mode, name: str, peak: float | None) -> FoundMode:
     spread = mode.spread
     return FoundMode(
         name=name,
+        paper_name=paper_name(name),
         pole=(mode.pole.real, mode.pole.imag),
         frequency=mode.frequency,
         frequency_std=mode.frequency_std if told else None,

@@ -34,7 +34,7 @@ class Validation:
     load
         Of the drops from which `amplitudes` are.
     amplitudes
-        Frequency and damping of each mode of the body against amplitude.
+        Frequency and damping of each mode of the body against amplitude; empty where the verdict is reject.
     """
 
     result: Result
@@ -44,7 +44,7 @@ class Validation:
 
     def document(self) -> dict[str, Any]:
         """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
-        result = self.result.model_dump(mode="json", by_alias=True)
+        result = self.result.document()
         kept = ("sprung", "vehicle", "verdict", "validation", "faults", "omissions")
         return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 

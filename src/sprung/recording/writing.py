@@ -6,10 +6,11 @@ import csv
 import io
 import re
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import tomli_w
+from pydantic import TypeAdapter
 
 from sprung.recording.formats import split_unit
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
@@ -23,8 +24,6 @@ from sprung.vehicle import EMPTY, Sensor
 if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Mapping, Sequence
-
-    from pydantic import BaseModel
 
     from sprung.estimate import Known
     from sprung.recording.campaign import Campaign, Drop
@@ -88,7 +87,7 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
     for drop, of_drop in zip(drops, pieces, strict=True):
         own = []
         for file in [piece.name for piece in of_drop] if len(of_drop) > 1 else [drop.file]:
-            path = PurePosixPath(file or drop.name)
+            path = PurePosixPath(file or drop.label)
             if path.is_absolute() or ".." in path.parts:
                 path = PurePosixPath(path.name)
             plain = path.with_name(path.stem if file else path.name)
@@ -104,11 +103,14 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
 def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, Any]:
     heights = ("cg_height", "wheel_height", "roll_axis_height")
     vehicle: dict[str, Any] = {"name": campaign.name}
+    if campaign.identification is not None:
+        vehicle["identification"] = campaign.identification
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
     sections = {
         "vehicle": vehicle,
+        "test": written(campaign.test),
         "known": {name: _measured(known) for name, known in campaign.known.items()},
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],
@@ -121,7 +123,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
 
 
-def written(record: BaseModel, *without: str) -> dict[str, Any]:
+def written(record: object, *without: str) -> dict[str, Any]:
     """Give the keys of a record that say more than their defaults, as TOML holds them.
 
     Parameters
@@ -131,7 +133,9 @@ def written(record: BaseModel, *without: str) -> dict[str, Any]:
     *without
         Keys to leave out.
     """
-    return record.model_dump(exclude_defaults=True, exclude_none=True, exclude=set(without))
+    adapter: TypeAdapter[Any] = TypeAdapter(type(record))
+    plain = adapter.dump_python(record, exclude_defaults=True, exclude_none=True, exclude=set(without))
+    return cast("dict[str, Any]", plain)
 
 
 def _measured(known: Known) -> float | dict[str, float]:

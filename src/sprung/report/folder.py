@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -108,7 +109,7 @@ def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Save
     with omissions.noting("The report", "written"):
         page, missing = drawn_page(result)
         omissions.add(missing)
-    result = result.model_copy(update={"omissions": omissions.sentences})
+    result = replace(result, omissions=omissions.sentences)
     files = ({FILE: page.encode()} if page else {}) | result.files()
     write_whole(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
     return Saved(result, tuple(folder / name for name in reversed(files)))
@@ -146,4 +147,4 @@ def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) ->
             files[PDF_FILE] = pdf_of(result)
     write_whole(folder, files, overwrite=overwrite)
     written = tuple(folder / name for name in files)
-    return Saved(result.model_copy(update={"omissions": omissions.sentences}), written)
+    return Saved(replace(result, omissions=omissions.sentences), written)

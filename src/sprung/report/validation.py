@@ -50,7 +50,7 @@ def validation_view(validation: Validation) -> RenderableType:
     """
     result = validation.result
     parts: list[RenderableType] = [
-        laid_out(validation_table(result.vehicle.name, result.validation)),
+        laid_out(validation_table(result.name, result.validation)),
         hanging("", COLUMNS),
         Text(),
     ]
@@ -148,7 +148,7 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     result = validation.result
     drawn = {}
     if pictures := amplitude_pictures(validation.amplitudes):
-        title = f"{result.vehicle.name}, {validation.load}: modes of the body against amplitude"
+        title = f"{result.name}, {validation.load}: modes of the body against amplitude"
         drawn["amplitude.svg"] = sheet(title, [(AMPLITUDES, False)], pictures)
     names = file_names(["amplitude", *result.series])
     next(names)  # taken by the drawing above

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from sprung.progress import Progress, silent
 from sprung.recording import Campaign, read_vehicle
@@ -45,7 +46,7 @@ def simulate_file(
     known = dict(file.known)
     if file.wheelbase is not None:
         known["wheelbase"] = file.wheelbase
-    return simulate(
+    campaign = simulate(
         file.vehicle,
         sensors=file.sensors or None,
         loads=file.loads,
@@ -57,3 +58,4 @@ def simulate_file(
         model=file.model,
         progress=progress,
     )
+    return replace(campaign, identification=file.identification, test=file.test)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from sprung.estimate import Known
 from sprung.recording import Campaign
 from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import SCHOOL_BUS, Sensor
+from sprung.vehicle import SCHOOL_BUS, WHEELS, Sensor, Wheel
 
 _BODY_RANGE, _WHEEL_RANGE = 4.0, 50.0  # g: the wheels see ten times what the body sees
 _STEPS = 2**16  # of a 16-bit recorder over the full range
@@ -44,7 +46,7 @@ def demo_campaign(seed: int = 1) -> Campaign:
         "body_rr": (-wheelbase - 0.2, -0.7, 0.55),
     }
     body = [_sensor(name, "body", _BODY_RANGE, position) for name, position in places.items()]
-    wheels = [_sensor(f"wheel_{station}", station, _WHEEL_RANGE) for station in ("fl", "fr", "rl", "rr")]
+    wheels = [_sensor(f"wheel_{station}", station, _WHEEL_RANGE) for station in WHEELS]
     return simulate(
         SCHOOL_BUS,
         sensors=body + wheels,
@@ -64,15 +66,16 @@ def demo_campaign(seed: int = 1) -> Campaign:
 
 
 def _sensor(
-    channel: str, station: str, full_scale: float, position: tuple[float, float, float] | None = None
+    channel: str,
+    station: Literal["body"] | Wheel,
+    full_scale: float,
+    position: tuple[float, float, float] | None = None,
 ) -> Sensor:
-    return Sensor.model_validate(
-        {
-            "channel": channel,
-            "on": station,
-            "position": position,
-            "unit": "g",
-            "range": full_scale,
-            "resolution": 2 * full_scale / _STEPS,
-        }
+    return Sensor(
+        channel=channel,
+        on=station,
+        position=position,
+        unit="g",
+        range=full_scale,
+        resolution=2 * full_scale / _STEPS,
     )
