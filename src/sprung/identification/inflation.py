@@ -43,7 +43,8 @@ def of_colour(
         Part of the samples that the fit counts, shape (channel,) or one for all; fewer than there are where some were
         interpolated.
     least
-        Variance below which residuals are rounding, from whose colour nothing follows, (m/s²)²; shape (channel,) or one for all.
+        Variance below which residuals are rounding, of whose colour nothing follows, (m/s²)²; shape (channel,) or one for
+        all.
 
     Returns
     -------
