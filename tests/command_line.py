@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from sprung.cli import main
+from sprung.recording.ownership import MANIFEST
 
 SEDAN = Path(__file__).resolve().parent / "data" / "sedan"
 LEAFBUS = SEDAN.with_name("leafbus")
@@ -83,8 +84,8 @@ class Folder:
         return self.lines(changed, file)
 
     def listing(self) -> list[str]:
-        """Everything in the folder."""
-        return sorted(str(path.relative_to(self.path)) for path in self.path.rglob("*"))
+        """Everything in the folder but sprung's lists of its own files."""
+        return sorted(str(path.relative_to(self.path)) for path in self.path.rglob("*") if path.name != MANIFEST)
 
 
 def linear_leafbus(folder: Path) -> Path:

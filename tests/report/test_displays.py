@@ -12,6 +12,7 @@ import json
 import math
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,6 +21,7 @@ from rich.console import Console
 
 import sprung
 from goldens import RESULTS, stored_result
+from layouts import check_view_is_whole
 from sprung.errors import Fault
 from sprung.estimate import Estimate
 from sprung.pipeline import ChannelReport, Check, DropReport, FoundMode, LoadModes
@@ -39,7 +41,9 @@ def compare(name: str, shown: str, regenerate: bool, ending: str = "txt") -> Non
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_result(name: str, regenerate: bool) -> None:
-    compare(name, text_of(result_view(stored_result(name)), CONSOLE), regenerate)
+    view = result_view(stored_result(name))
+    check_view_is_whole(view, tables=2)
+    compare(name, text_of(view, CONSOLE), regenerate)
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -89,8 +93,9 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     for name, interval in limits.items():
         parameters[name] = dataclasses.replace(parameters[name], interval95=interval, interval_from="profile")
     derived = {"total_mass": Estimate(1553.1, 5.0, (1543.4, 1562.9), "kg", "estimated", "profile")}
-    fit = result.fit.model_copy(update={"inflated_by": "coloured residuals", "most_coloured": "wheel_rl"})
-    changed = result.model_copy(update={"parameters": parameters, "derived": derived, "fit": fit})
+    fit = replace(result.fit, inflated_by="coloured residuals", most_coloured="wheel_rl")
+    changed = replace(result, parameters=parameters, derived=derived, fit=fit)
+    check_view_is_whole(result_view(changed), tables=3)
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
 
 
@@ -100,13 +105,14 @@ def changed(result: sprung.Result, name: str, by: float) -> sprung.Result:
     assert one.value is not None
     assert one.std is not None
     moved = {**result.parameters, name: dataclasses.replace(one, value=one.value + by * one.std)}
-    return result.model_copy(update={"parameters": moved})
+    return replace(result, parameters=moved)
 
 
 def test_two_results_beside_each_other(regenerate: bool) -> None:
     """With dampers of which one is 8 standard uncertainties, and so 5.7 of the difference, stronger."""
     first = stored_result("accept")
     found = sprung.compare([first, changed(first, "c_sf", 8.0)], names=["before", "after"])
+    check_view_is_whole(comparison_view(found), tables=3)
     compare("comparison", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
@@ -117,6 +123,7 @@ def test_many_results_beside_each_other(regenerate: bool) -> None:
     others = [changed(first, "c_sf", 30.0), stored_result("reject")]
     names = [*(f"car {i + 1}" for i in range(len(alike))), "worn", "bus"]
     found = sprung.compare([*alike, *others], names=names)
+    check_view_is_whole(comparison_view(found), tables=3)
     compare("comparisons", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
@@ -129,6 +136,7 @@ def test_a_check(regenerate: bool) -> None:
     )
     clipped = Fault("clipped", "empty_bounce.csv: wheel_fl", "14 samples are at full scale", "Use a larger range.")
     check = Check((bounce(), roll(), left_out()), (clipped, gap, late))
+    check_view_is_whole(check_view(check), tables=2)
     compare("check", text_of(check_view(check), CONSOLE), regenerate)
 
 

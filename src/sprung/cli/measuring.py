@@ -10,45 +10,55 @@ from typing import Annotated, Optional
 import typer
 
 import sprung
-from sprung.cli.app import CampaignFile, Json, app
-from sprung.cli.output import REJECTED, advancing, complain, say, say_json, working
-from sprung.errors import Fault, InputError, Problem
+from sprung.cli import completing
+from sprung.cli.app import Force, Json, app
+from sprung.cli.output import REJECTED, complain, say, say_json, working
+from sprung.errors import Fault, InputError, Omissions, Problem
+from sprung.progress import Step
 
 
-@app.command(epilog="Example: [bold]sprung check campaign.toml --no-drawings[/bold]")
+@app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
 def check(
-    campaign: CampaignFile,
+    campaign: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CAMPAIGN",
+            help="campaign.toml, complete or not, or the folder it is in; or a folder of nothing but recordings.",
+        ),
+    ],
     output: Annotated[
         Optional[Path],  # noqa: UP045 (typer reads it)
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="Where to draw the drops (default: check/ beside the campaign)."
-        ),
+        typer.Option("-o", "--output", metavar="DIR", help="Where to write (default: check/ beside the campaign)."),
     ] = None,
-    drawings: Annotated[bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file.")] = True,
+    page: Annotated[bool, typer.Option("--page/--no-page", help="Write check.html, with every drop drawn.")] = True,
+    drawings: Annotated[
+        bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file too.")
+    ] = False,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Read and judge the recordings, identify nothing; draw each drop."""
-    with working("reading the recordings"):
-        read = sprung.read(campaign)
-        found = sprung.check(read)
+    """Judge the recordings, identify nothing: what is usable, what is wrong, what is missing. Needs no geometry."""
+    with working("reading the recordings") as progress:
+        found = sprung.check(campaign, progress=progress)
     if not found.usable:
         raise InputError(
             Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
         )
-    drawn: tuple[Path, ...] = ()
-    if drawings:
-        folder = (output or (read.path or campaign).parent / "check").resolve()
-        try:
-            with working("drawing"):
-                drawn = sprung.report.write_check(found, folder)
-        except InputError as error:
-            complain(f"No drawings: {error}")
+    beside = campaign if campaign.is_dir() else campaign.parent
+    folder = (output or beside / "check").resolve()
+    written: tuple[Path, ...] = ()
+    omissions = Omissions()
+    if page or drawings:
+        with working("drawing"), omissions.noting("The page of the check", "written"):
+            written = sprung.report.write_check(found, folder, page=page, drawings=drawings, overwrite=force)
+    for omission in omissions.sentences:
+        complain(omission)
+    pages = [path for path in written if path.name == sprung.report.CHECK_FILE]
+    drawn = [str(path) for path in written if path not in pages]
     if as_json:
-        say_json({**found.document(), "drawings": [str(path) for path in drawn]})
+        say_json({**found.document(), "page": str(pages[0]) if pages else None, "drawings": drawn})
     else:
-        say(sprung.report.text_of(sprung.report.check_view(found)))
-        if drawn:
-            say(f"\nDrawn: {len(drawn)} drop{'s' * (len(drawn) > 1)} in {drawn[0].parent}\n")
+        say(sprung.report.text_of(sprung.report.check_view(found, pages[0] if pages else None)))
 
 
 @app.command(epilog="Example: [bold]sprung compare before/results after/results[/bold]")
@@ -56,7 +66,9 @@ def compare(
     results: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RESULTS...", help="Two results folders or more, or their results.json; the first is the reference."
+            metavar="RESULTS...",
+            help="Two results folders or more, or their results.json; the first is the reference.",
+            autocompletion=completing.results,
         ),
     ],
     as_json: Json = False,
@@ -78,13 +90,15 @@ def modal(
         typer.Argument(
             metavar="CAMPAIGN",
             help="campaign.toml, or the folder it is in; or a recording, or a folder of nothing but them.",
+            autocompletion=completing.campaigns,
         ),
     ],
     method: Annotated[
         str,
         typer.Option(
+            autocompletion=completing.methods,
             help="ml, the likeliest modes, with uncertainty; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
-            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd."
+            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd.",
         ),
     ] = "ml",
     order: Annotated[
@@ -102,23 +116,32 @@ def modal(
     start: Annotated[
         Optional[float],  # noqa: UP045 (typer reads it)
         typer.Option(
-            help="Of recordings alone: where the free decay begins, s on their clock (default: at the largest reading)."
+            help="Of recordings alone: where the free decay begins, s on their clock "
+            "(default: after the landing of each drop that is found, else at the largest reading)."
         ),
     ] = None,
     diagram: Annotated[bool, typer.Option("--diagram", help="Draw a stabilisation diagram beside it.")] = False,
     as_json: Json = False,
 ) -> None:
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
-    with working("reading the recordings"):
+    with working("reading the recordings") as progress:
         if sprung.is_recordings(campaign):
             found = sprung.modes_of_recordings(
-                campaign, method=method, order=order, start=start, amplitude=amplitude, diagram=diagram
+                campaign,
+                method=method,
+                order=order,
+                start=start,
+                amplitude=amplitude,
+                diagram=diagram,
+                progress=progress,
             )
             faults: tuple[Fault, ...] = ()
         else:
-            read = sprung.read(campaign)
-            found = sprung.modes(read, method=method, order=order, amplitude=amplitude, diagram=diagram)
-            faults = sprung.check(read).faults
+            read = sprung.read(campaign, progress=progress)
+            found = sprung.modes(
+                read, method=method, order=order, amplitude=amplitude, diagram=diagram, progress=progress
+            )
+            faults = sprung.check(read, progress=progress).faults
     if as_json:
         say_json(
             {
@@ -135,19 +158,23 @@ def simulate(
     vehicle: Annotated[
         Path,
         typer.Argument(
-            metavar="VEHICLE.toml", help="Its parameters; sensors, loads and drops where not the usual ones."
+            metavar="VEHICLE.toml",
+            help="Its parameters; sensors, loads and drops where not the usual ones.",
+            autocompletion=completing.campaigns,
         ),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The campaign folder to write.")],
     rate: Annotated[float, typer.Option(max=1e5, help="Samples per second.")] = 500.0,
     noise: Annotated[float, typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square.")] = 0.02,
     seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 1,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
-    with working("simulating"):
-        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed)
-        written = sprung.write(campaign, output)
+    with working("reading the vehicle") as progress:
+        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
+        progress(Step("writing the campaign"))
+        written = sprung.write(campaign, output, overwrite=force)
     if as_json:
         say_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
     else:
@@ -160,7 +187,9 @@ def plan(
     source: Annotated[
         Path,
         typer.Argument(
-            metavar="VEHICLE.toml|CAMPAIGN", help="A vehicle as it is thought to be, or a campaign to go on from."
+            metavar="VEHICLE.toml|CAMPAIGN",
+            help="A vehicle as it is thought to be, or a campaign to go on from.",
+            autocompletion=completing.campaigns,
         ),
     ],
     wanted: Annotated[float, typer.Option(help="Percent that no parameter's uncertainty is to exceed.")] = 1.0,
@@ -188,12 +217,13 @@ def plan(
 @app.command(epilog="Example: [bold]sprung new measurements[/bold]")
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder with the recordings.")],
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Draft campaign.toml from recordings: find the drops in them, tell the sensors, mark what is missing."""
-    with advancing("looking for drops") as progress:
-        drafted = sprung.draft(folder, progress=progress)
-        written = drafted.write()
+    with working("looking for drops") as progress:
+        drafted = sprung.draft(folder, progress=progress, overwrite=force)
+        written = drafted.write(overwrite=force)
     if as_json:
         say_json(drafted.document())
     else:

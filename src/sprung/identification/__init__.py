@@ -2,6 +2,7 @@
 
 from sprung.identification.added_mass import added_mass
 from sprung.identification.beyond import ascend_stepped, lost_without, prospects
+from sprung.identification.characteristics import characteristics_of
 from sprung.identification.climb import CONVERGED, NO_INFORMATION, RANK, told_directions
 from sprung.identification.contact import ascend_from_contact, clear_of_splines
 from sprung.identification.estimates import Correlation, Estimates, Scale, Unidentifiable, conclude, estimate_of
@@ -9,7 +10,7 @@ from sprung.identification.inflation import corrections, of_colour
 from sprung.identification.joint import Fit, Inflater, describe, fit_jointly, inflation_of, residual_records
 from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood, Place
-from sprung.identification.modes import ModeEstimate, mode_estimates
+from sprung.identification.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.identification.monomials import parameters_from_matrices
 from sprung.identification.prediction import Prediction, predictions
 from sprung.identification.profile import profiled
@@ -27,6 +28,7 @@ __all__ = [
     "NO_INFORMATION",
     "RANK",
     "STARTS",
+    "UNNAMED",
     "USUAL_ENGINE",
     "USUAL_MOUNTING",
     "Coordinates",
@@ -50,6 +52,7 @@ __all__ = [
     "ascend_from_contact",
     "ascend_stepped",
     "canonical_basis",
+    "characteristics_of",
     "clear_of_splines",
     "conclude",
     "corrections",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,6 @@ _SCALE = (
     "drops with a known load, weigh the vehicle (total_mass, front_axle_mass, rear_axle_mass), or give one mass or rate that "
     "is known"
 )
-_REFUSED = "the numbers of a model that does not hold are worth nothing and are not given"
 
 _HARDLY = (
     "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
@@ -101,11 +100,6 @@ class Estimates:
     scale: Scale
     unidentifiable: tuple[Unidentifiable, ...]
     correlation: Correlation
-
-    def refused(self, reason: str) -> Estimates:
-        """Give the same where the model does not hold, for a reason: then nothing else explains what is not determined."""
-        names = tuple(name for name, one in self.parameters.items() if one.status == "unidentifiable")
-        return replace(self, unidentifiable=(Unidentifiable(names, f"{_REFUSED}: {reason}"),) if names else ())
 
 
 def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:

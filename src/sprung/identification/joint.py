@@ -123,19 +123,6 @@ class Fit:
             undetermined=self.undetermined[chosen],
         )
 
-    def widened(self, by: float) -> Fit:
-        """Give the fit with less said of everything that is not known exactly.
-
-        Parameters
-        ----------
-        by
-            Standard uncertainty to be added in every direction of the coordinates that is open, as a part.
-        """
-        variances, directions = np.linalg.eigh(self.relative_covariance)
-        open_ = directions[:, variances > RANK * variances.max(initial=0.0)]
-        wider = self.relative_covariance + by**2 * open_ @ open_.T
-        return replace(self, relative_covariance=wider, covariance=wider * np.outer(self.slopes, self.slopes))
-
     @property
     def scaling(self) -> Real:
         """The direction of the coordinates in which every mass and rate grows alike, which no acceleration shows."""

@@ -1,9 +1,17 @@
 """The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
 
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
-from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    derived_table,
+    meaning_of,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.pipeline.drafting import Draft, draft
-from sprung.pipeline.identify import identify
+from sprung.pipeline.identify import Identification, identify, identify_campaign, with_amplitudes
 from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.recordings import is_recordings, modes_of_recordings
@@ -21,6 +29,7 @@ __all__ = [
     "DropReport",
     "FitReport",
     "FoundMode",
+    "Identification",
     "LoadModes",
     "ModesByLoad",
     "Recorded",
@@ -28,19 +37,24 @@ __all__ = [
     "Series",
     "Setup",
     "Validation",
+    "characteristics_tables",
     "check",
+    "derived_table",
     "draft",
     "identify",
+    "identify_campaign",
     "is_recordings",
     "load",
     "meaning_of",
     "modes",
     "modes_of_recordings",
     "modes_table",
+    "other_quantities",
     "parameters_table",
     "plan",
     "plan_campaign",
     "plan_file",
     "ratios_table",
     "validate",
+    "with_amplitudes",
 ]

@@ -22,6 +22,7 @@ from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
 from sprung.prepare.spikes import without_spikes
 from sprung.prepare.stated import as_seen, contradicted, other_wheels, wheels_that_fell
+from sprung.progress import Progress, Step, counted, silent
 from sprung.recording import Campaign, Drop, Recording, drop_names
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Wheel
@@ -40,7 +41,15 @@ _LOW_BLOCKS, _HOPPING = 0.1, 0.25
 _CLIPPED = 0.6
 """s after the release up to which clipping only delays the decay; a channel that clips for longer is left out."""
 
+_NEAR_END = 2.0
+"""Samples before the end of its window at which a recording may end, its clock being made even."""
+
 _ALLOWED_FOR = "a fall and two periods of wheel hop after the release, as no sensor tells when the wheels landed"
+
+_NOT_PLACED = (
+    "a fall and two periods of wheel hop after the release, as the landing follows from the positions of the body sensors, "
+    "which are not known"
+)
 
 _TYPICAL_SUSPENSION = 70.0
 """Static suspension force over unsprung mass, m/s², for a wheel that no release has weighed: between car and bus."""
@@ -64,21 +73,26 @@ class Prepared(NamedTuple):
     seen: tuple[Seen, ...] = ()
 
 
-def prepare(campaign: Campaign) -> Prepared:
+def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     """Find the usable part of every drop.
 
     Parameters
     ----------
     campaign
         The campaign.
+    progress
+        Called with each recording that is begun, in three rounds.
 
     Returns
     -------
     Prepared
     """
-    smooth = [without_spikes(recording) for recording in campaign.recordings]
+    smooth = [
+        without_spikes(one) for one in counted(progress, "looking for spikes in the recordings", campaign.recordings)
+    ]
     spiked = [filled_in(*pair) for pair in zip(campaign.recordings, smooth, strict=True)]
     whole = _alive([align(recording) for recording in smooth], campaign.drops)
+    progress(Step("looking for wrong signs, units and saturation in the recordings"))
     scaled = [with_full_scale(recording, campaign.sensors) for recording in whole]
     righted = put_right(scaled, [_release(recording) for recording in scaled], campaign.sensors)
     releases, sensors = righted.releases, righted.sensors
@@ -87,19 +101,25 @@ def prepare(campaign: Campaign) -> Prepared:
     clipped = [clipped_samples(recording) for recording in righted.recordings]
     recordings = [
         recording if release is None else direct_coupled(steady(recording, release, sensors), release, sensors)
-        for recording, release in zip(righted.recordings, releases, strict=True)
+        for recording, release in zip(
+            counted(progress, "removing drift from the recordings", righted.recordings), releases, strict=True
+        )
     ]
     fell = [wheels_that_fell(one, release, sensors) for one, release in zip(recordings, releases, strict=True)]
     drops = list(campaign.drops)
     for i in contradicted(campaign.drops, fell):
         fault = other_wheels(campaign.drops[i], fell[i], recordings[i].name)
         recordings[i] = replace(recordings[i], faults=(*recordings[i].faults, fault))
-        drops[i] = campaign.drops[i].model_copy(update={"wheels": as_seen(campaign.drops[i], fell[i])})
+        drops[i] = replace(campaign.drops[i], wheels=as_seen(campaign.drops[i], fell[i]))
+    for i, drop in enumerate(drops):
+        if not drop.wheels:
+            drops[i] = replace(drop, wheels=as_seen(drop, fell[i]))
     campaign = replace(campaign, recordings=tuple(recordings), drops=tuple(drops))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
     names = drop_names(campaign.drops)
-    of_drops = zip(campaign.drops, names, campaign.recordings, releases, clipped, strict=True)
+    counted_names = counted(progress, "finding the decays", names)
+    of_drops = zip(campaign.drops, counted_names, campaign.recordings, releases, clipped, strict=True)
     for drop, name, recording, release, over in of_drops:
         decay = _decay(campaign, drop, name, recording, release, suspension, over)
         if isinstance(decay, Decay):
@@ -197,7 +217,8 @@ def _decay(
     landing = _landing(campaign, drop, recording, release, suspension, clipped, faults)
     first = landing.certain
     recording = _without_clipped(recording, clipped, landing.possible, faults)
-    last, why_end = recording.values.shape[1] - 1, "the recording ends"
+    last = recording.values.shape[1] - 1
+    why_end = "its window ends" if _ends_with_window(drop, recording) else "the recording ends"
     if drop.end is not None:
         last, why_end = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6))), "given as end"
     length = (last - first) / recording.rate
@@ -223,16 +244,22 @@ def _decay(
         shares=recording.shares,
         undone=undone,
         velocity=velocities(recording, release, undone, landing.possible),
-        events=_events(recording, release, landing, why_end),
+        events=_events(recording, release, landing, first, why_end),
     )
 
 
-def _events(recording: Recording, release: Release | None, landing: Landing, why_end: str) -> Events:
+def _ends_with_window(drop: Drop, recording: Recording) -> bool:
+    """Say whether the file goes on where the recording ends."""
+    return drop.window is not None and drop.window[1] - float(recording.time[-1]) < _NEAR_END / recording.rate
+
+
+def _events(recording: Recording, release: Release | None, landing: Landing, first: int, why_end: str) -> Events:
     def when(sample: int | None) -> float | None:
         return None if sample is None else recording.start + sample / recording.rate
 
     released = None if release is None else release.sample
-    return Events(when(released), when(landing.landed), when(landing.lifted), landing.why, why_end)
+    moments = when(released), when(landing.landed), when(landing.lifted), when(first)
+    return Events(*moments, why_start=landing.why, why_end=why_end)
 
 
 def _without_clipped(recording: Recording, clipped: NDArray[np.bool_], start: int, faults: list[Fault]) -> Recording:
@@ -277,9 +304,10 @@ def _landing(
     possible = release.sample + int(fall * recording.rate)
     guessed = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
-    found = find_decay(
-        recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
-    ) or Landing(possible, guessed, _ALLOWED_FOR)
+    found = find_decay(recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase)
+    if found is None:
+        placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.on == "body")
+        found = Landing(possible, guessed, _ALLOWED_FOR if placed else _NOT_PLACED)
     judged = {sensor.on for sensor, used in zip(campaign.sensors, recording.usable, strict=True) if used}
     if not judged.issuperset(drop.wheels):  # a wheel fell that nobody watched
         later = guessed > found.certain

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from sprung.recording.schema import CampaignFile
@@ -70,5 +71,5 @@ def _of_loads(draft: Draft[CampaignFile]) -> Iterator[tuple[Place, str, float]]:
             yield (*place, "mass"), "kg", item.mass
             yield (*place, "position"), "m", max(map(abs, item.position or (0.0,)))
             yield (*place, "inertia"), "kg m^2", max(item.inertia)
-        for name, value in (load.added.model_dump() if load.added else {}).items():
+        for name, value in (asdict(load.added) if load.added else {}).items():
             yield ("load", index, "added", name), "kg m^2" if name.startswith("I_") else "kg", value

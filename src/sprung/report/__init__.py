@@ -2,14 +2,23 @@
 
 from sprung.report.car import BODY_EDGES, STRUTS, wire_car
 from sprung.report.check import check_view
+from sprung.report.check_page import CHECK_FILE, check_page
 from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
-from sprung.report.folder import write_report, write_results
+from sprung.report.folder import (
+    REPORT_FILES,
+    RESULT_FILES,
+    Saved,
+    add_report,
+    save_result,
+    write_report,
+    write_results,
+)
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
-from sprung.report.page import page_of
+from sprung.report.page import drawn_page, page_of
 from sprung.report.palette import LIGHT
 from sprung.report.paper import paper_view
 from sprung.report.paper_copy import pdf_of
@@ -25,13 +34,18 @@ from sprung.report.pictures import (
     whole_picture,
 )
 from sprung.report.plan import plan_view
+from sprung.report.sketch import VehicleSketch, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
+from sprung.report.truth import truth_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [
     "BODY_EDGES",
+    "CHECK_FILE",
     "LIGHT",
+    "REPORT_FILES",
+    "RESULT_FILES",
     "STRUTS",
     "Band",
     "Curve",
@@ -41,14 +55,21 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
+    "Saved",
+    "VehicleSketch",
+    "add_report",
     "amplitude_pictures",
+    "blank_sketch",
     "channels_picture",
+    "check_page",
     "check_view",
     "comparison_view",
     "decays_by_load",
     "draft_view",
     "draw_check",
     "draw_validation",
+    "drawing_svg",
+    "drawn_page",
     "modes_view",
     "motion_picture",
     "near_picture",
@@ -58,11 +79,15 @@ __all__ = [
     "pdf_of",
     "plan_view",
     "result_view",
+    "save_result",
+    "sketch_sheet",
     "spectra_picture",
     "stability_picture",
     "svg_of",
     "text_of",
+    "truth_view",
     "validation_view",
+    "vehicle_sketch",
     "whole_picture",
     "wire_car",
     "write_check",

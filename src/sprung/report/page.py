@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from importlib.resources import files
 from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
 
+from sprung.errors import Omissions
 from sprung.pipeline import Result
 from sprung.report import sections
+from sprung.report.embedded import figure_json
 from sprung.report.palette import DARK, LIGHT
 from sprung.report.picture import Picture
+from sprung.report.sections.context import Context
+from sprung.report.sketch import Drawing, drawing_svg
 from sprung.report.style import alone_style, role_rules
-from sprung.report.svg import svg_of
-from sprung.report.words import facts_of, verdict_words
+from sprung.report.svg import lower, svg_of
+from sprung.report.words import facts_of, record_of, verdict_words
 
 FILE = "report.html"
 """The report's name beside results.json."""
 
-_FEW = 12
-"""Drops up to which their pictures are unfolded."""
+_SCRIPTS = ("data", "save", "scope", "figures", "modes", "main")
+"""What the page's script is put together from, in order."""
 
 _ENVIRONMENT = Environment(
     loader=PackageLoader("sprung.report"),
@@ -40,7 +45,7 @@ class Section(NamedTuple):
 
 
 def page_of(result: Result, unfolded: bool = False) -> str:
-    """Write the report.
+    """Write the report; a part that cannot be drawn is named at its top.
 
     Parameters
     ----------
@@ -54,41 +59,93 @@ def page_of(result: Result, unfolded: bool = False) -> str:
     str
         HTML; the same for the same result.
     """
+    return drawn_page(result, unfolded)[0]
+
+
+def drawn_page(result: Result, unfolded: bool = False) -> tuple[str, tuple[str, ...]]:
+    """Write the report, and say which parts of it could not be drawn.
+
+    Parameters
+    ----------
+    result, unfolded
+        As for `page_of`.
+
+    Returns
+    -------
+    tuple
+        HTML, and a sentence for each thing that is missing, those of the result first.
+    """
     page = _ENVIRONMENT.get_template("page.html")
-    return page.render(
+    record = list(record_of(result))
+    omissions = Omissions(result.omissions)
+    sections = list(_sections(result, unfolded, omissions))
+    text = page.render(
         result=result,
+        omissions=omissions.sentences,
         verdict=verdict_words(result),
+        record=record,
+        running_head=_css_text(" · ".join([result.name, *(told for name, told in record if name == "Date")])),
         facts=facts_of(result),
-        sections=list(_sections(result, unfolded)),
+        sections=sections,
         light=LIGHT,
         dark=DARK,
         roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
+        script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )
+    return text, omissions.sentences
 
 
-def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
-    few = unfolded or len(result.drops) <= _FEW
-    style = alone_style() if unfolded else ""
-    parts = (
-        ("parameters", "Parameters", "parameters.html", sections.parameters(result)),
-        ("known", "What was known, and what was found", "known.html", sections.known(result)),
-        ("recordings", "Recordings", "recordings.html", sections.recordings(result, few, unfolded)),
-        ("spectra", "Spectra", "pictures.html", sections.spectra(result)),
-        ("stabilisation", "Stabilisation diagram", "pictures.html", sections.stabilisation(result)),
-        ("modes", "Modes", "modes.html", sections.modes(result)),
-        ("comparison", "Measured and simulated", "motions.html", sections.motions(result, few)),
-        ("amplitude", "Frequency and damping against amplitude", "pictures.html", sections.amplitude(result)),
-        ("correlation", "Correlation of the parameters", "correlation.html", sections.correlation(result)),
-        ("next", "What to measure next", "next.html", sections.next_step(result)),
-        ("settings", "Settings, versions and files", "settings.html", sections.settings(result)),
-        ("literature", "Literature", "literature.html", sections.literature(result)),
+def _script() -> str:
+    folder = files("sprung.report").joinpath("scripts")
+    return "\n".join(folder.joinpath(f"{name}.js").read_text(encoding="utf-8") for name in _SCRIPTS)
+
+
+def _css_text(text: str) -> Markup:
+    """Write text as a string of a style sheet, every letter that could mean something there by its number."""
+    letters = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text if one.isprintable())
+    return Markup('"{}"').format(Markup("".join(letters)))  # noqa: S704 (nothing is left in it that means something)
+
+
+def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[Section]:
+    style = alone_style(halo=False) if unfolded else ""
+    parts: tuple[tuple[str, str, str, Callable[[], Context | None]], ...] = (
+        (
+            "characteristics",
+            "Masses, ride and wheel hop",
+            "characteristics.html",
+            lambda: sections.characteristics(result),
+        ),
+        ("parameters", "Parameters", "parameters.html", lambda: sections.parameters(result)),
+        ("geometry", "Geometry, sensors and loads", "geometry.html", lambda: sections.geometry(result)),
+        ("known", "Known beforehand", "known.html", lambda: sections.known(result)),
+        ("recordings", "Recordings", "recordings.html", lambda: sections.recordings(result, unfolded)),
+        ("spectra", "Spectra", "pictures.html", lambda: sections.spectra(result)),
+        ("stabilisation", "Stabilisation diagram", "pictures.html", lambda: sections.stabilisation(result)),
+        ("modes", "Modes", "modes.html", lambda: sections.modes(result)),
+        ("comparison", "Measured and simulated", "motions.html", lambda: sections.motions(result, unfolded)),
+        ("amplitude", "Frequency and damping against amplitude", "pictures.html", lambda: sections.amplitude(result)),
+        ("correlation", "Correlation of the parameters", "correlation.html", lambda: sections.correlation(result)),
+        ("next", "What to measure next", "next.html", lambda: sections.next_step(result)),
+        ("settings", "Settings, versions and files", "settings.html", lambda: sections.settings(result)),
+        ("literature", "Literature", "literature.html", lambda: sections.literature(result)),
     )
 
     def draw(picture: Picture) -> Markup:
-        return Markup(svg_of(picture, style))  # noqa: S704 (it escapes its words)
+        picture = lower(picture) if unfolded else picture
+        data = "" if unfolded else f'<script type="application/json" class="data">{figure_json(picture)}</script>'
+        return Markup(svg_of(picture, style) + data)  # noqa: S704 (they escape their words)
+
+    def sketch(drawing: Drawing) -> Markup:
+        return Markup(drawing_svg(drawing, style))  # noqa: S704 (it escapes its words)
 
     macros = _ENVIRONMENT.get_template("macros.html").module
+    tools = {"macros": macros, "draw": draw, "sketch": sketch, "style": Markup(style)}  # noqa: S704 (made here)
     for anchor, title, template, context in parts:
-        if context is not None:
-            body = _ENVIRONMENT.get_template(template).render(macros=macros, draw=draw, style=Markup(style), **context)  # noqa: S704 (made here)
+        body = None
+        # A part that fails costs no other: the reason why it is missing stands at the top.
+        with omissions.noting(f'The part "{title}" of the report'):
+            shown = context()
+            if shown is not None:
+                body = _ENVIRONMENT.get_template(template).render(**tools, **shown)
+        if body is not None:
             yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)
