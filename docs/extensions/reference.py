@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+import campaign_keys
 import paper_tables
 import typer
 from sphinx.pycode import ModuleAnalyzer
@@ -144,6 +145,7 @@ _WRITTEN = {
     "<!-- parameters -->": parameter_table,
     "<!-- api -->": api_reference,
     "<!-- rooms -->": rooms_reference,
+    **campaign_keys.WRITTEN,
     **paper_tables.WRITTEN,
 }
 

@@ -21,6 +21,14 @@ def test_a_mode_says_what_its_pole_means() -> None:
     assert mode.damping_ratio == pytest.approx(0.6, rel=1e-15)
 
 
+def test_rounding_does_not_choose_the_sign_of_a_shape() -> None:
+    """Left and right wheels move equally far in opposition; which of them rounding makes the larger differs by processor."""
+    for left in (1 - 1e-14, 1 + 1e-14):
+        shape = np.array([0.2, left, -1.0])[:, None]
+        [mode] = modes_from([complex(-1, 5)], shape)
+        assert mode.shape == pytest.approx([0.2, 1.0, -1.0])
+
+
 def test_a_real_pole_has_no_damped_frequency_and_critical_damping() -> None:
     mode = Mode(complex(-3, 0), np.ones(1, dtype=complex))
     assert (mode.damped_frequency, mode.damping_ratio) == (0.0, 1.0)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, kstest
 
+import goldens
 import sprung
 from command_line import Run, run
 from layouts import check_view_is_whole
@@ -42,7 +43,7 @@ def worn() -> sprung.Result:
 
 @pytest.fixture(scope="module")
 def rejected() -> sprung.Result:
-    return sprung.load(Path(__file__).parents[1] / "report" / "reject.json", series=False)
+    return goldens.stored_result("reject")
 
 
 @pytest.fixture(scope="module")

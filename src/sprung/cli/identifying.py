@@ -119,13 +119,15 @@ def demo(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
     as_json: Json = False,
 ) -> None:
-    """Write an example campaign, the paper's school bus, and identify it."""
+    """Write an example campaign, the paper's school bus, identify it, and show the true values beside the estimates."""
     with working("dropping the school bus") as progress:
         written = sprung.write(sprung.study.demo_campaign(), folder)
         result = sprung.identify(sprung.read(written), amplitude=True, progress=progress)
         files = sprung.report.write_results(result, folder / "results")
     conclude(result, files, as_json)
     if not as_json:
+        truth = sprung.study.true_values(result, sprung.study.DEMO_VEHICLE)
+        say(f"\n{sprung.report.text_of(sprung.report.truth_view(truth))}")
         say(
             f"\nThe recordings and what was known beforehand:     {written}\n"
             f"Everything that was found, to look at:            {folder / 'results' / 'report.html'}\n"

@@ -17,6 +17,7 @@ from sprung.identification.profile import profiled
 from sprung.identification.scores import force_scores
 from sprung.identification.start import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
 from sprung.identification.structured import StructuredFit, structured_least_squares
+from sprung.identification.subspace import canonical_basis
 from sprung.identification.summit import NEAR, STARTS, Summit, ascend, expected_gain, look_around
 from sprung.identification.suspects import Suspect, suspects
 from sprung.identification.timing import timed_by_decay, timed_by_release, told_alone
@@ -50,6 +51,7 @@ __all__ = [
     "ascend",
     "ascend_from_contact",
     "ascend_stepped",
+    "canonical_basis",
     "characteristics_of",
     "clear_of_splines",
     "conclude",

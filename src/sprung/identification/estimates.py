@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.identification.joint import Fit
+from sprung.identification.subspace import canonical_basis
+from sprung.modal import leading_entry
 from sprung.vehicle import PARAMETERS, quantity
 
 Real = NDArray[np.float64]
@@ -176,7 +178,7 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
         found.append(Unidentifiable(tuple(name for name in fit.names if PARAMETERS[name].scales), _SCALE))
         unit = scaling / np.linalg.norm(scaling)
         left, size, _ = np.linalg.svd(directions - np.outer(unit, unit @ directions), full_matrices=False)
-        directions = left[:, size > 0.5]
+        directions = canonical_basis(left[:, size > 0.5])
     shares = np.abs(directions)
     together = shares > 0.1 * shares.max(axis=0, initial=1e-300)
     # Whatever is undetermined belongs to the direction that moves it most, if to no other.
@@ -186,7 +188,7 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
             together[i, np.argmax(shares[i])] = True
     for direction, moved in zip(directions.T, together.T, strict=True):
         names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
-        leading = direction[np.argmax(np.abs(direction))]
+        leading = direction[leading_entry(direction)]
         ways = [
             f"{name} {'up' if part * leading > 0 else 'down'}"
             for name, part, moves in zip(fit.names, direction, moved, strict=True)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.identification.joint import Fit
 from sprung.identification.solution import differentiate_modes, solve_modes
-from sprung.modal import Mode, name_modes, paper_name
+from sprung.modal import Mode, leading_entry, name_modes, paper_name
 from sprung.vehicle import LinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
@@ -120,5 +120,5 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
 
 def _largest_one(shape: NDArray[np.complex128]) -> tuple[tuple[float, float], ...]:
     """Turn and scale a shape so that its largest entry is 1; real and imaginary part of each."""
-    scaled = shape / shape[np.argmax(np.abs(shape))]
+    scaled = shape / shape[leading_entry(shape)]
     return tuple((float(part.real), float(part.imag)) for part in scaled)

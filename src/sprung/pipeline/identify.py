@@ -87,6 +87,7 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
+    campaign.require_complete()
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
     options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
@@ -134,7 +135,7 @@ def result_of(
         correlation=estimates.correlation,
         modes={load: () if rejected else mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
         fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
-        drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
+        drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         validation=validated,
         setup=setup_of(campaign, fit, choice.known, options),

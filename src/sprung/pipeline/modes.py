@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from sprung.errors import Problems
 from sprung.identification import UNNAMED, ModeEstimate
 from sprung.modal import (
+    APPROXIMATE,
     DEFAULT,
     Diagram,
     Mode,
     Modes,
     ModeTrace,
     complexity,
+    confirmed,
     fft_frequencies,
     follow_modes,
     identify_modes,
@@ -187,6 +189,7 @@ def modes(
     InputError
         If there is no such method or no drop can be used.
     """
+    campaign.require_complete()
     decays = prepare(campaign).decays
     if not decays:
         problems = Problems()
@@ -255,6 +258,10 @@ def examined(
         Front axle to the body's centre of gravity, m, if known.
     """
     found = identify_modes(records, rate, method, order)
+    drawn = stabilisation_diagram(records, rate) if diagram else None
+    # Of recordings alone nothing else is known by which an invented mode would stand out.
+    if not sensors and order is None and method not in APPROXIMATE:
+        found = confirmed(found, records, rate, drawn)
     names = (
         _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
     )
@@ -271,7 +278,7 @@ def examined(
         drops,
         tuple((one.pole, one.reason) for one in found.rejected),
         _unresolved(estimates, sensors, len(drops)),
-        stabilisation_diagram(records, rate) if diagram else None,
+        drawn,
     )
 
 
@@ -317,10 +324,10 @@ def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: in
     wheels = len({sensor.on for sensor in sensors} - {"body"})
     told = [mode for mode in modes if not mode.name.startswith("body")]
     if len(told) < wheels:
-        these = "1 drop of this load tells" if drops == 1 else f"{drops} drops of this load tell"
+        these = "1 drop of this load shows" if drops == 1 else f"{drops} drops of this load show"
         said.append(
-            f"{wheels} wheels hop in {wheels} modes, of which {these} {len(told)}: each may stand for several that are "
-            "close, and its name for one of them. Drops of other wheels would tell them apart."
+            f"{wheels} wheels have {wheels} modes of hop and tramp, of which {these} {len(told)}: each may stand for several "
+            "close ones, and its name for one of them. Drops of other wheels would separate them."
         )
     return tuple(said)
 

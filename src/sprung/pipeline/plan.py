@@ -146,6 +146,7 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable
     problems = Problems()
     _check_wanted(wanted, problems)
     problems.raise_if_any()
+    campaign.require_complete()
     fitted = fit_campaign(campaign, progress=progress)
     result = result_of(fitted)
     if result.verdict.state == "reject":

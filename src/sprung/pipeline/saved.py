@@ -19,14 +19,12 @@ from pydantic import ValidationError
 
 from sprung.errors import Problem, Problems, ResultFileError
 from sprung.estimate import Estimate
-from sprung.identification import UNNAMED, ModeEstimate
-from sprung.modal import Mode, name_modes, paper_name
 from sprung.pipeline.plain import record_from
 from sprung.pipeline.result import SCHEMA, Result
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Everything, everything_in
 from sprung.pipeline.withholding import withhold_estimates
-from sprung.vehicle import UNKNOWN_KEY, coordinates
+from sprung.vehicle import UNKNOWN_KEY
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."
 _ROUNDING = 1e-6
@@ -85,25 +83,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
             )
     if problems or result is None:
         raise ResultFileError(problems)
-    return withhold_estimates(replace(result, **{"modes": _named(result.modes), **everything._asdict()}))
-
-
-def _named(modes: Mapping[str, tuple[ModeEstimate, ...]]) -> dict[str, tuple[ModeEstimate, ...]]:
-    """Name the modes of an older sprung after their shapes, as far as it kept these: it used those of the paper's Table 3."""
-    if any(mode.paper_name for of_load in modes.values() for mode in of_load):
-        return dict(modes)
-    named = {}
-    for load_name, of_load in modes.items():
-        shapes = [np.array([complex(*part) for part in mode.motion]) for mode in of_load]
-        if any(len(shape) < len(coordinates(())) for shape in shapes):
-            return dict(modes)
-        given = [Mode(complex(*mode.pole), shape) for mode, shape in zip(of_load, shapes, strict=True)]
-        names = {one.pole: one.name for one in name_modes(given)}
-        named[load_name] = tuple(
-            replace(mode, name=names[complex(*mode.pole)] or UNNAMED, paper_name=paper_name(names[complex(*mode.pole)]))
-            for mode in of_load
-        )
-    return named
+    return withhold_estimates(replace(result, **everything._asdict()))
 
 
 def _document(path: Path) -> dict[str, Any]:

@@ -125,6 +125,7 @@ def validate(
     >>> max(drop.predicted_residual for drop in validation.result.validation.values()) < 1.05
     True
     """
+    campaign.require_complete()
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
     asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
     result = result_of(fitted, progress=progress, options=asked)

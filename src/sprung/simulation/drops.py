@@ -80,7 +80,7 @@ def simulate(
     --------
     >>> from sprung.vehicle import TABLE_1_CAR
     >>> campaign = simulate(TABLE_1_CAR, loads=[{"name": "sandbags", "added": {"mass": 140}}], seed=1)
-    >>> [drop.name for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
+    >>> [drop.label for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
     (['empty_roll_right', 'sandbags_bounce'], (8, 1800))
     """
     problems = Problems()

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from sprung.errors import InputError, Problem
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
@@ -104,9 +105,12 @@ class Load:
             raise ValueError("give either items or added totals, not both")
         if self.name == "empty" and (self.items or self.added is not None):
             raise ValueError("the load named 'empty' is the vehicle as it is; give this load another name")
-        if self.name != "empty" and not self.items and self.added is None:
-            raise ValueError("a load needs items = [...] or added = {...}")
         return self
+
+    @property
+    def described(self) -> bool:
+        """Whether it is known what the load adds; without that nothing can be identified from its drops."""
+        return self.name == "empty" or bool(self.items) or self.added is not None
 
     @property
     def mass(self) -> float:
@@ -123,7 +127,15 @@ class Load:
         heights
             Of the empty vehicle; without them every item counts as level with the centre of gravity. Where they tell what
             carries the body, a load tips it the more the higher it stands.
+
+        Raises
+        ------
+        InputError
+            If it is not known what the load adds.
         """
+        if not self.described:
+            expected, do = "items = [...] or added = {...}", "Write what the load consists of."
+            raise InputError([Problem(f"load '{self.name}'", "neither items nor added", expected, do)])
         if self.added is not None:
             return tuple(self.added.elements())
         return tuple(element for item in self.items for element in item.elements(heights))

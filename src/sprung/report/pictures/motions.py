@@ -37,14 +37,26 @@ def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Pi
     measured, simulated = series.body_measured.astype(float), series.body_simulated.astype(float)
     panels: list[Panel] = []
     for i, motion in enumerate(MOTIONS):
-        error = None if drop is None else getattr(drop, motion)
-        note = "" if drop is None else "no motion beyond the noise" if error is None else f"error {100 * error:.1f} %"
-        if np.isnan(measured[i]).all():
-            note = "not told by the sensors in use"
+        note = "not measured by the sensors in use" if np.isnan(measured[i]).all() else _note(motion, drop)
         panels += compared(motion, _UNITS[i], series.time, measured[i], simulated[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
     told = "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each the residual."
     return Picture(name, x, tuple(panels), told, zoomable=True)
+
+
+def _note(motion: str, drop: DropValidation | None) -> str:
+    """Say how far the fitted vehicle is from a motion, or why no error is given."""
+    if drop is None:
+        return ""
+    error: float | None = getattr(drop, motion)
+    if error is not None:
+        return f"error {100 * error:.1f} %"
+    if not drop.over_noise:
+        return ""
+    ratio = drop.over_noise.get(motion)
+    return (
+        "no motion beyond the noise" if ratio is None else f"{ratio:.1f} times the noise, too small for an error in %"
+    )
 
 
 def compared(channel: str, unit: str, time: Real, measured: Real, simulated: Real, note: str) -> tuple[Panel, Panel]:

@@ -26,7 +26,7 @@ def recordings(result: Result, unfolded: bool) -> Context:
         pictures = [whole_picture(drop, recorded), near_picture(drop, recorded)]
         drawn.append(
             {
-                "file": drop.file,
+                "file": drop.label,
                 "said": f"{drop.kind}, {drop.load}",
                 "wrong": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
                 "limits": _limits(drop),
@@ -47,7 +47,8 @@ def _shown(result: Result) -> set[str]:
 def _limits(drop: DropReport) -> str:
     if drop.start is None or drop.end is None or not drop.why_start:
         return ""
-    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}."
+    fit = "" if drop.fit_start is None else f" The fit uses it from {drop.fit_start:.3f} s on: {drop.why_fit}."
+    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}.{fit}"
 
 
 def _joined(faults: tuple[Fault, ...]) -> list[Fault]:

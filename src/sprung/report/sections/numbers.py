@@ -125,7 +125,7 @@ def _sensors(setup: Setup) -> Table:
     rows = tuple(
         (
             sensor.channel,
-            sensor.on,
+            sensor.on or "",
             "" if sensor.position is None else _place(sensor.position).removesuffix(" m"),
             sensor.direction,
             sensor.unit or "",

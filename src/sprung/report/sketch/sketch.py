@@ -59,23 +59,31 @@ def vehicle_sketch(source: Campaign | Result) -> VehicleSketch:
 
 
 def _unknown(geometry: Geometry) -> Iterator[str]:
+    """Name what is not known of the vehicle, its sensors and its loads."""
     if geometry.wheelbase.value is None:
         yield "wheelbase"
     if geometry.a.value is None:
         yield "centre of gravity (a, b)"
-    kinds = {"springs": geometry.springs, "dampers": geometry.dampers} if geometry.separate else {"": geometry.springs}
-    for of, (front, rear) in kinds.items():
-        index = {"": "", "springs": "2", "dampers": "1"}[of]
-        names = [f"t_{axle}{index}" for axle, one in (("f", front), ("r", rear)) if one.value is None]
+    kinds = {"2": geometry.springs, "1": geometry.dampers} if geometry.separate else {"": geometry.springs}
+    for index, lengths in kinds.items():
+        names = [f"t_{axle}{index}" for axle, one in zip("fr", lengths, strict=True) if one.value is None]
         if names:
             yield f"half-distance{'s' * (len(names) > 1)} {', '.join(names)}"
     if geometry.cg_height.value is None:
         yield "height of the centre of gravity"
     if geometry.wheel_height.value is None:
         yield "height of the wheel centres"
-    placeless = [sensor.channel for sensor in geometry.sensors if sensor.on == "body" and sensor.position is None]
-    if placeless:
-        yield f"position{'s' * (len(placeless) > 1)} of {', '.join(placeless)}"
+    yield from _placeless(geometry)
+
+
+def _placeless(geometry: Geometry) -> Iterator[str]:
+    """Name the sensors and loads whose place is not known."""
+    body = [sensor.channel for sensor in geometry.sensors if sensor.on == "body" and sensor.position is None]
+    if body:
+        yield f"position{'s' * (len(body) > 1)} of {', '.join(body)}"
+    wheels = [sensor.channel for sensor in geometry.sensors if sensor.on is None]
+    if wheels:
+        yield f"wheel station{'s' * (len(wheels) > 1)} of {', '.join(wheels)}"
     for load in geometry.loads:
         if not load.items:
             yield f"where load {load.name} lies" + (f" ({load.mass:g} kg in all)" if load.added is not None else "")
