@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
 
-from sprung.errors import Fault
+from sprung.errors import Fault, InputError
 from sprung.pipeline.clocks import ClockReport
+from sprung.pipeline.diagnosis import examine
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
 from sprung.recording import Campaign, Drop, drop_names
@@ -146,7 +147,13 @@ def check(campaign: Campaign) -> Check:
     -------
     Check
     """
-    return check_prepared(campaign, prepare(campaign))
+    try:
+        campaign, prepared, undeclared = examine(campaign)
+    except InputError as error:  # what makes identifying impossible is one more thing to be told of here
+        found = tuple(Fault("mirrored", one.where, one.found, one.do) for one in error.problems)
+        return check_prepared(replace(campaign, faults=(*campaign.faults, *found)), prepare(campaign))
+    campaign = replace(campaign, faults=(*campaign.faults, *dict.fromkeys(undeclared.values())))
+    return check_prepared(campaign, prepared)
 
 
 def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
@@ -162,7 +169,7 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     recorded = tuple(Recorded.of(*pair) for pair in zip(prepared.seen, campaign.recordings, strict=True))
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
-    everything = (*campaign.faults, *of_drops, *of_left_out)
+    everything = tuple(dict.fromkeys((*campaign.faults, *of_drops, *of_left_out)))  # one may be that of several drops
     return Check(tuple(reports), everything, recorded)
 
 
