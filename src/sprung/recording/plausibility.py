@@ -87,7 +87,7 @@ LIMITS: Mapping[str, Limits] = {
     "load mass on a wheel": Limits(0.02, 2e3, "kg"),
     "load inertia": Limits(0, 2e6, "kg m^2"),
     "corner frequency": Limits(1e-4, 30.0, "Hz"),
-    "full scale": Limits(1.0, 1e6, "m/s^2"),
+    "full scale": Limits(1e-4, 1e6, "m/s^2"),
     "resolution": Limits(1e-9, 10.0, "m/s^2"),
 }
 """By quantity: parameters and derived quantities by their names, everything else in words; x, y and z are places."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import dist
 
@@ -65,11 +65,15 @@ def with_places(
 def with_opposite_places(campaign: Campaign, opposite: Callable[[Place], Place]) -> tuple[Campaign, tuple[str, ...]]:
     """Give each of the body's sensors the place of that on the opposite side; the opposite place where none is near it."""
     places = [one.position for one in campaign.sensors if one.position is not None]
-    nearest = {place: min(places, key=lambda one, of=opposite(place): dist(one[:2], of[:2])) for place in places}
+    nearest = {place: _nearest(opposite(place), places) for place in places}
     paired = all(
         nearest[other] == place and dist(other[:2], opposite(place)[:2]) < _PAIRED for place, other in nearest.items()
     )
     return with_places(campaign, nearest.__getitem__ if paired else opposite)
+
+
+def _nearest(place: Place, places: Sequence[Place]) -> Place:
+    return min(places, key=lambda one: dist(one[:2], place[:2]))
 
 
 def with_stations(campaign: Campaign, other: Mapping[Wheel, Wheel]) -> tuple[Campaign, tuple[str, ...]]:

@@ -22,8 +22,8 @@ def mirrored_positions(campaign: Campaign, wheelbase: float) -> Iterator[CommonC
     exchanged, channels = with_opposite_places(campaign, lambda place: (place[0], -place[1], place[2]))
     if exchanged.sensors != changed.sensors:
         what = (
-            "the left and the right body sensors are exchanged: the body goes down on the side on which their positions say that "
-            "it should not. They were exchanged"
+            "the left and the right body sensors are exchanged: the body goes down on the side on which their positions say "
+            "that it should not. They were exchanged"
         )
         do = "Exchange the left and the right body channels in the campaign file, or their cables."
         yield CommonCause(Fault("mirrored", told(channels), what, do), exchanged, len(channels))

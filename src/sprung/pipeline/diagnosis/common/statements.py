@@ -116,8 +116,8 @@ def _known(campaign: Campaign) -> Iterator[Candidate]:
     if front is not None and rear is not None:
         other = {**campaign.known, "front_axle_mass": rear, "rear_axle_mass": front}
         what = (
-            f"the masses of the axles are exchanged: {rear.value:g} kg in front and {front.value:g} kg behind fit the recordings, "
-            "not the other way round. They were exchanged"
+            f"the masses of the axles are exchanged: {rear.value:g} kg in front and {front.value:g} kg behind fit the "
+            "recordings, not the other way round. They were exchanged"
         )
         fault = Fault(
             "known", "known.front_axle_mass, known.rear_axle_mass", what, "Exchange the two in the campaign file."
