@@ -17,6 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.prepare.prepare import Prepared
+from sprung.prepare.release import Release
+from sprung.prepare.stated import wheels_that_fell
 from sprung.recording import Campaign
 from sprung.vehicle import Wheel
 
@@ -63,12 +65,18 @@ class FirstMotion:
 
     @classmethod
     def of(cls, campaign: Campaign, prepared: Prepared) -> FirstMotion:
-        """Read it from recordings that were prepared, whatever the campaign says of places."""
+        """Read it from recordings that were prepared, for a campaign that may say otherwise where their sensors are."""
         body = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body")
         wheels = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on != "body")
         gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
         rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
-        return cls(body, gained[:, list(body)], tuple(dict(seen.fell) for seen in prepared.seen), rises)
+        fell = tuple(
+            wheels_that_fell(
+                seen.recording, None if seen.release is None else Release(seen.release, seen.rest), campaign.sensors
+            )
+            for seen in prepared.seen
+        )
+        return cls(body, gained[:, list(body)], fell, rises)
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:

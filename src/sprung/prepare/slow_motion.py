@@ -29,11 +29,12 @@ _STRETCHES = np.exp(np.linspace(-0.2, 0.2, 81))
 _SHIFTS = np.linspace(-0.04, 0.04, 17)
 """Ratios of time that are tried, and s by which one drop may be behind the other: each fell as long as its blocks were high."""
 
-_ALIKE = 0.1
+_ALIKE = 0.05
 """Part of the sum of squares that may be left for two drops to be alike but for time and size."""
 
-_SIZES = 0.7, 1.4
-"""Amplitude ratios between which two drops are compared: with friction, periods change with amplitude."""
+_LARGER, _SMALLER, _PER_PERIOD = 0.03, 0.05, 2.5
+"""Logarithms of how much larger, and smaller, the slower of two drops may be for its mass to be the reason. Mass goes with the
+square of the period and with the inverse of the size; a drop from higher blocks is larger, and with friction slower too."""
 
 _ANOTHER = 0.02
 """Logarithm of the ratio of periods from which a drop swings at another rate: that of 5 % more mass, by its square root."""
@@ -107,8 +108,12 @@ class SlowMotion:
                 left = float(((own - scale * warped) ** 2).sum())
                 if left < best:
                     best, stretch, size = left, ratio, scale
-        alike = best < _ALIKE * energy and _SIZES[0] < size < _SIZES[1]
-        return (-float(np.log(stretch)), float(np.log(size))) if alike else (float("nan"), float("nan"))
+        if not best < _ALIKE * energy or size <= 0:
+            return float("nan"), float("nan")
+        period, growth = -float(np.log(stretch)), float(np.log(size))
+        of_slower = growth * float(np.sign(period))
+        by_mass = -_PER_PERIOD * abs(period) - _SMALLER < of_slower < _LARGER
+        return (period, growth) if by_mass else (float("nan"), float("nan"))
 
 
 def slower_drops(kinds: Sequence[Hashable], motions: Sequence[SlowMotion]) -> tuple[bool | None, ...]:

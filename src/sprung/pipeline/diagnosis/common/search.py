@@ -94,11 +94,11 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
     explaining = []
     for hypotheses in _HYPOTHESES:
         for one in hypotheses(campaign, wheelbase):
-            again = prepare(one.changed)
+            again = prepared if one.changed.recordings is campaign.recordings else prepare(one.changed)
             if _consistent(one.changed, again, wheelbase):
-                explaining.append((one, again))
+                explaining.append(one)
     if len(explaining) < 2:
-        return explaining[0][0].corrected if explaining else campaign
+        return explaining[0].corrected if explaining else campaign
     return _most_likely(campaign, explaining).corrected
 
 
@@ -123,11 +123,11 @@ def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> boo
     return moves_as_stated(motion, places, seen, wheelbase)
 
 
-def _most_likely(campaign: Campaign, explaining: Sequence[tuple[CommonCause, Prepared]]) -> CommonCause:
+def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> CommonCause:
     """Fit the campaign with each correction, and take the one with which the recordings are most likely."""
     fitted = []
-    for one, prepared in explaining:
-        bench = Bench.of(one.changed, prepared.decays, "shared", ())
+    for one in explaining:
+        bench = Bench.of(one.changed, prepare(one.changed).decays, "shared", ())
         samples = max(float(bench.base.tally.counts.sum()), 1.0)
         fitted.append((bench.base.tally.cost / samples, samples, bench.base.inflation, one))
     fitted.sort(key=lambda each: each[0])
@@ -136,7 +136,7 @@ def _most_likely(campaign: Campaign, explaining: Sequence[tuple[CommonCause, Pre
     if len(alike) == 1:
         return first
     # Of what the recordings cannot tell apart, left and right of a vehicle that is alike on both sides is the same vehicle.
-    ordered = [one for one, _ in explaining if one in alike]
+    ordered = [one for one in explaining if one in alike]
     first, *others = ordered
     if all("left" in one.fault.do for one in ordered):
         also = "; or ".join(one.fault.do.rstrip(".") for one in others)
