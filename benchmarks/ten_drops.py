@@ -70,9 +70,7 @@ def ten_drops(times: int = 1) -> Task:
     campaign = _simulated(times)
     choice = choose_model(campaign)
     # Everybody fits from where free vibration begins, as found in a campaign of the usual rate.
-    drops = tuple(
-        drop.model_copy(update={"start": start}) for drop, start in zip(campaign.drops, _starts(), strict=True)
-    )
+    drops = tuple(replace(drop, start=start) for drop, start in zip(campaign.drops, _starts(), strict=True))
     decays = tuple(
         replace(decay, values=np.ascontiguousarray(decay.values[:, : times * SAMPLES]))
         for decay in prepare(replace(campaign, drops=drops)).decays

@@ -172,9 +172,7 @@ def corner_unstated(kind: str, every: bool = False) -> Act:
         if kind == "DC":
             corner = float(np.exp(random.uniform(np.log(0.05), np.log(2.0))))
             return Injured(changed(campaign, chosen, lambda values: through(values, corner, test)), names)
-        sensors = [
-            one.model_copy(update={"high_pass": None}) if i in chosen else one for i, one in enumerate(campaign.sensors)
-        ]
+        sensors = [replace(one, high_pass=None) if i in chosen else one for i, one in enumerate(campaign.sensors)]
         return Injured(replace(campaign, sensors=tuple(sensors)), names)
 
     return act
@@ -187,9 +185,7 @@ def corner_misstated(_: DropTest, campaign: sprung.Campaign, random: np.random.G
         return None
     i = int(random.choice(chosen))
     stated = (campaign.sensors[i].high_pass or 0.0) * float(random.choice([0.5, 2.0]))
-    sensors = [
-        one.model_copy(update={"high_pass": stated}) if one is campaign.sensors[i] else one for one in campaign.sensors
-    ]
+    sensors = [replace(one, high_pass=stated) if one is campaign.sensors[i] else one for one in campaign.sensors]
     return Injured(replace(campaign, sensors=tuple(sensors)), (campaign.sensors[i].channel,))
 
 
@@ -234,7 +230,7 @@ def twist(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator
     omega, damping = 2 * np.pi * random.uniform(9, 15), random.uniform(0.02, 0.05)
     filters = bilinear([1, 0, 0], [1, 2 * damping * omega, omega**2], test.rate)
     signs = {"fl": 1.0, "fr": -1.0, "rl": -1.0, "rr": 1.0}
-    drive = np.array([signs.get(one.on, 0.0) for one in campaign.sensors])
+    drive = np.array([signs.get(one.on or "body", 0.0) for one in campaign.sensors])
     places = np.array([one.position or (0.0, 0.0, 0.0) for one in campaign.sensors])
     shape = (2 * places[:, 0] / test.vehicle.wheelbase + 1) * places[:, 1] * (drive == 0)
     twists = []

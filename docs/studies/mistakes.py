@@ -33,7 +33,7 @@ def placed(where: Callable[[Place, np.random.Generator], Place]) -> Act:
     """Write another place of a body's sensor."""
 
     def how(sensor: Sensor, _: sprung.Campaign, random: np.random.Generator) -> Sensor:
-        return sensor.model_copy(update={"position": where(sensor.position or (0.0, 0.0, 0.0), random)})
+        return replace(sensor, position=where(sensor.position or (0.0, 0.0, 0.0), random))
 
     return described("body", how)
 
@@ -52,7 +52,8 @@ def swapped_digits(place: Place, _: np.random.Generator) -> Place:
 
 def other_wheel(sensor: Sensor, _: sprung.Campaign, random: np.random.Generator) -> Sensor:
     """Put a wheel's sensor on another wheel."""
-    return sensor.model_copy(update={"on": str(random.choice([one for one in WHEELS if one != sensor.on]))})
+    others = [one for one in WHEELS if one != sensor.on]
+    return replace(sensor, on=others[int(random.integers(len(others)))])
 
 
 def loads_exchanged(every: bool) -> Act:
@@ -70,7 +71,7 @@ def loads_exchanged(every: bool) -> Act:
             one.file: load if one.load == "empty" else "empty"
             for one in ((drop, twin) if not every else campaign.drops)
         }
-        drops = tuple(one.model_copy(update={"load": other.get(one.file, one.load)}) for one in campaign.drops)
+        drops = tuple(replace(one, load=other.get(one.file, one.load)) for one in campaign.drops)
         names = () if every else (str(drop.file), str(twin.file))
         return Injured(replace(campaign, drops=drops), names)
 
@@ -83,11 +84,11 @@ def load_moved(_: DropTest, campaign: sprung.Campaign, random: np.random.Generat
     if not load.items:
         return None
     i, axis = int(random.integers(len(load.items))), int(random.integers(2))
-    place = list(load.items[i].position or (0.0, 0.0, 0.0))
-    place[axis] += 0.2 * random.choice([-1.0, 1.0])
+    x, y, z = load.items[i].position or (0.0, 0.0, 0.0)
+    by = float(0.2 * random.choice([-1.0, 1.0]))
     items = list(load.items)
-    items[i] = items[i].model_copy(update={"position": tuple(place)})
-    wrong = load.model_copy(update={"items": tuple(items)})
+    items[i] = replace(items[i], position=(x + by, y, z) if axis == 0 else (x, y + by, z))
+    wrong = replace(load, items=tuple(items))
     return Injured(replace(campaign, loads=(*campaign.loads[:-1], wrong)), (load.name,))
 
 
@@ -123,13 +124,13 @@ def passenger(test: DropTest, drop: Drop, load: Load, random: np.random.Generato
     vehicle = test.vehicle
     side = random.choice([-0.3, 0.3])
     more = Item(mass=0.15 * vehicle.m_s, position=(-0.4 * vehicle.wheelbase, side, 0.6))
-    return vehicle, Load(name="more", items=(*load.items, more)), drop.model_copy(update={"load": "more"})
+    return vehicle, Load(name="more", items=(*load.items, more)), replace(drop, load="more")
 
 
 def fewer_wheels(test: DropTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
     """Drop the front or the rear wheels only, whatever is stated; all where these are stated."""
     ways = [way for way in (WHEELS[:2], WHEELS[2:], WHEELS) if set(way) != set(drop.wheels)]
-    return test.vehicle, load, drop.model_copy(update={"wheels": ways[int(random.integers(len(ways)))]})
+    return test.vehicle, load, replace(drop, wheels=ways[int(random.integers(len(ways)))])
 
 
 def mirrored(place: Place, _: np.random.Generator) -> Place:

@@ -13,15 +13,19 @@ import sprung
 from sprung.estimate import Known
 from sprung.recording import Campaign, Recording, merged
 from sprung.simulation import default_sensors
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
 
 Real = NDArray[np.float64]
 
 REST, AFTER = 0.6, 2.9
 """s that a logger records before and after the release, if it starts when it should."""
 
-BAGS = Load.model_validate(
-    {"name": "bags", "items": [{"mass": 80, "position": (-1.0, 0.4, 0.5)}, {"mass": 60, "position": (-2.0, -0.4, 0.5)}]}
+BAGS = record_of(
+    Load,
+    {
+        "name": "bags",
+        "items": [{"mass": 80, "position": (-1.0, 0.4, 0.5)}, {"mass": 60, "position": (-2.0, -0.4, 0.5)}],
+    },
 )
 
 
@@ -100,13 +104,13 @@ def wireless(
             first = int(np.ceil(-begins[channel] / step))
             moving = row @ fall.motion(step, samples - first, begins[channel] + first * step).acceleration
             values = 9.80665 + np.concatenate([np.zeros(first), moving]) + noise * random.standard_normal(samples)
-            name = f"{drop.name}_{one.channels[channel]}.csv"
+            name = f"{drop.label}_{one.channels[channel]}.csv"
             parts.append(Recording(name, (one.channels[channel],), values[None], float(shown[channel]), rates[channel]))
         ahead.append(shown - begins * fast)
-        whole = Recording(f"{drop.name}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
+        whole = Recording(f"{drop.label}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
         recordings.append(merged(whole, [part.start for part in parts]))
     drops = tuple(
-        drop.model_copy(update={"file": None, "files": tuple(part.name for part in recording.parts)})
+        replace(drop, file=None, files=tuple(part.name for part in recording.parts))
         for drop, recording in zip(together.drops, recordings, strict=True)
     )
     campaign = replace(

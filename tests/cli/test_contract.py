@@ -254,8 +254,8 @@ def test_check(folder: Folder) -> None:
     assert [drop["file"] for drop in said.json["drops"]][-1] == "loaded_bounce.csv"
     text = run("check", folder.path)
     assert all(drop["file"] in text.out for drop in said.json["drops"])
-    drawings = [f"check/{Path(drop['file']).stem}.svg" for drop in said.json["drops"]]
-    assert folder.listing() == sorted([*before, "check", *drawings])
+    assert said.json["page"] == str(folder.path / "check" / "check.html")
+    assert folder.listing() == sorted([*before, "check", "check/.sprung-files.json", "check/check.html"])
 
 
 @pytest.mark.parametrize("method", ["ml", "era", "svm"])

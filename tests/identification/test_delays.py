@@ -14,11 +14,11 @@ from sprung.identification.likelihood import Likelihood
 from sprung.prepare import Decay, FromFlight, prepare
 from sprung.recording import LoggerClock
 from sprung.simulation import free_decays
-from sprung.vehicle import TABLE_1_CAR, Load, Rows
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, record_of
 
 Real = NDArray[np.float64]
 
-LOAD = Load.model_validate({"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
+LOAD = record_of(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 CAMPAIGN, QUIET = (
     free_decays(TABLE_1_CAR, loads=[LOAD], states=2, noise=noise, seed=3, duration=1.5, rate=200)
     for noise in (0.02, 0.0)

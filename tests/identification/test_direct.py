@@ -14,20 +14,22 @@ from sprung.identification.records import Records
 from sprung.identification.start import Outline
 from sprung.prepare import prepare
 from sprung.simulation import simulate
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, record_of
 from strategies import vehicles
 
-BAGS = Load.model_validate(
+BAGS = record_of(
+    Load,
     {
         "name": "bags",
         "items": [{"mass": 140, "position": (-1.0, 0.2, 0.5)}, {"mass": 100, "position": (-2.9, 0.0, 0.5)}],
-    }
+    },
 )
-CRATES = Load.model_validate(
+CRATES = record_of(
+    Load,
     {
         "name": "crates",
         "items": [{"mass": 1000, "position": (-2.0, 0.0, 1.0)}, {"mass": 600, "position": (-5.0, 0.3, 1.0)}],
-    }
+    },
 )
 
 

@@ -15,21 +15,32 @@ from sprung.identification import Estimates, Fit, conclude, fit_jointly
 from sprung.prepare import prepare
 from sprung.recording import Campaign
 from sprung.simulation import free_decays, simulate
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, LinearModel, Load, Sensor, Vehicle, seven_degrees_of_freedom
+from sprung.vehicle import (
+    SCHOOL_BUS,
+    TABLE_1_CAR,
+    LinearModel,
+    Load,
+    Sensor,
+    Vehicle,
+    Wheel,
+    record_of,
+    seven_degrees_of_freedom,
+)
 from strategies import vehicles
 
 # Off the centreline and off the centre of gravity, so that ΔM is full.
-LOAD = Load.model_validate(
+LOAD = record_of(
+    Load,
     {
         "name": "bags",
         "items": [{"mass": 0.07, "position": (-0.6, 0.3, 0.5)}, {"mass": 0.05, "position": (-1.9, -0.2, 0.5)}],
-    }
+    },
 )
 
 
 def load_for(vehicle: Vehicle) -> Load:
     """Make a load of twelve percent of a vehicle's mass."""
-    items = tuple(item.model_copy(update={"mass": item.mass * vehicle.m_s}) for item in LOAD.items)
+    items = tuple(replace(item, mass=item.mass * vehicle.m_s) for item in LOAD.items)
     return Load(name="bags", items=items)
 
 
@@ -124,23 +135,20 @@ def test_scale_cannot_be_seen_and_everything_else_can() -> None:
 
 def mirrored(campaign: Campaign) -> Campaign:
     """Look at the campaign in a mirror: left is right."""
-    other = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl", "body": "body"}
+    other: dict[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
 
     def sensor(one: Sensor) -> Sensor:
         position = None if one.position is None else (one.position[0], -one.position[1], one.position[2])
-        return one.model_copy(update={"on": other[one.on], "position": position})
+        return replace(one, on=one.on if one.on is None or one.on == "body" else other[one.on], position=position)
 
-    drops = tuple(d.model_copy(update={"wheels": tuple(other[w] for w in d.wheels)}) for d in campaign.drops)
+    drops = tuple(replace(d, wheels=tuple(other[w] for w in d.wheels)) for d in campaign.drops)
     loads = tuple(
-        load.model_copy(
-            update={
-                "items": tuple(
-                    item.model_copy(
-                        update={"position": item.position and (item.position[0], -item.position[1], item.position[2])}
-                    )
-                    for item in load.items
-                )
-            }
+        replace(
+            load,
+            items=tuple(
+                replace(item, position=item.position and (item.position[0], -item.position[1], item.position[2]))
+                for item in load.items
+            ),
         )
         for load in campaign.loads
     )

@@ -13,11 +13,11 @@ from sprung.identification.longhand import evaluate_drop
 from sprung.identification.solution import differentiate_modes, solve_modes
 from sprung.prepare import prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, record_of
 
 Real = NDArray[np.float64]
 
-LOAD = Load.model_validate({"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
+LOAD = record_of(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 
 
 # 1/σ² with which the initial states' own reach weighs nothing beside the records.

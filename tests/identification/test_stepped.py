@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -95,7 +97,7 @@ def test_scores_of_forces_need_no_steps(campaign: Campaign, plain: Choice, summi
     """By modes and filters they are what the steps say: of forces that are there, and of others."""
     friction = {"F_f": 2.0, "F_r": 1.0, "s_f": 2e5, "s_r": 2e5}
     rubbing = Vehicle.from_parameters(TABLE_1_CAR.parameters | friction | {"r_f": 1.01})
-    drops = [drop.model_copy(update={"file": None}) for drop in campaign.drops]
+    drops = [replace(drop, file=None) for drop in campaign.drops]
     other = sprung.simulate(rubbing, loads=[LOAD], drops=drops, rate=500, noise=0.02, seed=4)
     theirs = prepare(other).decays
     found = ascend(theirs, plain.models, other.sensors, plain.known, start=summit.parameters)

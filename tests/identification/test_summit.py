@@ -8,7 +8,7 @@ import pytest
 from sprung.identification import ascend, expected_gain, look_around
 from sprung.prepare import prepare
 from sprung.simulation import simulate
-from sprung.vehicle import TABLE_1_CAR, Load, Vehicle
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, record_of
 
 # Stiff and lightly damped at the rear, where five drops say little of the wheels: one of 500 drawn at random whose
 # likelihood had two summits, and every start ended on the lower one.
@@ -43,7 +43,7 @@ def test_the_gain_of_a_larger_model_is_known_before_it_is_fitted(apart: float) -
     half = {"t_f1": 0.74 + apart, "t_r1": 0.74 - apart, "t_f2": 0.74, "t_r2": 0.74}
     shared = {name: value for name, value in TABLE_1_CAR.parameters.items() if not name.startswith("t_")}
     car = Vehicle.from_parameters(shared | half)
-    ballast = Load.model_validate({"name": "ballast", "items": [{"mass": 200, "position": (-1.5, 0.0, 0.5)}]})
+    ballast = record_of(Load, {"name": "ballast", "items": [{"mass": 200, "position": (-1.5, 0.0, 0.5)}]})
     campaign = simulate(car, loads=[ballast], noise=0.05, seed=3)
     decays = prepare(campaign).decays
     assert campaign.wheelbase is not None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,7 +33,7 @@ BALLAST = Load(
 CORNERS = {"fl": (0.1, 0.74), "fr": (0.2, -0.7), "rl": (-2.8, 0.7), "rr": (-2.86, -0.74)}
 SENSORS = (
     *(Sensor(channel=f"body_{end}", on="body", position=(x, y, 0.5)) for end, (x, y) in CORNERS.items()),
-    *(Sensor.model_validate({"channel": f"wheel_{end}", "on": end, "high_pass": 0.1}) for end in WHEELS),
+    *(Sensor(channel=f"wheel_{end}", on=end, high_pass=0.1) for end in WHEELS),
 )
 CHANNELS = [sensor.channel for sensor in SENSORS]
 
@@ -65,11 +66,11 @@ def samples(change: Callable[[Real], None], only: str | None = None) -> Change:
     return spoil
 
 
-def described(channel: str, **otherwise: object) -> Change:
+def described(channel: str, **otherwise: Any) -> Change:
     """Describe a sensor otherwise."""
 
     def spoil(campaign: sprung.Campaign) -> sprung.Campaign:
-        sensors = [one.model_copy(update=otherwise if one.channel == channel else {}) for one in campaign.sensors]
+        sensors = [replace(one, **(otherwise if one.channel == channel else {})) for one in campaign.sensors]
         return replace(campaign, sensors=tuple(sensors))
 
     return spoil
@@ -118,9 +119,7 @@ def with_loads(*files: str) -> Change:
 
     def spoil(campaign: sprung.Campaign) -> sprung.Campaign:
         other = {"empty": "ballast", "ballast": "empty"}
-        drops = [
-            drop.model_copy(update={"load": other[drop.load]} if drop.file in files else {}) for drop in campaign.drops
-        ]
+        drops = [replace(drop, load=other[drop.load] if drop.file in files else drop.load) for drop in campaign.drops]
         return replace(campaign, drops=tuple(drops))
 
     return spoil
@@ -133,7 +132,7 @@ def happened(file: str, vehicle: Vehicle = CAR, more: Sequence[Item] = ()) -> Ch
         i = FILES.index(file)
         items = (*(BALLAST.items if DROPS[i].load == "ballast" else ()), *more)
         load = [Load(name="other", items=items)] if items else []
-        drop = DROPS[i].model_copy(update={"load": "other" if items else "empty"})
+        drop = replace(DROPS[i], load="other" if items else "empty")
         motion, stated = (
             dropped(car, [one], loads, noise=0.0).recordings[0].values
             for car, one, loads in ((vehicle, drop, load), (CAR, DROPS[i], [BALLAST]))
@@ -270,8 +269,8 @@ def test_it_is_left_out_and_named(name: str) -> None:
 
 def test_a_load_that_lies_elsewhere_is_named_and_doubted() -> None:
     first, second = BALLAST.items
-    moved = first.model_copy(update={"position": (-0.4 * CAR.wheelbase, 0.1, 0.5)})
-    stated = BALLAST.model_copy(update={"items": (moved, second)})
+    moved = replace(first, position=(-0.4 * CAR.wheelbase, 0.1, 0.5))
+    stated = replace(BALLAST, items=(moved, second))
     loads = tuple(stated if one.name == "ballast" else one for one in CLEAN.loads)
     result = sprung.identify(replace(CLEAN, loads=loads))
     assert said(result) == [("load-position", "load 'ballast'")]

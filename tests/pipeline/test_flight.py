@@ -54,7 +54,7 @@ def test_where_the_decays_tell_too_little_the_fall_is_used(landed: sprung.Result
 
 
 def test_the_blocks_need_not_have_been_measured(campaign: sprung.Campaign, fallen: sprung.Result) -> None:
-    unmeasured = replace(campaign, drops=tuple(drop.model_copy(update={"height": None}) for drop in campaign.drops))
+    unmeasured = replace(campaign, drops=tuple(replace(drop, height=None) for drop in campaign.drops))
     found = sprung.identify(unmeasured)
     assert found.fit.since == "release"
     for name, one in fallen.parameters.items():
@@ -85,7 +85,7 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
         assert one.decay.end == pytest.approx(decay.end)
         np.testing.assert_array_equal(one.decay.values, seen.recording.values[:, -one.decay.samples :])
         assert one.since == pytest.approx(0.012)
-    started = [drop.model_copy(update={"start": 0.6}) for drop in campaign.drops]
+    started = [replace(drop, start=0.6) for drop in campaign.drops]
     prepared = prepare(replace(campaign, drops=tuple(started)))
     assert flights(prepared.decays, started, prepared.seen) == [None] * 3
     clipped = [replace(one, values=np.clip(one.values, -30.0, 30.0)) for one in campaign.recordings]
@@ -94,5 +94,5 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
 
 
 def test_the_campaign_may_say_whether_the_fall_is_used(campaign: sprung.Campaign) -> None:
-    told = replace(campaign, model=campaign.model.model_copy(update={"fall": False}))
+    told = replace(campaign, model=replace(campaign.model, fall=False))
     assert sprung.identify(told).fit.since == "landing"

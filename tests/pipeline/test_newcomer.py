@@ -22,7 +22,7 @@ from sprung.errors import Fault, InputError
 from sprung.prepare import SlowMotion, slower_drops
 from sprung.recording import Campaign, write
 from sprung.vehicle import TABLE_1_CAR as CAR
-from sprung.vehicle import WHEELS, Item, Load, Sensor
+from sprung.vehicle import WHEELS, Item, Load, Sensor, Wheel
 
 LIMIT = 10.0
 """s of processor time, from the issue: measured 0.1 to 3."""
@@ -37,7 +37,7 @@ SENSORS = (
 BALLAST = Load(
     name="ballast", items=(Item(mass=100, position=(-1.0, 0.2, 0.5)), Item(mass=60, position=(-2.6, -0.1, 0.5)))
 )
-OTHER_SIDE = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
+OTHER_SIDE: dict[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
 
 
 @pytest.fixture(scope="module")
@@ -186,23 +186,21 @@ def test_time_in_milliseconds(sound: Path, tmp_path: Path) -> None:
 
 def moved(campaign: Campaign, place: Callable[[float, float], tuple[float, float]]) -> Campaign:
     sensors = [
-        one
-        if one.position is None
-        else one.model_copy(update={"position": (*place(*one.position[:2]), one.position[2])})
+        one if one.position is None else replace(one, position=(*place(*one.position[:2]), one.position[2]))
         for one in campaign.sensors
     ]
     return replace(campaign, sensors=tuple(sensors))
 
 
 def on_other_wheels(campaign: Campaign) -> Campaign:
-    sensors = [one.model_copy(update={"on": OTHER_SIDE.get(one.on, "body")}) for one in campaign.sensors]
+    sensors = [
+        one if one.on is None or one.on == "body" else replace(one, on=OTHER_SIDE[one.on]) for one in campaign.sensors
+    ]
     return replace(campaign, sensors=tuple(sensors))
 
 
 def other_wheels_fell(campaign: Campaign) -> Campaign:
-    drops = [
-        one.model_copy(update={"wheels": tuple(OTHER_SIDE[wheel] for wheel in one.wheels)}) for one in campaign.drops
-    ]
+    drops = [replace(one, wheels=tuple(OTHER_SIDE[wheel] for wheel in one.wheels)) for one in campaign.drops]
     return replace(campaign, drops=tuple(drops))
 
 
@@ -262,7 +260,7 @@ def test_mirrored_sensors_are_put_right_before_anything_is_fitted(recorded: Camp
 
 
 def declared(campaign: Campaign, load: str, *drops: int) -> Campaign:
-    changed = [one.model_copy(update={"load": load}) if i in drops else one for i, one in enumerate(campaign.drops)]
+    changed = [replace(one, load=load) if i in drops else one for i, one in enumerate(campaign.drops)]
     return replace(campaign, drops=tuple(changed))
 
 
@@ -298,12 +296,12 @@ def test_total_mass_with_the_load_in_it(recorded: Campaign) -> None:
 
 def test_places_of_the_load_measured_from_the_rear_axle(recorded: Campaign) -> None:
     items = tuple(
-        one.model_copy(update={"position": (one.position[0] + LENGTH, *one.position[1:])})
+        replace(one, position=(one.position[0] + LENGTH, *one.position[1:]))
         for one in BALLAST.items
         if one.position is not None
     )
     empty, _ = recorded.loads
-    fault = found(replace(recorded, loads=(empty, BALLAST.model_copy(update={"items": items}))))
+    fault = found(replace(recorded, loads=(empty, replace(BALLAST, items=items))))
     assert (fault.code, fault.where) == ("load-position", "load 'ballast'")
     assert "measured from the rear axle" in fault.what
     assert "Take the wheelbase" in fault.do

@@ -80,7 +80,7 @@ EDITS = {
     "a smaller error bar": (put("parameters", "k_sf", "std", value=1.0), "changed after it was written"),
     "a word that is none": (put("verdict", "state", value="perfect"), r"verdict\.state"),
     "a parameter gone": (lambda document: document["parameters"].pop("k_sf"), "k_sf, of which there is no parameter"),
-    "an unknown key": (lambda document: document.update(extra=1), "extra: found Extra inputs"),
+    "an unknown key": (lambda document: document.update(extra=1), "extra: found a key that no result has"),
     "no checksums but text": (put("checksums", value="none"), "changed after it was written"),
 }
 

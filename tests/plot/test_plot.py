@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -130,7 +131,7 @@ def test_amplitude(result: Result) -> None:
     assert (frequency.get_ylabel(), damping.get_ylabel()) == ("frequency, Hz", "damping ratio, %")
     assert frequency.get_xlim()[0] > frequency.get_xlim()[1]  # it dies to the right
     with pytest.raises(InputError, match="amplitude=True"):
-        plot.amplitude(result.model_copy(update={"amplitude": ()}))
+        plot.amplitude(replace(result, amplitude=()))
     with pytest.raises(InputError, match="Did you mean 'body bounce'"):
         plot.amplitude(result, "body bounse")
 
@@ -140,7 +141,7 @@ def test_what_is_not_there_is_named(result: Result) -> None:
         plot.fit(result, "empty_bonce")
     with pytest.raises(InputError, match="6 axes, one for each panel"):
         plot.fit(result, "empty_bounce", axes=[plt.subplots()[1]])
-    rejected = result.model_copy(update={"verdict": Verdict("reject", ())})
+    rejected = replace(result, verdict=Verdict("reject", ()))
     with pytest.raises(InputError, match="rejected"):
         plot.mode(rejected, "body bounce")
 

@@ -14,7 +14,7 @@ from sprung.vehicle import TABLE_1_CAR
 
 FULL = 5 * 9.80665  # m/s²
 CLEAN = simulate(TABLE_1_CAR, noise=0.02, seed=1)
-RANGED = tuple(sensor.model_copy(update={"range": 5.0}) for sensor in CLEAN.sensors)
+RANGED = tuple(replace(sensor, range=5.0) for sensor in CLEAN.sensors)
 
 
 def at_full_scale() -> Recording:
@@ -32,7 +32,7 @@ def test_the_file_tells_the_unit_of_the_range() -> None:
 
 
 def test_without_a_file_the_sensor_does_and_otherwise_it_is_si() -> None:
-    in_g = tuple(sensor.model_copy(update={"unit": "g"}) for sensor in RANGED)
+    in_g = tuple(replace(sensor, unit="g") for sensor in RANGED)
     assert with_full_scale(at_full_scale(), in_g).full_scale == (FULL,) * 8
     assert with_full_scale(replace(CLEAN.recordings[0], values=np.zeros((8, 9))), RANGED).full_scale == (5.0,) * 8
     assert with_full_scale(CLEAN.recordings[0], CLEAN.sensors).full_scale == (None,) * 8

@@ -16,7 +16,7 @@ CLEAN = simulate(TABLE_1_CAR, noise=0.0, seed=1)
 
 
 def with_corners(campaign: Campaign, corner: float | None) -> Campaign:
-    sensors = [one.model_copy(update={"high_pass": corner}) for one in campaign.sensors]
+    sensors = [replace(one, high_pass=corner) for one in campaign.sensors]
     return replace(campaign, sensors=tuple(sensors))
 
 
@@ -27,10 +27,7 @@ def decays(corner: float | None, within: tuple[Decay, ...] = ()) -> tuple[Decay,
     """Undo a corner, in the samples of other decays where some are given."""
     campaign = with_corners(COUPLED, corner)
     if within:
-        spans = [
-            one.model_copy(update={"start": d.start, "end": d.end})
-            for one, d in zip(COUPLED.drops, within, strict=True)
-        ]
+        spans = [replace(one, start=d.start, end=d.end) for one, d in zip(COUPLED.drops, within, strict=True)]
         campaign = replace(campaign, drops=tuple(spans))
     return prepare(campaign).decays
 

@@ -53,10 +53,7 @@ def test_nothing_is_changed_without_need() -> None:
 
 def ac_coupled(*channels: int, corner: float | None) -> sprung.Campaign:
     """Let channels feel no gravity; the sensors say their corner, if any."""
-    sensors = [
-        sensor.model_copy(update={"high_pass": corner}) if i in channels else sensor
-        for i, sensor in enumerate(CLEAN.sensors)
-    ]
+    sensors = [replace(sensor, high_pass=corner) if i in channels else sensor for i, sensor in enumerate(CLEAN.sensors)]
     campaign = sprung.simulate(
         TABLE_1_CAR, sensors=sensors, noise=0.02, seed=4, known={"total_mass": TABLE_1_CAR.total_mass}
     )
@@ -96,8 +93,7 @@ def test_a_silent_channel_among_others_that_feel_gravity_is_named() -> None:
 
 def test_a_high_pass_that_is_none_is_not_undone() -> None:
     sensors = tuple(
-        sensor.model_copy(update={"high_pass": 0.5}) if sensor.channel == "body_fr" else sensor
-        for sensor in CLEAN.sensors
+        replace(sensor, high_pass=0.5) if sensor.channel == "body_fr" else sensor for sensor in CLEAN.sensors
     )
     decay = prepare(replace(CLEAN, sensors=sensors)).decays[0]
     (fault,) = decay.faults

@@ -68,7 +68,7 @@ def test_too_short_a_recording_is_left_out_and_told() -> None:
     prepared = prepare(short)
     assert len(prepared.decays) == 4
     ((drop, _, faults),) = prepared.left_out
-    assert drop.name == "empty_bounce"
+    assert drop.label == "empty_bounce"
     assert faults[-1].code == "no-decay"
     assert "empty_bounce.csv" in faults[-1].where
 
@@ -104,7 +104,7 @@ def test_a_copy_tells_nothing_new() -> None:
     copy = replace(campaign.recordings[0], name="again.csv")
     more = replace(
         campaign,
-        drops=(*campaign.drops, campaign.drops[0].model_copy(update={"file": "again.csv"})),
+        drops=(*campaign.drops, replace(campaign.drops[0], file="again.csv")),
         recordings=(*campaign.recordings, copy),
     )
     prepared = prepare(more)
@@ -114,10 +114,10 @@ def test_a_copy_tells_nothing_new() -> None:
 
 def test_two_parts_of_one_recording_are_no_copies() -> None:
     campaign = simulate(TABLE_1_CAR, noise=0.02, seed=8)
-    parts = ({"start": 1.2, "end": 2.0}, {"start": 2.0, "end": 3.0})
+    parts = ((1.2, 2.0), (2.0, 3.0))
     twice = replace(
         campaign,
-        drops=tuple(campaign.drops[0].model_copy(update=part) for part in parts),
+        drops=tuple(replace(campaign.drops[0], start=start, end=end) for start, end in parts),
         recordings=(campaign.recordings[0], replace(campaign.recordings[0], name="empty_bounce.csv (2)")),
     )
     prepared = prepare(twice)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,7 +41,7 @@ def test_a_recording_that_begins_in_the_decay_shows_no_rest() -> None:
 
 def test_a_drop_without_rest_is_told_and_used() -> None:
     campaign = free_decays(TABLE_1_CAR, states=1, noise=0.02, seed=4)
-    unknown = campaign.drops[0].model_copy(update={"start": None})
+    unknown = replace(campaign.drops[0], start=None)
     decay = prepare(type(campaign)(**{**vars(campaign), "drops": (unknown,)})).decays[0]
     assert [fault.code for fault in decay.faults] == ["no-release"]
     assert decay.start == campaign.recordings[0].start

@@ -17,7 +17,7 @@ from sprung.vehicle import TABLE_1_CAR
 
 
 def campaign(change: Mapping[str, Any], seed: int = 1, noise: float = 0.02, **options: Any) -> Campaign:
-    sensors = [sensor.model_copy(update=dict(change)) for sensor in default_sensors(TABLE_1_CAR)]
+    sensors = [replace(sensor, **dict(change)) for sensor in default_sensors(TABLE_1_CAR)]
     known = {"total_mass": TABLE_1_CAR.total_mass}
     return sprung.simulate(TABLE_1_CAR, sensors=sensors, noise=noise, seed=seed, known=known, **options)
 
@@ -52,7 +52,7 @@ def test_slow_and_fast_records(rate: float) -> None:
 def test_sensors_that_clip_at_the_landing(told: bool) -> None:
     clipping = campaign({"unit": "g", "range": 5.0})
     if not told:
-        blank = tuple(sensor.model_copy(update={"range": None}) for sensor in clipping.sensors)
+        blank = tuple(replace(sensor, range=None) for sensor in clipping.sensors)
         clipping = replace(clipping, sensors=blank)
     result = sprung.identify(clipping)
     assert {fault.code for fault in result.faults} == {"clipped"}
@@ -77,7 +77,7 @@ def test_ac_coupled_sensors(corner: float) -> None:
 def test_ac_coupled_sensors_that_clip() -> None:
     """Nobody says their range: the plateaus tell, and they are level only before the high-pass is undone."""
     clipping = campaign({"high_pass": 0.5, "unit": "g", "range": 4.0})
-    blank = tuple(sensor.model_copy(update={"range": None}) for sensor in clipping.sensors)
+    blank = tuple(replace(sensor, range=None) for sensor in clipping.sensors)
     result = sprung.identify(replace(clipping, sensors=blank))
     assert {fault.code for fault in result.faults} == {"clipped"}
     assert result.verdict.state == "accept"

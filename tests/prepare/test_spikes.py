@@ -44,8 +44,9 @@ def spiked(recording: Recording, count: int, width: int, size: float, seed: int)
 def test_no_landing_and_no_noise_is_a_spike(
     vehicle: Vehicle, rate: float, noise: float, height: float, coarse: bool
 ) -> None:
-    step = {"unit": "g", "resolution": 20 / 2**12} if coarse else {}
-    sensors = [sensor.model_copy(update=step) for sensor in default_sensors(vehicle)]
+    sensors = default_sensors(vehicle)
+    if coarse:
+        sensors = tuple(replace(sensor, unit="g", resolution=20 / 2**12) for sensor in sensors)
     drops = [{"wheels": wheels, "height": height} for wheels in (("fl", "fr", "rl", "rr"), ("fl", "fr"), ("rl",))]
     campaign = simulate(vehicle, sensors=sensors, drops=drops, noise=noise, rate=rate, duration=1.5, seed=1)
     for recording in campaign.recordings:

@@ -27,16 +27,14 @@ def told(campaign: Campaign) -> list[Fault]:
 def stated(campaign: Campaign, number: int, wheels: tuple[Wheel, ...]) -> Campaign:
     """State other wheels for a drop."""
     drops = list(campaign.drops)
-    drops[number] = drops[number].model_copy(update={"wheels": wheels})
+    drops[number] = replace(drops[number], wheels=wheels)
     return replace(campaign, drops=tuple(drops))
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS], ids=["car", "bus"])
 @pytest.mark.parametrize("high_pass", [None, 0.5])
 def test_what_fell_as_stated_is_not_told(vehicle: sprung.Vehicle, high_pass: float | None) -> None:
-    sensors = [
-        sensor.model_copy(update={"high_pass": high_pass}) for sensor in simulate(vehicle, drops=[{}], seed=1).sensors
-    ]
+    sensors = [replace(sensor, high_pass=high_pass) for sensor in simulate(vehicle, drops=[{}], seed=1).sensors]
     for height in (0.02, 0.12):
         drops = [{"wheels": wheels, "height": height} for wheels in (*WAYS, ("fl",), ("fl", "rr"))]
         assert told(simulate(vehicle, sensors=sensors, drops=drops, noise=0.05, seed=2)) == []

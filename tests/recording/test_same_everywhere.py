@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -102,7 +103,7 @@ def test_the_same_parameters_from_memory(tmp_path: Path, campaign: sprung.Campai
 
 def test_the_same_parameters_from_24_bits(tmp_path: Path) -> None:
     # A WAV file of integers holds parts of a full scale, here 1 g: wheels that fall 2 mm, and sensors without gravity.
-    sensors = [sensor.model_copy(update={"high_pass": 0.2}) for sensor in default_sensors(TABLE_1_CAR)]
+    sensors = [replace(sensor, high_pass=0.2) for sensor in default_sensors(TABLE_1_CAR)]
     drops = [{**drop, "height": 0.002} for drop in DROPS]
     known = {"total_mass": TABLE_1_CAR.total_mass}
     campaign = sprung.simulate(TABLE_1_CAR, sensors=sensors, drops=drops, known=known, noise=NOISE, seed=3)

@@ -1,9 +1,8 @@
 from __future__ import annotations
 
 import dataclasses
-import subprocess
-import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,9 @@ from hypothesis import strategies as st
 from sprung.errors import InputError
 from sprung.estimate import Known
 from sprung.recording import Campaign, Drop, ModelChoice, Recording, read, write, write_whole
+from sprung.recording.comments import SECTIONS, meaning
 from sprung.recording.formats import split_unit
+from sprung.recording.ownership import MANIFEST
 from sprung.vehicle import EMPTY, Added, Item, Load, Sensor
 
 if TYPE_CHECKING:
@@ -122,7 +123,7 @@ def test_what_is_written_is_read_back(campaign: Campaign) -> None:
         assert getattr(back, field) == getattr(campaign, field)
     for old, new in zip(campaign.drops, back.drops, strict=True):
         assert new.file is not None
-        assert new.model_copy(update={"file": old.file}) == old
+        assert replace(new, file=old.file) == old
         assert new.name == old.name
     for before, after in zip(campaign.recordings, back.recordings, strict=True):
         assert after.channels == before.channels
@@ -145,36 +146,62 @@ def one_drop(**changes: Any) -> Campaign:
 
 def test_only_what_differs_from_the_defaults_is_written(tmp_path: Path) -> None:
     assert write(one_drop(), tmp_path / "a" / "b") == tmp_path / "a" / "b" / "campaign.toml"
-    assert (tmp_path / "a" / "b" / "campaign.toml").read_text().splitlines() == [
-        "#:schema ./campaign.schema.json",
+    lines = (tmp_path / "a" / "b" / "campaign.toml").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "#:schema ./campaign.schema.json"
+    assert [" ".join(line.partition("#")[0].split()) for line in lines if line and not line.startswith("#")] == [
         "schema = 1",
-        "",
         "[vehicle]",
         'name = "car"',
-        "",
         "[[sensor]]",
         'channel = "body_0"',
         'on = "body"',
         "position = [0.0, 1.0, 0.5]",
-        "",
         "[[sensor]]",
         'channel = "body_1"',
         'on = "body"',
         "position = [0.0, -1.0, 0.5]",
-        "",
         "[[sensor]]",
         'channel = "body_2"',
         'on = "body"',
         "position = [-3.0, 0.0, 0.5]",
-        "",
         "[[drop]]",
         'file = "empty_bounce.csv"',
+        'load = "empty"',
+        'wheels = ["fl", "fr", "rl", "rr"]',
     ]
     assert (tmp_path / "a" / "b" / "empty_bounce.csv").read_text().splitlines()[:3] == [
         "time,body_0,body_1,body_2",
         "0,1,1,1",
         "0.002,1,1,1",
     ]
+
+
+def test_comments_say_what_every_section_and_key_is_for(tmp_path: Path) -> None:
+    campaign = replace(
+        one_drop(),
+        loads=(
+            EMPTY,
+            Load(name="bags # of sand", items=(Item(mass=50.0, position=(-1.0, 0.0, 0.5)), Item(mass=5.0, on="fl"))),
+            Load(name="totals", added=Added(mass=100.0, I_yy=20.0)),
+        ),
+        known={"total_mass": Known(1500.0, 2.0), "a": Known(1.2)},
+    )
+    path = write(campaign, tmp_path)
+    text = path.read_text(encoding="utf-8")
+    assert max(map(len, text.splitlines())) <= 128
+    for said in (*SECTIONS["load"].splitlines(), SECTIONS["sensor"], SECTIONS["drop"], SECTIONS["known"]):
+        assert text.count(f"# {said}\n") == 1
+    for section, key in (
+        ("vehicle", "name"),
+        ("known", "a"),
+        ("sensor", "position"),
+        ("load", "items"),
+        ("drop", "wheels"),
+    ):
+        assert meaning(section, key)
+        assert text.count(f"# {meaning(section, key)}\n") == 1
+    assert {load.name: load for load in read(path).loads} == {load.name: load for load in campaign.loads}
+    assert read(path).known == campaign.known
 
 
 def test_names_stay_in_the_folder_and_apart(tmp_path: Path) -> None:
@@ -188,7 +215,10 @@ def test_names_stay_in_the_folder_and_apart(tmp_path: Path) -> None:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    """Every file but sprung's list of its own."""
+    found = {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    found.pop(MANIFEST, None)
+    return found
 
 
 def test_files_replace_their_elders_and_leave_nothing_else(tmp_path: Path) -> None:
@@ -215,8 +245,8 @@ def test_whatever_goes_wrong_the_folder_is_as_before(
 
     if step == "writing":
         monkeypatch.setattr("os.fsync", failing(lambda _: None, 2))
-    else:  # a aside, a in place, b aside, then b in place fails
-        monkeypatch.setattr(Path, "replace", failing(Path.replace, 3))
+    else:  # the journal, b aside, a aside, a in place, then b in place fails
+        monkeypatch.setattr(Path, "replace", failing(Path.replace, 4))
     with pytest.raises(InputError if isinstance(trouble, OSError) else KeyboardInterrupt) as error:
         write_whole(tmp_path, {"a": b"3", "b": b"4", "new/c": b"5"})
     monkeypatch.undo()
@@ -260,26 +290,3 @@ def test_a_read_only_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 def test_names_that_lead_out_are_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(ValueError, match="leads out of the folder"):
         write_whole(tmp_path, {name: b""})
-
-
-@pytest.mark.parametrize("moment", range(6))
-def test_a_run_that_is_killed_leaves_old_files_new_files_or_none(tmp_path: Path, moment: int) -> None:
-    write_whole(tmp_path, {"series.npz": b"old", "results.json": b"old"})
-    # Every rename counts one; at the chosen one the process dies, without any clearing up.
-    program = (
-        "import os, pathlib, sys\n"
-        "from sprung.recording import write_whole\n"
-        f"left, rename = [{moment}], pathlib.Path.replace\n"
-        "def dying(self, target):\n"
-        "    left[0] -= 1\n"
-        "    if left[0] < 0:\n"
-        "        os._exit(9)\n"
-        "    return rename(self, target)\n"
-        "pathlib.Path.replace = dying\n"
-        "write_whole(sys.argv[1], {'series.npz': b'new', 'results.json': b'new'})\n"
-    )
-    done = subprocess.run([sys.executable, "-c", program, str(tmp_path)], check=False)  # noqa: S603 (our own interpreter)
-    assert done.returncode == (9 if moment < 4 else 0)
-    there = {path.name: path.read_bytes() for path in tmp_path.iterdir() if not path.name.startswith(".")}
-    if "results.json" in there:
-        assert there["series.npz"] == there["results.json"]

@@ -128,7 +128,7 @@ def test_a_drop_left_out_and_one_without_release(campaign: Campaign) -> None:
 
 
 def test_wheels_that_fell_otherwise_are_told(campaign: Campaign) -> None:
-    stated = campaign.drops[0].model_copy(update={"wheels": ("fr", "rr")})
+    stated = replace(campaign.drops[0], wheels=("fr", "rr"))
     said = texts(*draw_check(sprung.check(replace(campaign, drops=(stated,)))).values())
     assert "the release shows fl, rl to have fallen" in said
 
@@ -185,7 +185,7 @@ def test_names_of_every_kind(check: Check, tmp_path: Path) -> None:
     drops = tuple(replace(check.drops[0], file=name, load="<&>$x$") for name in NAMES)
     count = len(NAMES)
     many = Check(drops, (), check.recorded * count)
-    written = write_check(many, tmp_path / "check")
+    written = write_check(many, tmp_path / "check", page=False, drawings=True)
     assert len({path.name.lower() for path in written}) == len(NAMES)
     assert all(path.parent == tmp_path / "check" for path in written)
     for path, name in zip(written, NAMES, strict=True):
@@ -195,9 +195,7 @@ def test_names_of_every_kind(check: Check, tmp_path: Path) -> None:
 
 def test_names_of_channels(campaign: Campaign) -> None:
     odd = ("$a$", '<b> & "c"', "d" * 200, *campaign.recordings[0].channels[3:])
-    sensors = tuple(
-        sensor.model_copy(update={"channel": name}) for sensor, name in zip(campaign.sensors, odd, strict=True)
-    )
+    sensors = tuple(replace(sensor, channel=name) for sensor, name in zip(campaign.sensors, odd, strict=True))
     renamed = replace(campaign, sensors=sensors, recordings=(replace(campaign.recordings[0], channels=odd),))
     said = texts(*draw_check(sprung.check(renamed)).values())
     assert {"$a$", '<b> & "c"'} <= set(said)

@@ -104,13 +104,12 @@ def test_curves_are_where_the_numbers_are(result: Result, page: str) -> None:
 
 def test_forty_drops_take_no_ten_seconds(result: Result) -> None:
     copies = [f"{name}_{count}" for count in range(4) for name in result.series]
-    many = result.model_copy(
-        update={
-            "drops": tuple(replace(drop, name=f"{drop.name}_{count}") for count in range(4) for drop in result.drops),
-            "series": {name: result.series[name.rpartition("_")[0]] for name in copies},
-            "recordings": {name: result.recordings[name.rpartition("_")[0]] for name in copies},
-            "validation": {name: result.validation[name.rpartition("_")[0]] for name in copies},
-        }
+    many = replace(
+        result,
+        drops=tuple(replace(drop, name=f"{drop.name}_{count}") for count in range(4) for drop in result.drops),
+        series={name: result.series[name.rpartition("_")[0]] for name in copies},
+        recordings={name: result.recordings[name.rpartition("_")[0]] for name in copies},
+        validation={name: result.validation[name.rpartition("_")[0]] for name in copies},
     )
     begun = time.perf_counter()
     page = page_of(many)

@@ -19,8 +19,8 @@ from sprung.pipeline import Result
 from sprung.recording import Campaign
 from sprung.report import Band, Curve, Panel, Picture, Points, Rule, page_of, svg_of
 from sprung.report.axis import Axis, room, round_ticks
+from sprung.report.legend import WIDTH
 from sprung.report.picture import labelled_together
-from sprung.report.svg import WIDTH
 from sprung.vehicle import TABLE_1_CAR
 
 HERE = Path(__file__).parent
@@ -107,7 +107,7 @@ def hostile() -> Campaign:
         TABLE_1_CAR, drops=[{"load": "empty"}, {"wheels": ["rl", "rr"], "load": "empty"}], noise=0.02, seed=1
     )
     name = '</script><script>alert("1")</script>&amp;'
-    sensors = (made.sensors[0].model_copy(update={"channel": name}), *made.sensors[1:])
+    sensors = (replace(made.sensors[0], channel=name), *made.sensors[1:])
     recordings = tuple(replace(one, channels=(name, *one.channels[1:])) for one in made.recordings)
     return replace(made, name=f"{name}\x1b[31m", sensors=sensors, recordings=recordings)
 

@@ -75,7 +75,7 @@ def rounded(clean: Campaign, step: float) -> Campaign:
 def test_steps_are_known_though_a_high_pass_was_undone() -> None:
     step = 20 * STANDARD_GRAVITY / 2**12
     clean = sprung.simulate(TABLE_1_CAR, noise=0.01, seed=1)
-    sensors = tuple(one.model_copy(update={"high_pass": 0.1}) for one in clean.sensors)
+    sensors = tuple(replace(one, high_pass=0.1) for one in clean.sensors)
     centred = [replace(r, values=r.values - r.values[:, :100].mean(axis=1, keepdims=True)) for r in clean.recordings]
     campaign = rounded(replace(clean, sensors=sensors, recordings=tuple(centred)), step)
     for decay in prepare(campaign).decays:

@@ -44,7 +44,7 @@ def spoil_unit(clean: Campaign) -> Campaign:
 
 def spoil_place(clean: Campaign) -> Campaign:
     x, y, z = clean.sensors[0].position or (0.0, 0.0, 0.0)
-    moved = clean.sensors[0].model_copy(update={"position": (x - 0.6, y, z)})
+    moved = replace(clean.sensors[0], position=(x - 0.6, y, z))
     return replace(clean, sensors=(moved, *clean.sensors[1:]))
 
 

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import sprung
 from sprung.errors import InputError
 from sprung.modal import modes_of
-from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, drop_from_blocks, static_wheel_loads
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, drop_from_blocks, record_of, static_wheel_loads
 
 HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held
 
@@ -17,7 +17,7 @@ WITH_ENGINE = replace(
     TABLE_1_CAR, m_e=160.0, k_e=160.0 * HANGING**2, c_e=0.14 * 160.0 * HANGING, x_e=0.1, name="car with an engine"
 )
 
-BALLAST = Load.model_validate({"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
+BALLAST = record_of(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
 
 
 def test_the_matrices_are_those_of_a_body_and_an_engine_of_their_own() -> None:

@@ -17,9 +17,10 @@ from sprung.vehicle import (
     Wheel,
     drop_from_blocks,
     drops_with_forces,
+    record_of,
 )
 
-BALLAST = Load.model_validate({"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
+BALLAST = record_of(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS])

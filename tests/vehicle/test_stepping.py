@@ -19,6 +19,7 @@ from sprung.vehicle import (
     free_decay,
     ground_forces,
     parameter_names,
+    record_of,
     seven_degrees_of_freedom,
 )
 from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, Felt, ForceLaw
@@ -29,7 +30,7 @@ CAR = Vehicle.from_parameters(
     TABLE_1_CAR.parameters
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
 )
-BALLAST = Load.model_validate({"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
+BALLAST = record_of(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
 
 def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:

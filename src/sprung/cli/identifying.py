@@ -11,6 +11,7 @@ import typer
 
 import sprung
 from sprung.cli.app import CampaignFile, Json, app
+from sprung.cli.completing import parameters, results
 from sprung.cli.output import REJECTED, say, say_json, working
 
 
@@ -25,6 +26,7 @@ def identify(
         Optional[list[str]],  # noqa: UP045 (typer reads it)
         typer.Option(
             metavar="NAME",
+            autocompletion=parameters,
             help="Take the 95 % interval of a parameter from the whole likelihood, for one that is weakly determined; "
             "can be given more than once; all for every one.",
         ),
@@ -66,7 +68,10 @@ def conclude(result: Any, written: Sequence[Path], as_json: bool) -> None:
 @app.command(epilog="Example: [bold]sprung report results --pdf[/bold]")
 def report(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="The results folder, with results.json and series.npz.")
+        Path,
+        typer.Argument(
+            metavar="DIR", help="The results folder, with results.json and series.npz.", autocompletion=results
+        ),
     ],
     pdf: Annotated[bool, typer.Option("--pdf", help="Write report.pdf too.")] = False,
     as_json: Json = False,
@@ -114,13 +119,15 @@ def demo(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
     as_json: Json = False,
 ) -> None:
-    """Write an example campaign, the paper's school bus, and identify it."""
+    """Write an example campaign, the paper's school bus, identify it, and show the true values beside the estimates."""
     with working("dropping the school bus") as progress:
         written = sprung.write(sprung.study.demo_campaign(), folder)
         result = sprung.identify(sprung.read(written), amplitude=True, progress=progress)
         files = sprung.report.write_results(result, folder / "results")
     conclude(result, files, as_json)
     if not as_json:
+        truth = sprung.study.true_values(result, sprung.study.DEMO_VEHICLE)
+        say(f"\n{sprung.report.text_of(sprung.report.truth_view(truth))}")
         say(
             f"\nThe recordings and what was known beforehand:     {written}\n"
             f"Everything that was found, to look at:            {folder / 'results' / 'report.html'}\n"

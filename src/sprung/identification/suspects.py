@@ -7,6 +7,7 @@ gain and which value it would take (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50), w
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -160,7 +161,7 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
     assert sensor.position is not None  # noqa: S101 (asked by the caller; for the type checker)
     x, y, z = sensor.position
     places = [(x, y, z), (x + 1, y, z), (x, y + 1, z)]
-    rows = Rows.of([sensor.model_copy(update={"position": one}).row for one in places], names).affine[:, :, 0]
+    rows = Rows.of([replace(sensor, position=one).row for one in places], names).affine[:, :, 0]
     return rows[1] - rows[0], rows[2] - rows[0]
 
 
@@ -168,9 +169,9 @@ def _moved(load: Load, item: int, axis: int, heights: Heights, summit: Summit) -
     """Give what M changes by, per metre that an item is moved; shape (coordinate, coordinate)."""
     sides = []
     for step in (-_NUDGE, _NUDGE):
-        place = list(load.items[item].position or ())
-        place[axis] += step
-        there = load.items[item].model_copy(update={"position": tuple(place)})
+        x, y, z = load.items[item].position or (0.0, 0.0, 0.0)
+        place = (x + step * (axis == 0), y + step * (axis == 1), z + step * (axis == 2))
+        there = replace(load.items[item], position=place)
         model = LinearModel.of(list(there.elements(heights)), summit.names)
         sides.append(model.matrices(summit.values).M)
     return (sides[1] - sides[0]) / (2 * _NUDGE)

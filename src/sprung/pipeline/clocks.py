@@ -158,7 +158,7 @@ def _released(campaign: Campaign, prepared: Prepared, decays: Sequence[Decay], s
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
     vehicle = Vehicle.nearest(summit.parameters, name=campaign.name, **campaign.heights.by_key)
     by_name = {
-        seen.recording.name: (seen, drop.model_copy(update={"wheels": seen.wheels}))
+        seen.recording.name: (seen, replace(drop, wheels=seen.wheels))
         for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
     }
     return [

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, conclude, mode_estimates
+from sprung.identification import Fit, characteristics_of, conclude, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.check import check_prepared
@@ -19,16 +19,17 @@ from sprung.pipeline.clocks import clock_reports
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.planned import as_test
 from sprung.pipeline.profiles import check_asked, profiles_of
-from sprung.pipeline.result import FitReport, Result, VehicleName
+from sprung.pipeline.result import FitReport, Result, TestedVehicle
 from sprung.pipeline.series import Series
 from sprung.pipeline.setup import setup_of
 from sprung.pipeline.stand import Fitted
 from sprung.pipeline.way import Attempt
+from sprung.pipeline.withholding import withhold_estimates
 from sprung.planning import next_step
 from sprung.prepare import Decay
 from sprung.recording import Campaign
-from sprung.validation import BodyMotion, Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
-from sprung.vehicle import Tracks
+from sprung.validation import BodyMotion, Misfit, body_motions, judge, judge_residuals, validate_drops
+from sprung.vehicle import EMPTY, Tracks
 
 METHOD = "joint maximum likelihood"
 
@@ -86,6 +87,7 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
+    campaign.require_complete()
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
     options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
@@ -111,30 +113,29 @@ def result_of(
     motions = body_motions(fit, decays, campaign.sensors)
     validated = validate_drops(summit, fit, decays, channels, motions)
     verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
-    doubt = doubt_of(verdict, fit, misfit)
-    if doubt:
-        fit = fit.widened(doubt)
-        estimates = conclude(fit, choice.known).refused(verdict.reasons[0])
-    profiles = profiles_of(profile, summit, fit, choice.known, progress)
+    rejected = verdict.state == "reject"
+    profiles = {} if rejected else profiles_of(profile, summit, fit, choice.known, progress)
+    amplitude = amplitude and not rejected
     if amplitude:
         progress("following the modes of the body through the decays")
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
-    return Result(
+    result = Result(
         version=version("sprung"),
-        vehicle=VehicleName(name=campaign.name),
+        tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
-        next_step=None if verdict.state == "reject" else next_step(as_test(fitted)).text,
+        next_step=None if rejected else next_step(as_test(fitted)).text,
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
+            **({} if rejected else characteristics_of(fit, choice.known, choice.models[EMPTY.name])),
             **about_roll_axis(fit, choice.heights),
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
         },
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
-        modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
+        modes={load: () if rejected else mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
         fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
-        drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
+        drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *accused))),
         validation=validated,
         setup=setup_of(campaign, fit, choice.known, options),
@@ -145,6 +146,7 @@ def result_of(
         },
         recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
     )
+    return withhold_estimates(result)
 
 
 def _fit_report(

@@ -11,18 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Problems
-from sprung.identification import ModeEstimate
+from sprung.identification import UNNAMED, ModeEstimate
 from sprung.modal import (
+    APPROXIMATE,
     DEFAULT,
     Diagram,
     Mode,
     Modes,
     ModeTrace,
     complexity,
+    confirmed,
     fft_frequencies,
     follow_modes,
     identify_modes,
     name_by_sensors,
+    paper_name,
     stabilisation_diagram,
 )
 from sprung.pipeline.displays import found_modes_table
@@ -178,13 +181,15 @@ def modes(
     Returns
     -------
     ModesByLoad
-        A dict by load, lowest frequency first. Names are the paper's seven, by the shapes at the sensors.
+        A dict by load, lowest frequency first. Named by the shapes at the sensors: one of
+        `sprung.modal.MODE_NAMES`, or ``unnamed``.
 
     Raises
     ------
     InputError
         If there is no such method or no drop can be used.
     """
+    campaign.require_complete()
     decays = prepare(campaign).decays
     if not decays:
         problems = Problems()
@@ -253,6 +258,10 @@ def examined(
         Front axle to the body's centre of gravity, m, if known.
     """
     found = identify_modes(records, rate, method, order)
+    drawn = stabilisation_diagram(records, rate) if diagram else None
+    # Of recordings alone nothing else is known by which an invented mode would stand out.
+    if not sensors and order is None and method not in APPROXIMATE:
+        found = confirmed(found, records, rate, drawn)
     names = (
         _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
     )
@@ -269,7 +278,7 @@ def examined(
         drops,
         tuple((one.pole, one.reason) for one in found.rejected),
         _unresolved(estimates, sensors, len(drops)),
-        stabilisation_diagram(records, rate) if diagram else None,
+        drawn,
     )
 
 
@@ -301,7 +310,7 @@ def _names(found: Modes, named: Sequence[Mode]) -> list[str]:
     names = []
     for mode in found:
         own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
-        names.append(left.pop(own).name or "unnamed")
+        names.append(left.pop(own).name or UNNAMED)
     return names
 
 
@@ -315,10 +324,10 @@ def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: in
     wheels = len({sensor.on for sensor in sensors} - {"body"})
     told = [mode for mode in modes if not mode.name.startswith("body")]
     if len(told) < wheels:
-        these = "1 drop of this load tells" if drops == 1 else f"{drops} drops of this load tell"
+        these = "1 drop of this load shows" if drops == 1 else f"{drops} drops of this load show"
         said.append(
-            f"{wheels} wheels hop in {wheels} modes, of which {these} {len(told)}: each may stand for several that are "
-            "close, and its name for one of them. Drops of other wheels would tell them apart."
+            f"{wheels} wheels have {wheels} modes of hop and tramp, of which {these} {len(told)}: each may stand for several "
+            "close ones, and its name for one of them. Drops of other wheels would separate them."
         )
     return tuple(said)
 
@@ -333,6 +342,7 @@ def _estimate(mode: Mode, name: str, peak: float | None) -> FoundMode:
     spread = mode.spread
     return FoundMode(
         name=name,
+        paper_name=paper_name(name),
         pole=(mode.pole.real, mode.pole.imag),
         frequency=mode.frequency,
         frequency_std=mode.frequency_std if told else None,

@@ -11,12 +11,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from sprung.errors import InputError, Problems
 from sprung.pipeline.choice import choose_model
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.identify import result_of
 from sprung.pipeline.planned import as_test
-from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up
+from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
 from sprung.recording import Campaign, Drop, ModelChoice, read, read_vehicle
 from sprung.simulation import DEFAULT_HEIGHT, Given, Setup
 from sprung.units import STANDARD_GRAVITY
@@ -133,7 +135,8 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable
     Returns
     -------
     Plan
-        Its first row is what the campaign has told; vehicle, noise and drops are those that were found in it.
+        Its first row is what the campaign has told; vehicle, noise and drops are those that were found in it. Of a rejected
+        campaign the reasons alone.
 
     Raises
     ------
@@ -143,10 +146,14 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable
     problems = Problems()
     _check_wanted(wanted, problems)
     problems.raise_if_any()
+    campaign.require_complete()
     fitted = fit_campaign(campaign, progress=progress)
-    verdict = result_of(fitted).verdict
+    result = result_of(fitted)
+    if result.verdict.state == "reject":
+        rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
+        return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
     progress("weighing the alternatives")
-    return draw_up(as_test(fitted), wanted, verdict.reasons if verdict.state == "reject" else ())
+    return draw_up(as_test(fitted), wanted)
 
 
 def plan_file(

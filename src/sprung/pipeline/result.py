@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import ConfigDict, Field
 
 from sprung.errors import Fault
 from sprung.estimate import Estimate
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
-from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
+from sprung.pipeline.identified import identified_vehicle
+from sprung.pipeline.plain import plain_document
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Recorded, Series, arrays_of, packed
 from sprung.pipeline.setup import Setup
@@ -22,22 +31,36 @@ from sprung.pipeline.way import Attempt
 from sprung.recording import write_whole
 from sprung.tables import escaped
 from sprung.validation import DropValidation, Verdict
+from sprung.vehicle import Vehicle
 
 SCHEMA: Literal[1] = 1
 """Version of results.json; a change that an old reader would misread raises it."""
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+_EXACTLY = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
+"""How a saved result is checked when it is read: a key that it does not have is an error."""
 
 
-class VehicleName(_Frozen):
-    """Whose result it is."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TestedVehicle:
+    """The vehicle that was tested.
+
+    Attributes
+    ----------
+    name
+        For people to read.
+    identification
+        Chassis, registration or test number, as the campaign file has it; None where it has none.
+    """
+
+    __pydantic_config__ = _EXACTLY
 
     name: str
+    identification: str | None = None
 
 
-class FitReport(_Frozen):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FitReport:
     """How the fit went.
 
     Attributes
@@ -72,6 +95,8 @@ class FitReport(_Frozen):
         Model error of each channel as a part of its signal; 0 where none is significant.
     """
 
+    __pydantic_config__ = _EXACTLY
+
     samples: int
     drops: int
     noise: dict[str, float]
@@ -92,22 +117,26 @@ class FitReport(_Frozen):
     misfit: dict[str, float]
 
 
-class Result(_Frozen):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
     """Everything an identification gives; the contract's results.json, and the series beside it.
 
     Attributes
     ----------
     schema_version, version
         Of results.json, and of the sprung that wrote it.
-    vehicle
-        Whose result it is.
+    tested_vehicle
+        Which vehicle was tested: ``vehicle`` in results.json.
     verdict
         ``state`` and ``reasons``.
     parameters
-        By name: value, std, interval95, unit, status, interval_from.
+        By name: value, std, interval95, unit, status, interval_from. Where the verdict is reject, only what was known exactly
+        has a value.
     derived
-        The same of derived quantities: those whose profile was asked for, such as ``total_mass``, and ``I_xx_roll_axis``, the
-        roll inertia about the axis of roll, where its height is given.
+        The same of quantities that follow from the parameters: masses, static loads and centre of gravity of the empty vehicle,
+        ride and hop frequency and damping ratio of each axle (`sprung.vehicle.CHARACTERISTICS` and ``WHEEL_LOADS``);
+        ``I_xx_roll_axis``, the roll inertia about the axis of roll, where its height is given; and those whose profile was
+        asked for, such as ``wheelbase``.
     scale
         Whether absolute scale is known, and what is left without it.
     unidentifiable
@@ -115,7 +144,7 @@ class Result(_Frozen):
     correlation
         Of the estimated parameters.
     modes
-        By load: the modes of the identified vehicle, lowest first.
+        By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
     validation
@@ -126,21 +155,21 @@ class Result(_Frozen):
     setup
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
-        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
     series
         By drop name: what was fitted.
     recordings
         By drop name, of all drops: the whole recording.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True, populate_by_name=True)
+    __pydantic_config__ = _EXACTLY
 
-    schema_version: Literal[1] = Field(default=SCHEMA, alias="schema")
-    version: str = Field(alias="sprung")
-    vehicle: VehicleName
+    schema_version: Annotated[Literal[1], Field(alias="schema")] = SCHEMA
+    version: Annotated[str, Field(alias="sprung")]
+    tested_vehicle: Annotated[TestedVehicle, Field(alias="vehicle")]
     verdict: Verdict
     parameters: dict[str, Estimate]
-    derived: dict[str, Estimate] = Field(default_factory=dict)
+    derived: dict[str, Estimate] = field(default_factory=dict)
     scale: Scale
     unidentifiable: tuple[Unidentifiable, ...]
     correlation: Correlation
@@ -148,37 +177,64 @@ class Result(_Frozen):
     fit: FitReport
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
-    validation: dict[str, DropValidation] = Field(default_factory=dict)
+    validation: dict[str, DropValidation] = field(default_factory=dict)
     next_step: str | None = None
     setup: Setup | None = None
     amplitude: Amplitudes = ()
-    series: Mapping[str, Series] = Field(default_factory=dict, exclude=True, repr=False)
-    recordings: Mapping[str, Recorded] = Field(default_factory=dict, exclude=True, repr=False)
+    series: Mapping[str, Series] = field(default_factory=dict, repr=False)
+    recordings: Mapping[str, Recorded] = field(default_factory=dict, repr=False)
+
+    @property
+    def name(self) -> str:
+        """Name of the vehicle that was tested."""
+        return self.tested_vehicle.name
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The identified vehicle: its parameters are the estimates.
+
+        Raises
+        ------
+        InputError
+            If the verdict is reject, or a parameter is not determined.
+        """
+        return identified_vehicle(
+            self.name, self.verdict, self.parameters, {} if self.setup is None else self.setup.heights
+        )
 
     def _repr_html_(self) -> str:
-        """Show the verdict, the parameters and the modes in a notebook."""
+        """Show the verdict, the parameters and the modes in a notebook; of a rejected result the verdict alone."""
+        if self.verdict.state == "reject":
+            return self.verdict._repr_html_() + "".join(f"<p>{escaped(one.text)}.</p>\n" for one in self.unidentifiable)
         parts = [
             self.verdict._repr_html_(),
-            parameters_table(self.vehicle.name, {**self.parameters, **self.derived}).html(),
+            parameters_table(self.name, {**self.parameters, **other_quantities(self.derived)}).html(),
         ]
+        parts += [table.html() for table in characteristics_tables(self.name, self.derived)]
         parts += [f"<p>Not determined: {escaped(one.text)}.</p>\n" for one in self.unidentifiable]
         if not self.scale.known and self.scale.per_total_mass:
             parts.append(ratios_table(self.scale.per_total_mass).html())
         return "".join([*parts, *(modes_table(load, modes).html() for load, modes in self.modes.items())])
 
+    def document(self) -> dict[str, Any]:
+        """Return the contract's results.json as plain values, without the checksums."""
+        return plain_document(self, "series", "recordings")
+
     def to_json(self) -> str:
         """Write the contract's results.json as text, with the checksums by which `sprung.load` knows that nobody changed it."""
-        document = self.model_dump(mode="json", by_alias=True)
+        document = self.document()
         seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
         return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write results.json and series.npz, whole or not at all.
 
         Parameters
         ----------
         folder
-            Made if it is missing.
+            Made if it is missing. Files that sprung wrote there are replaced.
+        overwrite
+            Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
         Returns
         -------
@@ -188,9 +244,9 @@ class Result(_Frozen):
         Raises
         ------
         InputError
-            If the folder cannot be written.
+            If such files would be overwritten, with their list, or the folder cannot be written.
         """
-        write_whole(Path(folder), self.files())
+        write_whole(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
     def files(self) -> dict[str, bytes]:

@@ -9,6 +9,7 @@ import tokenize
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NoReturn
@@ -18,9 +19,12 @@ from pydantic import ValidationError
 
 from sprung.errors import Problem, Problems, ResultFileError
 from sprung.estimate import Estimate
+from sprung.pipeline.plain import record_from
 from sprung.pipeline.result import SCHEMA, Result
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Everything, everything_in
+from sprung.pipeline.withholding import withhold_estimates
+from sprung.vehicle import UNKNOWN_KEY
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."
 _ROUNDING = 1e-6
@@ -58,12 +62,13 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
     problems = Problems()
     seals = document.pop(SEALS, {})
     try:
-        result = Result.model_validate(document)
+        result = record_from(Result, document)
     except ValidationError as error:
         result = None
         for what in error.errors():
             place = ".".join(str(part) for part in what["loc"])
-            problems.add(f"{path}: {place}", what["msg"], *_as_written(document))
+            found = "a key that no result has" if what["type"] == UNKNOWN_KEY else what["msg"]
+            problems.add(f"{path}: {place}", found, *_as_written(document))
     if result is not None:
         for where, found in _contradictions(result):
             problems.add(f"{path}: {where}", found, *_as_written(document))
@@ -78,7 +83,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
             )
     if problems or result is None:
         raise ResultFileError(problems)
-    return result.model_copy(update=everything._asdict())
+    return withhold_estimates(replace(result, **everything._asdict()))
 
 
 def _document(path: Path) -> dict[str, Any]:

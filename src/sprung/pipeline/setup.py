@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, estimate_of
-from sprung.recording import Campaign, ModelChoice, SourceFile
+from sprung.recording import Campaign, ModelChoice, SourceFile, TestRecord
 from sprung.vehicle import DERIVED, Load, Sensor
 
 _LIBRARIES = ("numpy", "scipy")
@@ -41,7 +41,8 @@ class Before:
     missed: float | None = None
 
 
-class Setup(BaseModel):
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
     """What an identification began with.
 
     Attributes
@@ -60,9 +61,11 @@ class Setup(BaseModel):
         The campaign file and the recordings, as they were read; empty where there were none.
     software
         Versions by name.
+    test
+        When, where and by whom the vehicle was tested, as far as the campaign file says it.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    __pydantic_config__ = ConfigDict(extra="forbid")
 
     known: dict[str, Before]
     heights: dict[str, float]
@@ -72,6 +75,7 @@ class Setup(BaseModel):
     options: dict[str, str]
     files: tuple[SourceFile, ...] = ()
     software: dict[str, str]
+    test: TestRecord = field(default_factory=TestRecord)
 
 
 def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: Mapping[str, object]) -> Setup:
@@ -103,6 +107,7 @@ def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: 
             "Python": platform.python_version(),
             **{name: version(name) for name in _LIBRARIES},
         },
+        test=campaign.test,
     )
 
 

@@ -34,7 +34,7 @@ class Validation:
     load
         Of the drops from which `amplitudes` are.
     amplitudes
-        Frequency and damping of each mode of the body against amplitude.
+        Frequency and damping of each mode of the body against amplitude; empty where the verdict is reject.
     """
 
     result: Result
@@ -44,7 +44,7 @@ class Validation:
 
     def document(self) -> dict[str, Any]:
         """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
-        result = self.result.model_dump(mode="json", by_alias=True)
+        result = self.result.document()
         kept = ("sprung", "vehicle", "verdict", "validation", "faults")
         return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 
@@ -64,13 +64,15 @@ class Validation:
         text = json.dumps(self.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         return {"validation.npz": packed(arrays), "validation.json": text.encode()}
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write validation.json and validation.npz, whole or not at all.
 
         Parameters
         ----------
         folder
-            Made if it is missing.
+            Made if it is missing. Files that sprung wrote there are replaced.
+        overwrite
+            Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
         Returns
         -------
@@ -80,9 +82,9 @@ class Validation:
         Raises
         ------
         InputError
-            If the folder cannot be written.
+            If such files would be overwritten, with their list, or the folder cannot be written.
         """
-        write_whole(Path(folder), self.files())
+        write_whole(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
 
@@ -123,10 +125,13 @@ def validate(
     >>> max(drop.predicted_residual for drop in validation.result.validation.values()) < 1.05
     True
     """
+    campaign.require_complete()
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
     asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
     result = result_of(fitted, progress=progress, options=asked)
-    progress("following the modes of the body through the decays")
     motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    if result.verdict.state == "reject":
+        return Validation(result, motions, EMPTY.name, ())
+    progress("following the modes of the body through the decays")
     amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

@@ -56,9 +56,8 @@ class Attempt:
     @property
     def text(self) -> str:
         """The attempt in words."""
-        verb = "gains" if self.fitted else "would gain"
         but = f", but {self.against}" if self.against else ""
-        return f"{self.extra} ({verb} {max(self.gain, 0.0):.0f} of {self.asked:.0f} asked{but})"
+        return f"{self.extra} (Δ2lnL = {max(self.gain, 0.0):.0f}, required {self.asked:.0f}{but})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,9 +138,9 @@ class Way:
     def against(self, extra: str, inflation: float) -> str:
         """Say what speaks against an extra, whatever it gains; nothing where nothing does."""
         if not possible(extra, self.summit):
-            return "it would have to be less than nothing"
+            return "the estimate is negative, which is not physical"
         if inflation > ERRS and size_of(extra, self.summit.parameters) < _MATTERS:
-            return "it is so small that it may be another error of the model"
+            return "it is so small that it may stand for another error of the model"
         return ""
 
     def explains_little(self, begun: Summit, part: float) -> bool:
@@ -159,4 +158,7 @@ class Way:
         last = {one.extra: one for one in self.path}
         taken = ", ".join(one.text for one in last.values() if one.taken and one.extra in decided(choice))
         refused = ", ".join(one.text for one in last.values() if one.extra not in decided(choice))
-        return f"the records ask for {taken or 'nothing more'}" + (f"; not for {refused}" if refused else "")
+        said = (
+            f"model terms supported by the data: {taken}" if taken else "no further model term is supported by the data"
+        )
+        return said + (f"; not supported: {refused}" if refused else "")

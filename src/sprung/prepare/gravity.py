@@ -92,7 +92,7 @@ def put_right(
     factors = np.array([np.nan if r.strange else _SCALES[r.scale][0] * (-1.0 if r.turned else 1.0) for r in told])
     changed = [_times(recording, factors) for recording in recordings]
     changed[0] = replace(changed[0], faults=(*changed[0].faults, *faults))
-    direct = tuple(r.sensor.model_copy(update={"high_pass": None}) if r.feels else r.sensor for r in told)
+    direct = tuple(replace(r.sensor, high_pass=None) if r.feels else r.sensor for r in told)
     return Righted(changed, [None if one is None else _changed(one, factors) for one in releases], direct)
 
 

@@ -38,7 +38,7 @@ def named_apart(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
     """
     often = Counter(sensor.channel for sensor in sensors)
     return tuple(
-        sensor.model_copy(update={"channel": f"{sensor.logger} {sensor.channel}"})
+        replace(sensor, channel=f"{sensor.logger} {sensor.channel}")
         if often[sensor.channel] > 1 and sensor.logger
         else sensor
         for sensor in sensors

@@ -10,6 +10,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from sprung.errors import Problem, did_you_mean
+from sprung.vehicle import UNKNOWN_KEY
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -60,7 +61,7 @@ def problems_of(
 def _problem(model: type[BaseModel], detail: ErrorDetails, file: str, document: Mapping[str, Any]) -> Problem:
     schema = model.model_json_schema()
     place, kind = _written(document, detail["loc"]), detail["type"]
-    if kind == "extra_forbidden":
+    if kind in {"extra_forbidden", UNKNOWN_KEY}:
         where = where_in(file, place, document)
         if place[0] == "drop" and place[-1] == "files":
             return Problem(where, *_SEVERAL_LOGGERS)
@@ -143,10 +144,10 @@ def _described(node: dict[str, Any]) -> str:
             what = "a number, 0 or more"
         case {"type": "number"}:
             what = "a number"
-        case {"type": "string", "minLength": 1}:
-            what = "text in double quotes, not empty"
-        case {"type": "string"}:
-            what = "text in double quotes"
+        case {"type": "string", **more}:
+            what = "text in double quotes" + (", not empty" if more.get("minLength") == 1 else "")
+            if more.get("format") == "date":
+                what = "a date without quotes, year-month-day: 2026-11-22"
         case {"type": "array", "items": items}:
             of = "tables" if "$ref" in items else _described(items).removeprefix("one of ")
             what = f"a list in [ ] of {of}" + (", not empty" if node.get("minItems") else "")

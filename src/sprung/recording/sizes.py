@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 from sprung.recording.plausibility import LIMITS, Limits, implausible, remedy
@@ -141,7 +142,7 @@ def _of_loads(draft: Draft[CampaignFile]) -> Iterator[Sized]:
                 yield (*place, "position"), name, value
             for value in item.inertia:
                 yield (*place, "inertia"), "load inertia", value
-        for name, value in (load.added.model_dump() if load.added else {}).items():
+        for name, value in (asdict(load.added) if load.added else {}).items():
             quantity = "load inertia" if name.startswith("I_") else "load mass on a wheel"
             yield ("load", index, "added", name), "load mass" if name == "mass" else quantity, value
 
@@ -169,7 +170,8 @@ def check_together(draft: Draft[CampaignFile], known: Mapping[str, Known], probl
         **dict.fromkeys(("m_uf", "m_ur"), (0.0, _UNSPRUNG / 2)),
     }.items():
         value = values.get(name)
-        if total is not None and value is not None and not low * total <= value <= high * total:
+        # What is more than the whole, the sums of the parts contradict already.
+        if total is not None and value is not None and value <= total and not low * total <= value <= high * total:
             what = PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
             problems.add(
                 draft.where(sections[name], name),

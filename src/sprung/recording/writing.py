@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import tomli_w
+from pydantic import TypeAdapter
 
+from sprung.recording.comments import commented
 from sprung.recording.formats import split_unit
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE
@@ -24,26 +25,26 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Mapping, Sequence
 
-    from pydantic import BaseModel
-
     from sprung.estimate import Known
     from sprung.recording.campaign import Campaign, Drop
     from sprung.recording.recording import Recording
 
 
-def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
+def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a campaign into a folder, whole or not at all.
 
     The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
     out stays without numbers. Recordings of other formats become text tables. The JSON Schema of the campaign file is put
-    beside it, by which editors complete its keys.
+    beside it, by which editors complete its keys, and comments say what each section and key is for.
 
     Parameters
     ----------
     campaign
         The campaign.
     folder
-        Where to; made if it does not exist. Files of the same names in it are replaced.
+        Where to; made if it does not exist. Files that an earlier call wrote there are replaced.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -53,7 +54,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
     pieces = [recording.parts or (recording,) for recording in campaign.recordings]
     names = tuple(_file_names(campaign.drops, pieces))
@@ -64,8 +65,8 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
         for name, piece in zip(own, of_drop, strict=True)
     }
     files[SCHEMA_FILE] = schema_text().encode()
-    files[FILE] = SCHEMA_LINE.encode() + _toml(_document(campaign, names))
-    write_whole(folder, files)
+    files[FILE] = (SCHEMA_LINE + commented(_toml(_document(campaign, names)))).encode()
+    write_whole(folder, files, overwrite=overwrite)
     return Path(folder) / FILE
 
 
@@ -75,7 +76,7 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
     for drop, of_drop in zip(drops, pieces, strict=True):
         own = []
         for file in [piece.name for piece in of_drop] if len(of_drop) > 1 else [drop.file]:
-            path = PurePosixPath(file or drop.name)
+            path = PurePosixPath(file or drop.label)
             if path.is_absolute() or ".." in path.parts:
                 path = PurePosixPath(path.name)
             plain = path.with_name(path.stem if file else path.name)
@@ -91,24 +92,29 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
 def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, Any]:
     heights = ("cg_height", "wheel_height", "roll_axis_height")
     vehicle: dict[str, Any] = {"name": campaign.name}
+    if campaign.identification is not None:
+        vehicle["identification"] = campaign.identification
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
     sections = {
         "vehicle": vehicle,
+        "test": written(campaign.test),
         "known": {name: _measured(known) for name, known in campaign.known.items()},
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],
         "load": [written(load) for load in campaign.loads if load.name != EMPTY.name],
         "drop": [
-            ({"file": own[0]} if len(own) == 1 else {"files": list(own)}) | written(drop, "file", "files", "window")
+            ({"file": own[0]} if len(own) == 1 else {"files": list(own)})
+            | {"load": drop.load, "wheels": drop.wheels}
+            | written(drop, "file", "files", "window")
             for own, drop in zip(files, campaign.drops, strict=True)
         ],
     }
     return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
 
 
-def written(record: BaseModel, *without: str) -> dict[str, Any]:
+def written(record: object, *without: str) -> dict[str, Any]:
     """Give the keys of a record that say more than their defaults, as TOML holds them.
 
     Parameters
@@ -118,26 +124,43 @@ def written(record: BaseModel, *without: str) -> dict[str, Any]:
     *without
         Keys to leave out.
     """
-    return record.model_dump(exclude_defaults=True, exclude_none=True, exclude=set(without))
+    adapter: TypeAdapter[Any] = TypeAdapter(type(record))
+    plain = adapter.dump_python(record, exclude_defaults=True, exclude_none=True, exclude=set(without))
+    return cast("dict[str, Any]", plain)
 
 
 def _measured(known: Known) -> float | dict[str, float]:
     return known.value if known.exact else {"value": known.value, "std": known.std}
 
 
-def _toml(document: Mapping[str, Any]) -> bytes:
-    lists = {name: entries for name, entries in document.items() if isinstance(entries, list)}
-    parts = [tomli_w.dumps({name: value for name, value in document.items() if name not in lists})]
-    for name, entries in lists.items():
-        # Entry by entry, for tomli-w would put short ones on one line, where nobody expects a drop.
-        tables = (re.sub(r"^(\[+)", rf"\1{name}.", tomli_w.dumps(entry), flags=re.MULTILINE) for entry in entries)
-        parts += [f"[[{name}]]\n{table}" for table in tables]
+def _toml(document: Mapping[str, Any]) -> str:
+    """Write a campaign file: one line for each key, one section for each sensor, load and drop."""
+    sections = [_keys({name: value for name, value in document.items() if not isinstance(value, dict | list)})]
+    for name, value in document.items():
+        if isinstance(value, dict):
+            sections.append(f"[{name}]\n{_keys(value)}")
+        elif isinstance(value, list):
+            sections += [f"[[{name}]]\n{_keys(entry)}" for entry in value]
+    return "\n".join(sections)
 
-    def one_line(match: re.Match[str]) -> str:
-        return "= [" + ", ".join(line.strip().removesuffix(",") for line in match[1].rstrip().split("\n")) + "]"
 
-    # Vectors read better on one line; no text can look like this, for TOML writes line breaks in text as \n.
-    return re.sub(r"= \[\n((?:    [^\n]*,\n)+)\]", one_line, "\n".join(parts)).encode()
+def _keys(entry: Mapping[str, Any]) -> str:
+    """Write the keys of a section, the equals signs below each other."""
+    widest = max(map(len, entry), default=0)
+    return "".join(f"{name:<{widest}} = {_value(value, widest + 5)}\n" for name, value in entry.items())
+
+
+def _value(value: Any, indent: int = 0) -> str:
+    """Write a value on one line; a list of tables has one line for each."""
+    match value:
+        case dict():
+            return "{ " + ", ".join(f"{name} = {_value(one)}" for name, one in value.items()) + " }"
+        case [dict(), *_]:
+            return "[ " + f",\n{' ' * indent}".join(map(_value, value)) + " ]"
+        case list() | tuple():
+            return f"[{', '.join(map(_value, value))}]"
+        case _:
+            return tomli_w.dumps({"value": value}).removeprefix("value = ").removesuffix("\n")
 
 
 def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:

@@ -19,8 +19,8 @@ from sprung.tables import Table
 from sprung.validation import DropValidation, ModeAmplitude, Trace
 
 COLUMNS = (
-    "/noise: what is left, over the noise. Predicted: by the vehicle fitted to all other drops. Least white: in which "
-    "channel what is left repeats itself, how much, and after what time."
+    "/noise: residual over the sensors' noise. Predicted: by the vehicle fitted to all other drops. Least white: largest "
+    "autocorrelation of the residuals: channel, value, lag."
 )
 """What the columns of the table of drops say."""
 
@@ -50,7 +50,7 @@ def validation_view(validation: Validation) -> RenderableType:
     """
     result = validation.result
     parts: list[RenderableType] = [
-        laid_out(validation_table(result.vehicle.name, result.validation)),
+        laid_out(validation_table(result.name, result.validation)),
         hanging("", COLUMNS),
         Text(),
     ]
@@ -148,7 +148,7 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     result = validation.result
     drawn = {}
     if pictures := amplitude_pictures(validation.amplitudes):
-        title = f"{result.vehicle.name}, {validation.load}: modes of the body against amplitude"
+        title = f"{result.name}, {validation.load}: modes of the body against amplitude"
         drawn["amplitude.svg"] = sheet(title, [(AMPLITUDES, False)], pictures)
     names = file_names(["amplitude", *result.series])
     next(names)  # taken by the drawing above
@@ -166,7 +166,9 @@ def _said(drop: DropValidation) -> str:
     return text
 
 
-def write_validation(validation: Validation, folder: Path, drawings: Mapping[str, str]) -> tuple[Path, ...]:
+def write_validation(
+    validation: Validation, folder: Path, drawings: Mapping[str, str], *, overwrite: bool = False
+) -> tuple[Path, ...]:
     """Write numbers, series and drawings into a folder, all of them or none.
 
     Parameters
@@ -174,9 +176,11 @@ def write_validation(validation: Validation, folder: Path, drawings: Mapping[str
     validation
         From `sprung.validate`.
     folder
-        Made if it does not exist. Files of the same names in it are replaced.
+        Made if it does not exist. Files that sprung wrote there are replaced.
     drawings
         From `draw_validation`.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -186,8 +190,8 @@ def write_validation(validation: Validation, folder: Path, drawings: Mapping[str
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If such files would be overwritten, or the folder cannot be written.
     """
     files = {name: text.encode() for name, text in drawings.items()} | validation.files()
-    write_whole(folder, files)
+    write_whole(folder, files, overwrite=overwrite)
     return tuple(folder / name for name in files)

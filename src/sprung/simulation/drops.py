@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -79,7 +80,7 @@ def simulate(
     --------
     >>> from sprung.vehicle import TABLE_1_CAR
     >>> campaign = simulate(TABLE_1_CAR, loads=[{"name": "sandbags", "added": {"mass": 140}}], seed=1)
-    >>> [drop.name for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
+    >>> [drop.label for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
     (['empty_roll_right', 'sandbags_bounce'], (8, 1800))
     """
     problems = Problems()
@@ -106,7 +107,7 @@ def simulate(
     released, accelerations = [], []
     for drop in setup.drops:
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
-        released.append(drop.model_copy(update={"height": height}))
+        released.append(replace(drop, height=height))
         with problems.collecting():
             fall = drop_from_blocks(
                 vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity

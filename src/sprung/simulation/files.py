@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from sprung.recording import Campaign, read_vehicle
 from sprung.simulation.drops import simulate
@@ -37,7 +38,7 @@ def simulate_file(
     known = dict(file.known)
     if file.wheelbase is not None:
         known["wheelbase"] = file.wheelbase
-    return simulate(
+    campaign = simulate(
         file.vehicle,
         sensors=file.sensors or None,
         loads=file.loads,
@@ -48,3 +49,4 @@ def simulate_file(
         known=known,
         model=file.model,
     )
+    return replace(campaign, identification=file.identification, test=file.test)

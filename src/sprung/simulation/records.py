@@ -6,15 +6,16 @@ import itertools
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypeVar
+from dataclasses import replace
+from typing import Any, TypeVar, cast
 
-from pydantic import BaseModel, ValidationError
+from pydantic import ValidationError
 
-from sprung.errors import Problems, did_you_mean
+from sprung.errors import Problems
 from sprung.recording import Drop
-from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel
+from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel, problems_of_record, record_of
 
-Record = TypeVar("Record", bound=BaseModel)
+Record = TypeVar("Record")
 
 FIVE_DROPS: tuple[tuple[Wheel, ...], ...] = (WHEELS, ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
 """The wheels of the paper's bounce, front, rear, left and right drop."""
@@ -67,13 +68,10 @@ def records(
 def record(model: type[Record], where: str, given: Record | Mapping[str, Any], problems: Problems) -> Record | None:
     """Make a record from a mapping; None, and what is wrong added to the problems, if that cannot be."""
     try:
-        return given if isinstance(given, model) else model.model_validate(given)
+        return given if isinstance(given, model) else record_of(model, cast("Mapping[str, Any]", given))
     except ValidationError as error:
-        for fault in error.errors():
-            place = ".".join(str(part) for part in (f"simulate: {where}", *fault["loc"]))
-            unknown = fault["type"] == "extra_forbidden"
-            do = did_you_mean(str(fault["loc"][-1]), model.model_fields) if unknown else "Correct it."
-            problems.add(place, repr(fault["input"]), fault["msg"].removeprefix("Value error, "), do)
+        for problem in problems_of_record(model, error, f"simulate: {where}"):
+            problems.add(problem.where, problem.found, problem.expected, problem.do)
         return None
 
 
@@ -90,11 +88,11 @@ def name_files(drops: Sequence[Drop], what: str | None = None) -> tuple[Drop, ..
     taken = {drop.file for drop in drops}
     named = []
     for drop in drops:
-        stem = re.sub(r"[^\w.-]+", "_", drop.name if what is None else f"{drop.load}_{what}")
+        stem = re.sub(r"[^\w.-]+", "_", drop.label if what is None else f"{drop.load}_{what}")
         numbered = (f"{stem}{end}.csv" for end in itertools.chain([""], map("_{}".format, itertools.count(2))))
         file = drop.file or next(name for name in numbered if name not in taken)
         taken.add(file)
-        named.append(drop.model_copy(update={"file": file}))
+        named.append(replace(drop, file=file))
     return tuple(named)
 
 

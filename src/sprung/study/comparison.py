@@ -12,7 +12,7 @@ from sprung.estimate import NORMAL_95
 from sprung.pipeline import Result, load
 from sprung.study.scatter import Scatter, scatters, told_by
 from sprung.study.significance import Joint, holm, joint, two_sided
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS
 
 LIKELY, CERTAIN = 0.05, 0.001
 """Chances, corrected for the number of comparisons, below which a difference is called likely and certain."""
@@ -207,7 +207,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     modes = _tested(_modes(read, labels))
     return Comparison(
         results=tuple(
-            Compared(label, one.vehicle.name, one.verdict.state, one.verdict.reasons)
+            Compared(label, one.name, one.verdict.state, one.verdict.reasons)
             for label, one in zip(labels, read, strict=True)
         ),
         per_total_mass=ratios,
@@ -247,7 +247,7 @@ def _labels(given: Sequence[Result | str | Path], read: Sequence[Result]) -> tup
         parts = [one[:-1] for one in parts]
     while all(parts) and len({one[0] for one in parts}) == 1:
         parts = [one[1:] for one in parts]
-    called = ["/".join(one) or result.vehicle.name for one, result in zip(parts, read, strict=True)]
+    called = ["/".join(one) or result.name for one, result in zip(parts, read, strict=True)]
     return tuple(
         name if called.count(name) == 1 else f"{name} ({called[: i + 1].count(name)})" for i, name in enumerate(called)
     )
@@ -255,7 +255,13 @@ def _labels(given: Sequence[Result | str | Path], read: Sequence[Result]) -> tup
 
 def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> dict[str, Quantity]:
     names = [name for name in PARAMETERS if any(name in one.parameters for one in read)]
-    names += [name for name in dict.fromkeys(name for one in read for name in one.derived) if name not in names]
+    # What only follows from the parameters would be asked twice; a profile is an interval of its own.
+    names += [
+        name
+        for name in dict.fromkeys(name for one in read for name in one.derived)
+        if name not in names
+        and ((name not in CHARACTERISTICS and name not in WHEEL_LOADS) or any(_is_profiled(one, name) for one in read))
+    ]
     rows = {}
     for name in names:
         per_mass = ratios and name in PARAMETERS and PARAMETERS[name].scales
@@ -267,6 +273,10 @@ def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> 
         )
         rows[name + _PER_MASS * per_mass] = Quantity(unit, told, differences)
     return rows
+
+
+def _is_profiled(result: Result, name: str) -> bool:
+    return name in result.derived and result.derived[name].interval_from == "profile"
 
 
 def _told(result: Result, name: str, per_mass: bool) -> Told:
@@ -376,8 +386,8 @@ def _notes(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> Itera
             )
         if one.parameters == read[0].parameters and one.fit == read[0].fit:
             yield f"{labels[0]} and {label} are the same result"
-        if one.vehicle != read[0].vehicle:
-            yield f"{labels[0]} is of '{read[0].vehicle.name}', {label} of '{one.vehicle.name}'"
+        if one.name != read[0].name:
+            yield f"{labels[0]} is of '{read[0].name}', {label} of '{one.name}'"
 
 
 def _model(result: Result) -> str:

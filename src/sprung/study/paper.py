@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from sprung.identification import structured_least_squares
-from sprung.modal import modes_of
+from sprung.modal import modes_of, paper_name
 from sprung.pipeline import identify
 from sprung.recording import Campaign
 from sprung.study.misprints import BUS_LOAD, Misprint, find_misprints
@@ -93,7 +93,9 @@ class ModeRow:
     Attributes
     ----------
     mode
-        Its name.
+        After what moves.
+    paper_name
+        What the paper calls it.
     paper
         What the paper prints.
     computed
@@ -101,6 +103,7 @@ class ModeRow:
     """
 
     mode: str
+    paper_name: str
     paper: ModalValues
     computed: ModalValues
 
@@ -232,9 +235,10 @@ def table_3() -> tuple[ModeRow, ...]:
     -------
     tuple of ModeRow
     """
-    modes = {mode.name: mode for mode in modes_of(SCHOOL_BUS.matrices())}
+    modes = {paper_name(mode.name): mode for mode in modes_of(SCHOOL_BUS.matrices())}
     return tuple(
         ModeRow(
+            str(modes[name].name),
             name,
             ModalValues(row.natural_frequency, row.damped_frequency, row.damping_ratio),
             ModalValues(modes[name].frequency, modes[name].damped_frequency, modes[name].damping_ratio),

@@ -85,7 +85,7 @@ def bump_campaign(
     for i, run in enumerate(runs):
         for drop, recording in zip(run.drops, run.recordings, strict=True):
             name = f"{i}_{recording.name}"
-            drops.append(drop.model_copy(update={"file": name}))
+            drops.append(replace(drop, file=name))
             recordings.append(replace(recording, name=name))
     return replace(runs[0], drops=tuple(drops), recordings=tuple(recordings))
 
@@ -108,7 +108,7 @@ def drop_campaign(vehicle: Vehicle, load: Load) -> Campaign:
     for drop in campaign.drops:
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         fall = drop_from_blocks(vehicle, campaign.load(drop.load), drop.wheels, height)
-        drops.append(drop.model_copy(update={"start": REST + fall.decay_start}))
+        drops.append(replace(drop, start=REST + fall.decay_start))
     recordings = tuple(replace(r, values=r.values - STANDARD_GRAVITY) for r in campaign.recordings)
     return replace(campaign, drops=tuple(drops), recordings=recordings)
 

@@ -1,5 +1,12 @@
 """The only room that knows the equations of motion: parameters, elements, matrices, loads, sensors, exact response."""
 
+from sprung.vehicle.characteristics import (
+    CHARACTERISTICS,
+    WHEEL_LOADS,
+    Characteristic,
+    characteristic,
+    wheel_loads,
+)
 from sprung.vehicle.derived import DERIVED, quantity
 from sprung.vehicle.drop import Event, Fall, Piece, drop_from_blocks
 from sprung.vehicle.elements import (
@@ -30,6 +37,7 @@ from sprung.vehicle.parameters import (
     separate_names,
     separated,
 )
+from sprung.vehicle.record import UNKNOWN_KEY, problems_of_record, record, record_of
 from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
 from sprung.vehicle.rough import Block, decays_with_forces, drops_with_forces
 from sprung.vehicle.rows import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
@@ -38,6 +46,7 @@ from sprung.vehicle.stepping import Changes, Path, Stepper
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
+    "CHARACTERISTICS",
     "COORDINATES",
     "DERIVED",
     "EMPTY",
@@ -50,12 +59,15 @@ __all__ = [
     "PARAMETERS",
     "SCHOOL_BUS",
     "TABLE_1_CAR",
+    "UNKNOWN_KEY",
     "WHEELS",
     "WHEELS_AT",
+    "WHEEL_LOADS",
     "Added",
     "Block",
     "CarriedAt",
     "Changes",
+    "Characteristic",
     "Element",
     "Event",
     "Fall",
@@ -84,6 +96,7 @@ __all__ = [
     "Wheel",
     "affine_response",
     "brought_by",
+    "characteristic",
     "coordinates",
     "decays_with_forces",
     "drop_from_blocks",
@@ -94,10 +107,14 @@ __all__ = [
     "half_distances",
     "half_sine_bump",
     "parameter_names",
+    "problems_of_record",
     "quantity",
+    "record",
+    "record_of",
     "separate_names",
     "separated",
     "seven_degrees_of_freedom",
     "static_wheel_loads",
     "tyre_rates",
+    "wheel_loads",
 ]

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
+from sprung.errors import InputError, Problem
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
+from sprung.vehicle.record import record
 from sprung.vehicle.rows import Wheel
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -22,10 +24,9 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 """A number in a campaign file: neither infinite nor NaN."""
 
 
-class Item(BaseModel):
+@record
+class Item:
     """One piece of a load: a mass at a place."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass: Positive
     """kg."""
@@ -61,10 +62,9 @@ class Item(BaseModel):
                     yield Element("spring", -self.mass * heights.tipping(z), row)
 
 
-class Added(BaseModel):
+@record
+class Added:
     """A load of which only totals are known, taken as centred on the body's centre of gravity (the paper's bus)."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     mass: NotNegative
     """kg, on the body."""
@@ -88,12 +88,11 @@ class Added(BaseModel):
         yield Element("mass", self.m_ur, rows.wheel("rr"))
 
 
-class Load(BaseModel):
+@record
+class Load:
     """A known load: a list of items, or totals. The load named ``empty`` has neither and always exists."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-    name: str = Field(min_length=1)
+    name: Annotated[str, Field(min_length=1)]
     """What the drops call it."""
     items: tuple[Item, ...] = ()
     """Its pieces, each a mass at a place."""
@@ -106,9 +105,12 @@ class Load(BaseModel):
             raise ValueError("give either items or added totals, not both")
         if self.name == "empty" and (self.items or self.added is not None):
             raise ValueError("the load named 'empty' is the vehicle as it is; give this load another name")
-        if self.name != "empty" and not self.items and self.added is None:
-            raise ValueError("a load needs items = [...] or added = {...}")
         return self
+
+    @property
+    def described(self) -> bool:
+        """Whether it is known what the load adds; without that nothing can be identified from its drops."""
+        return self.name == "empty" or bool(self.items) or self.added is not None
 
     @property
     def mass(self) -> float:
@@ -125,7 +127,15 @@ class Load(BaseModel):
         heights
             Of the empty vehicle; without them every item counts as level with the centre of gravity. Where they tell what
             carries the body, a load tips it the more the higher it stands.
+
+        Raises
+        ------
+        InputError
+            If it is not known what the load adds.
         """
+        if not self.described:
+            expected, do = "items = [...] or added = {...}", "Write what the load consists of."
+            raise InputError([Problem(f"load '{self.name}'", "neither items nor added", expected, do)])
         if self.added is not None:
             return tuple(self.added.elements())
         return tuple(element for item in self.items for element in item.elements(heights))

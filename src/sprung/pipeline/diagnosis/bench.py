@@ -221,7 +221,7 @@ def without_looking_at_wheels(campaign: Campaign, decays: Sequence[Decay]) -> tu
 def _cut(campaign: Campaign, spans: Mapping[str, Span]) -> Campaign:
     campaign = without_drops(*(one.name for one in campaign.recordings if one.name not in spans))(campaign)
     drops = [
-        drop.model_copy(update=dict(zip(("start", "end"), spans[recording.name], strict=True)))
+        replace(drop, start=spans[recording.name][0], end=spans[recording.name][1])
         for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
     ]
     return replace(campaign, drops=tuple(drops))

@@ -102,7 +102,7 @@ def relabelled(loads: Mapping[str, str]) -> Change:
 
     def change(campaign: Campaign) -> Campaign:
         drops = [
-            drop.model_copy(update={"load": loads.get(recording.name, drop.load)})
+            replace(drop, load=loads.get(recording.name, drop.load))
             for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
         ]
         return replace(campaign, drops=tuple(drops))
@@ -116,10 +116,9 @@ def load_moved(name: str, item: int, axis: int, by: float) -> Change:
     def change(campaign: Campaign) -> Campaign:
         load = campaign.load(name)
         items = list(load.items)
-        place = list(items[item].position or (0.0, 0.0, 0.0))
-        place[axis] += by
-        items[item] = items[item].model_copy(update={"position": tuple(place)})
-        moved = load.model_copy(update={"items": tuple(items)})
+        x, y, z = items[item].position or (0.0, 0.0, 0.0)
+        items[item] = replace(items[item], position=(x + by * (axis == 0), y + by * (axis == 1), z + by * (axis == 2)))
+        moved = replace(load, items=tuple(items))
         return replace(campaign, loads=tuple(moved if one.name == name else one for one in campaign.loads))
 
     return change
@@ -142,7 +141,7 @@ def without_drops(*files: str) -> Change:
 
 def _like(sensor: Sensor, other: Sensor) -> Sensor:
     """Say of a sensor what is said of another one; channel and logger stay its own."""
-    return other.model_copy(update={"channel": sensor.channel, "logger": sensor.logger})
+    return replace(other, channel=sensor.channel, logger=sensor.logger)
 
 
 def _with_samples(campaign: Campaign, how: _How, only: str | None = None) -> Campaign:

@@ -72,7 +72,7 @@ def coupled_otherwise(bench: Bench) -> Iterator[Hypothesis]:
 
 def with_corner(sensor: Sensor, corner: float) -> Sensor:
     """Describe a sensor with another corner of its high-pass, Hz; without one where that is all but 0."""
-    return sensor.model_copy(update={"high_pass": corner if corner > MATTERS["corner"] else None})
+    return replace(sensor, high_pass=corner if corner > MATTERS["corner"] else None)
 
 
 def of_corners(sensors: Sequence[Sensor], corners: Sequence[float], stds: Sequence[float]) -> Fault:

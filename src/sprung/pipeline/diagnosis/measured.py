@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -181,7 +181,7 @@ def _coupled_otherwise(heard: Heard) -> Meaning:
 def _other_wheels(heard: Heard) -> Iterator[Meaning]:
     for wheel in WHEELS:
         if wheel != heard.sensor.on:
-            there = heard.sensor.model_copy(update={"on": wheel, "position": None})
+            there = replace(heard.sensor, on=wheel, position=None)
             what = f"it shows what the wheel {wheel} does, not {_stated(heard)}"
             fault = Fault(
                 "wrong-wheel", heard.sensor.channel, what, "Correct on = ... in the campaign file, or move the sensor."
@@ -199,7 +199,7 @@ def _other_place(heard: Heard) -> Meaning:
     sensor = heard.sensor
     here = sensor.position or (0.0, 0.0, 0.0)
     code = "wrong-wheel" if sensor.position is None else "position"
-    origin = sensor.model_copy(update={"on": "body", "position": (0.0, 0.0, here[2])})
+    origin = replace(sensor, on="body", position=(0.0, 0.0, here[2]))
     level = heard.row(origin) @ heard.motion
     tilt = np.stack([-heard.motion[1], heard.motion[2]])
     place = np.linalg.lstsq(tilt.T, heard.record - level, rcond=None)[0]
@@ -213,7 +213,8 @@ def _other_place(heard: Heard) -> Meaning:
         return Fault(code, sensor.channel, what, do)
 
     def put(numbers: Numbers) -> Change:
-        return described(heard.channel, origin.model_copy(update={"position": (*numbers, here[2])}))
+        x, y = numbers
+        return described(heard.channel, replace(origin, position=(x, y, here[2])))
 
     residual = heard.left(level + place @ tilt)
     return Meaning(
@@ -252,7 +253,7 @@ def _unknown(heard: Heard, code: str, what: str, fitted: Real, free: int = 0) ->
 
 def _stated(heard: Heard) -> str:
     if heard.sensor.position is None:
-        return heard.sensor.on
+        return heard.sensor.on or "a wheel"
     x, y, _ = heard.sensor.position
     return f"x = {x:.2f} m, y = {y:.2f} m"
 

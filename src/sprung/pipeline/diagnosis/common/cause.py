@@ -58,7 +58,7 @@ def with_places(
         place = moved(sensor.position)
         if place != sensor.position:
             channels.append(sensor.channel)
-        sensors.append(sensor.model_copy(update={"position": place}))
+        sensors.append(replace(sensor, position=place))
     return replace(campaign, sensors=tuple(sensors)), tuple(channels)
 
 
@@ -79,7 +79,7 @@ def _nearest(place: Place, places: Sequence[Place]) -> Place:
 def with_stations(campaign: Campaign, other: Mapping[Wheel, Wheel]) -> tuple[Campaign, tuple[str, ...]]:
     """Put the wheels' sensors on other wheels; give the campaign and the channels."""
     sensors = tuple(
-        one if one.on == "body" else one.model_copy(update={"on": other[one.on]}) for one in campaign.sensors
+        one if one.on is None or one.on == "body" else replace(one, on=other[one.on]) for one in campaign.sensors
     )
     return replace(campaign, sensors=sensors), tuple(one.channel for one in campaign.sensors if one.on != "body")
 

@@ -16,9 +16,7 @@ _SEVERAL = 2
 def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]:
     """Exchange left and right, and front and rear, of the drops' wheels, of the wheels' sensors and of all sensors."""
     for one, two, other in (("left", "right", SIDES), ("front", "rear", ENDS)):
-        drops = tuple(
-            drop.model_copy(update={"wheels": tuple(other[wheel] for wheel in drop.wheels)}) for drop in campaign.drops
-        )
+        drops = tuple(replace(drop, wheels=tuple(other[wheel] for wheel in drop.wheels)) for drop in campaign.drops)
         pairs = zip(campaign.recordings, campaign.drops, drops, strict=True)
         names = tuple(each.name for each, was, now in pairs if set(was.wheels) != set(now.wheels))
         if len(names) >= _SEVERAL:

@@ -106,7 +106,7 @@ def _wheelbase(campaign: Campaign) -> float | None:
     """Return the wheelbase, or else about how far the sensors are apart along the vehicle; None where too few have places."""
     places = [one.position for one in campaign.sensors if one.on == "body"]
     x = [place[0] for place in places if place is not None]
-    if len(x) < _FEWEST or len(x) < len(places):
+    if len(x) < _FEWEST or len(x) < len(places) or any(one.on is None for one in campaign.sensors):
         return None
     return campaign.wheelbase.value if campaign.wheelbase is not None else (max(x) - min(x)) or None
 

@@ -99,10 +99,9 @@ def _load_frames(campaign: Campaign) -> Iterator[Candidate]:
 
 def _reframed(load: Load, moved: Callable[[Place], Place]) -> Change:
     items = tuple(
-        item if item.position is None else item.model_copy(update={"position": moved(item.position)})
-        for item in load.items
+        item if item.position is None else replace(item, position=moved(item.position)) for item in load.items
     )
-    other = load.model_copy(update={"items": items})
+    other = replace(load, items=items)
 
     def change(campaign: Campaign) -> Campaign:
         return replace(campaign, loads=tuple(other if one.name == load.name else one for one in campaign.loads))
