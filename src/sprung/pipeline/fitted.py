@@ -22,6 +22,7 @@ from sprung.pipeline.diagnosis import (
 from sprung.pipeline.flight import fly, is_needed
 from sprung.pipeline.stand import Fitted, Stand, begun
 from sprung.prepare import Decay
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign
 from sprung.vehicle import Tracks
 
@@ -38,11 +39,11 @@ def fit_campaign(
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
     fall: bool | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
-    progress("reading what the drops show")
-    campaign, _, undeclared = examine(campaign)
+    progress(Step("comparing the drops with the campaign file"))
+    campaign, _, undeclared = examine(campaign, progress)
 
     def begin(mended: Sequence[Hypothesis]) -> Stand:
         return begun(campaign, tracks, extras, mended, progress, undeclared)
@@ -81,7 +82,7 @@ def _is_sound(fitted: Fitted) -> bool:
     return fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
 
 
-def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
+def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
     """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
     if not _is_sound(fitted) or fitted.choice.followed:
         return fitted
@@ -102,7 +103,7 @@ def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
     )
 
 
-def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
+def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Progress) -> Fitted:
     """Use the drops from their releases on, where that is wanted or needed, and where it says more."""
     if wanted is False or (wanted is None and not (_is_sound(fitted) and is_needed(fitted.fit))):
         return fitted
@@ -143,7 +144,7 @@ def _wrong_statement(stand: Stand) -> Hypothesis | None:
     """Look for one statement about loads or masses that explains what is not explained, before anything else is tried."""
     if stand.suspicion == "none":
         return None
-    stand.way.progress("looking for a wrong statement about loads and masses")
+    stand.way.progress(Step("looking for a wrong statement about loads and masses"))
     choice = stand.way.choice
     tracks: Tracks = "separate" if choice.open else choice.tracks
     return wrong_statement(Bench.of(stand.campaign, stand.prepared.decays, tracks, choice.linear_extras))
@@ -154,17 +155,18 @@ def _looked_at(stand: Stand) -> tuple[Hypothesis, ...]:
     suspicion, choice = stand.suspicion, stand.way.choice
     if suspicion == "none":
         return ()
-    stand.way.progress("looking for what is wrong")
+    progress = stand.way.progress
+    progress(Step("looking for what is wrong"))
     tracks: Tracks = "separate" if choice.open else choice.tracks
 
     def bench(decays: Sequence[Decay]) -> Bench:
         return Bench.of(stand.campaign, decays, tracks, choice.linear_extras)
 
     if suspicion == "contradicted":
-        return diagnose(bench(stand.way.decays))
+        return diagnose(bench(stand.way.decays), progress)
     # A sensor that tells something wrong may have told the landing wrong. Without any, what is left may be too little.
     safe = bench(without_looking_at_wheels(stand.campaign, stand.prepared.decays))
-    taken = diagnose(safe)
+    taken = diagnose(safe, progress)
     if safe.base.explained or any(not one.specific and one.fault.code != "drift" for one in taken):
-        return diagnose(bench(stand.prepared.decays)) or taken
+        return diagnose(bench(stand.prepared.decays), progress) or taken
     return taken

@@ -17,6 +17,7 @@ from sprung.pipeline.diagnosis.common.undeclared_load import undeclared_loads
 from sprung.pipeline.diagnosis.common.upside_down import upside_down
 from sprung.pipeline.diagnosis.suspicion import SURE
 from sprung.prepare import FirstMotion, Prepared, as_seen, moves_as_stated, prepare
+from sprung.progress import Progress, silent
 from sprung.recording import Campaign
 
 _HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
@@ -44,13 +45,15 @@ class Examined(NamedTuple):
     undeclared: dict[str, Fault]
 
 
-def examine(campaign: Campaign) -> Examined:
+def examine(campaign: Campaign, progress: Progress = silent) -> Examined:
     """Hold what a campaign states against what its recordings show before anything is fitted.
 
     Parameters
     ----------
     campaign
         As it was read.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -61,10 +64,10 @@ def examine(campaign: Campaign) -> Examined:
     InputError
         If several mistakes explain the recordings that lead to different vehicles, and nothing tells which it is.
     """
-    prepared = prepare(campaign)
+    prepared = prepare(campaign, progress)
     corrected = with_common_cause_corrected(campaign, prepared)
     if corrected is not campaign:
-        prepared = prepare(corrected)
+        prepared = prepare(corrected, progress)
     return Examined(corrected, prepared, undeclared_loads(corrected, prepared))
 
 
