@@ -373,3 +373,16 @@ def test_an_axis_is_one_only_beside_its_sisters() -> None:
     assert axis_named("acc_x", ("acc_x",)) is None
     assert axis_named("max", ("max", "maz_2")) is None
     assert axis_named("10WHEL0100FLACXP", ()) == "x"
+
+
+def test_drops_of_which_no_name_tells_the_load_are_grouped_by_how_they_swing(
+    tmp_path: Path, campaign: Campaign
+) -> None:
+    for number, recording in enumerate(campaign.recordings):
+        write_table(tmp_path / f"run{number}.csv", recording.values, recording.rate)
+    draft = sprung.draft(tmp_path)
+    # Five drops empty, then the same five with ballast, 200 kg on 1552 kg.
+    assert [drop.load for drop in draft.drops] == ["empty"] * 5 + ["loaded"] * 5
+    assert "swings more slowly than others of the same wheels" in draft.drops[7].notes[-1]
+    assert any(what.startswith("which load?") for where, what in draft.missing if where == "load[1].items (loaded)")
+    assert "# 5 drops swing more slowly" in draft.text
