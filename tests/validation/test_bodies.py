@@ -15,8 +15,8 @@ SEEDS = 200
 
 
 def decaying(peak: float) -> np.ndarray:
-    """A roll of 1.6 Hz and damping ratio 0.4, with its peak as a multiple of the noise."""
-    motion: np.ndarray = np.exp(-4 * TIME) * np.sin(2 * np.pi * 1.6 * TIME)
+    """A roll of 1.6 Hz, heavily damped, with its peak as a multiple of the noise."""
+    motion: np.ndarray = np.exp(-8 * TIME) * np.sin(2 * np.pi * 1.6 * TIME)
     return np.asarray(peak * NOISE * motion / np.abs(motion).max())
 
 
