@@ -11,8 +11,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from sprung.errors import Fault
+from sprung.errors import Fault, InputError
 from sprung.pipeline.clocks import ClockReport
+from sprung.pipeline.diagnosis import examine
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
@@ -213,7 +214,13 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = s
     """
     if not isinstance(campaign, Campaign):
         campaign = _campaign_at(Path(campaign), progress)
-    return check_prepared(campaign, prepare(campaign, progress))
+    try:
+        campaign, prepared, undeclared = examine(campaign, progress)
+    except InputError as error:  # what makes identifying impossible is one more thing to be told of here
+        found = tuple(Fault("mirrored", one.where, one.found, one.do) for one in error.problems)
+        return check_prepared(replace(campaign, faults=(*campaign.faults, *found)), prepare(campaign, progress))
+    campaign = replace(campaign, faults=(*campaign.faults, *dict.fromkeys(undeclared.values())))
+    return check_prepared(campaign, prepared)
 
 
 def _campaign_at(path: Path, progress: Progress) -> Campaign:
@@ -249,7 +256,7 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     recorded = tuple(Recorded.of(*pair) for pair in zip(prepared.seen, campaign.recordings, strict=True))
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
-    everything = (*campaign.faults, *of_drops, *of_left_out)
+    everything = tuple(dict.fromkeys((*campaign.faults, *of_drops, *of_left_out)))  # one may be that of several drops
     reports += [_unread(drop, everything) for drop in campaign.unread]
     return Check(tuple(reports), everything, recorded, campaign, campaign.missing)
 

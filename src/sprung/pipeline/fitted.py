@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from sprung.errors import Fault
@@ -13,9 +13,11 @@ from sprung.pipeline.diagnosis import (
     Bench,
     Hypothesis,
     diagnose,
+    examine,
     scores,
     walking_slowly,
     without_looking_at_wheels,
+    wrong_statement,
 )
 from sprung.pipeline.flight import fly, is_needed
 from sprung.pipeline.stand import Fitted, Stand, begun
@@ -40,17 +42,20 @@ def fit_campaign(
     progress: Progress = silent,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
+    progress(Step("comparing the drops with the campaign file"))
+    campaign, _, undeclared = examine(campaign, progress)
 
     def begin(mended: Sequence[Hypothesis]) -> Stand:
-        return begun(campaign, tracks, extras, mended, progress)
+        return begun(campaign, tracks, extras, mended, progress, undeclared)
 
-    stand, mended, accused = begin(()), tuple[Hypothesis, ...](), tuple[Fault, ...]()
+    stand, mended = _with_statement(begin(()), begin)
+    accused = tuple[Fault, ...]()
     told = _looked_at(stand) if stand.open_to_forces else None
     if told and all(one.remedy != "named" for one in told):
         # Where what is put right leaves nothing to explain, no forces are looked for in what is spoilt.
-        other = begin(told)
+        other = begin((*mended, *told))
         if other.suspicion == "none":
-            stand, mended = other, told
+            stand, mended = other, (*mended, *told)
     stand = stand.with_forces()
     for turn in range(_DIAGNOSES):
         same = turn == 0 and not mended and not stand.way.choice.nonlinear
@@ -67,6 +72,7 @@ def fit_campaign(
         listed = scores(stand.campaign, stand.way.decays, stand.way.summit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         stand = begin(mended).with_forces()
+    accused = (*dict.fromkeys(undeclared.values()), *accused)
     fitted = _with_flights(_with_drifts(stand.judged()._replace(accused=accused)), progress)
     return _with_the_fall(fitted, campaign.model.fall if fall is None else fall, progress)
 
@@ -121,6 +127,27 @@ def _with_drifts(fitted: Fitted) -> Fitted:
     named = {one.channel for one in campaign.sensors if any(one.channel in where for where in said)}
     more = tuple(one for one in walking_slowly(decays, fitted.summit, campaign.sensors) if one.where not in named)
     return fitted._replace(campaign=replace(campaign, faults=(*campaign.faults, *more)))
+
+
+def _with_statement(
+    stand: Stand, begin: Callable[[Sequence[Hypothesis]], Stand]
+) -> tuple[Stand, tuple[Hypothesis, ...]]:
+    """Correct the one statement about loads or masses that leaves nothing suspicious, being otherwise."""
+    statement = _wrong_statement(stand)
+    other = None if statement is None else begin((statement,))
+    if statement is None or other is None or other.suspicion != "none":
+        return stand, ()
+    return other, (statement,)
+
+
+def _wrong_statement(stand: Stand) -> Hypothesis | None:
+    """Look for one statement about loads or masses that explains what is not explained, before anything else is tried."""
+    if stand.suspicion == "none":
+        return None
+    stand.way.progress(Step("looking for a wrong statement about loads and masses"))
+    choice = stand.way.choice
+    tracks: Tracks = "separate" if choice.open else choice.tracks
+    return wrong_statement(Bench.of(stand.campaign, stand.prepared.decays, tracks, choice.linear_extras))
 
 
 def _looked_at(stand: Stand) -> tuple[Hypothesis, ...]:

@@ -201,7 +201,7 @@ def result_of(
         modes={load: () if rejected else mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
         fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
-        faults=(*looked_at.faults, *accused),
+        faults=tuple(dict.fromkeys((*looked_at.faults, *accused))),
         validation=validated,
         setup=setup_of(campaign, fit, choice.known, options),
         series={

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 from sprung.errors import Fault, Problems
@@ -111,9 +112,13 @@ def begun(
     extras: Sequence[str] | None,
     mended: Sequence[Hypothesis],
     progress: Progress,
+    unusable: Mapping[str, Fault] = MappingProxyType({}),
 ) -> Stand:
-    """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle."""
-    left_out = {one.drop: one.fault for one in mended if one.drop is not None}
+    """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle.
+
+    Drops that are unusable for a known reason, by the names of their recordings, are left out from the start.
+    """
+    left_out = {**unusable, **{one.drop: one.fault for one in mended if one.drop is not None}}
     for one in mended:
         if one.drop is None:
             changed = one.change(campaign)

@@ -74,6 +74,8 @@ class DraftDrop:
         What was seen of it.
     notes
         What was found and what was concluded from it, in words.
+    proposed
+        Whether its load is taken from how the vehicle swings, and not from a name.
     """
 
     files: tuple[str, ...]
@@ -82,6 +84,7 @@ class DraftDrop:
     wheels: tuple[Wheel, ...]
     found: FoundDrop
     notes: tuple[str, ...]
+    proposed: bool = False
 
     @property
     def kind(self) -> str | None:
