@@ -134,17 +134,17 @@ BAD: dict[str, tuple[Spoil, tuple[str, ...], int]] = {
     ),
     "wheelbase in mm": (
         lambda folder: folder.edit("wheelbase = 2.76", "wheelbase = 2760"),
-        ("vehicle.wheelbase: found 2760; expected at most 100 m", "Write it in m."),
+        ("vehicle.wheelbase: found 2760; expected 0.6 to 12 m", "2.76 if it was stated in mm"),
         1,
     ),
     "positions in mm": (
         lambda folder: folder.edit("[0.12, 0.68, 0.55]", "[120, 680, 550]"),
-        ("sensor[1].position (body_fl): found 680", "Write it in m."),
+        ("sensor[1].position (body_fl): found [120, 680, 550]", "0.12, 0.68, 0.55 if it was stated in mm"),
         1,
     ),
     "huge load": (
         lambda folder: folder.edit("mass = 140.0", "mass = 1e300"),
-        ("load[1].items[1].mass (ballast): found 1e+300", "Write it in kg."),
+        ("load[1].items[1].mass (ballast): found 1e+300", "it is read in kg."),
         1,
     ),
     "huge mass": (

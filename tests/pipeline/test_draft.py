@@ -17,6 +17,7 @@ from sprung.errors import InputError
 from sprung.pipeline import Draft
 from sprung.pipeline.drafting.names import axis_named, load_named, part_named, station_named, wheels_named
 from sprung.pipeline.drafting.text import campaign_text
+from sprung.progress import Step
 from sprung.recording import Campaign
 from sprung.report import draft_view
 from sprung.simulation import simulate
@@ -317,10 +318,14 @@ def test_without_a_drop_everything_is_refused_with_the_reasons(tmp_path: Path) -
 
 def test_progress_runs_from_nothing_to_everything(tmp_path: Path, campaign: Campaign) -> None:
     write_session(tmp_path, campaign)
-    seen: list[float] = []
-    sprung.draft(tmp_path, progress=seen.append)
+    steps: list[Step] = []
+    sprung.draft(tmp_path, progress=steps.append)
+    seen = [step.done for step in steps if step.done is not None]
+    assert len(seen) == len(steps)
     assert seen == sorted(seen)
+    assert seen[0] == 0.0
     assert seen[-1] == pytest.approx(1.0)
+    assert {step.step for step in steps} == set(range(1, len(campaign.recordings) + 1))
 
 
 @pytest.mark.parametrize(

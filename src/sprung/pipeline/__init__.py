@@ -11,7 +11,7 @@ from sprung.pipeline.displays import (
     ratios_table,
 )
 from sprung.pipeline.drafting import Draft, draft
-from sprung.pipeline.identify import identify
+from sprung.pipeline.identify import Identification, identify, identify_campaign, with_amplitudes
 from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
 from sprung.pipeline.plan import plan, plan_campaign, plan_file
 from sprung.pipeline.recordings import is_recordings, modes_of_recordings
@@ -29,6 +29,7 @@ __all__ = [
     "DropReport",
     "FitReport",
     "FoundMode",
+    "Identification",
     "LoadModes",
     "ModesByLoad",
     "Recorded",
@@ -41,6 +42,7 @@ __all__ = [
     "derived_table",
     "draft",
     "identify",
+    "identify_campaign",
     "is_recordings",
     "load",
     "meaning_of",
@@ -54,4 +56,5 @@ __all__ = [
     "plan_file",
     "ratios_table",
     "validate",
+    "with_amplitudes",
 ]

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 
-from sprung.errors import Fault
+from sprung.errors import Fault, InputError
 from sprung.pipeline.clocks import ClockReport
+from sprung.pipeline.diagnosis import examine
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
+from sprung.progress import Progress, silent
 from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
@@ -190,7 +192,7 @@ def _is_within(place: str, file: str) -> bool:
     return place.startswith(f"{file}: ")
 
 
-def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[float], None] | None = None) -> Check:
+def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = silent) -> Check:
     """Judge the recordings of a campaign; no geometry is needed for that.
 
     Parameters
@@ -199,7 +201,7 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[fl
         From `sprung.read`; or a campaign file, which need not be complete, or its folder; or a folder with nothing but
         recordings, for which a campaign is drafted as `sprung.draft` does.
     progress
-        Called while drafting with the part that is done, 0 to 1.
+        Called with each step that begins.
 
     Returns
     -------
@@ -212,15 +214,21 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[fl
     """
     if not isinstance(campaign, Campaign):
         campaign = _campaign_at(Path(campaign), progress)
-    return check_prepared(campaign, prepare(campaign))
+    try:
+        campaign, prepared, undeclared = examine(campaign, progress)
+    except InputError as error:  # what makes identifying impossible is one more thing to be told of here
+        found = tuple(Fault("mirrored", one.where, one.found, one.do) for one in error.problems)
+        return check_prepared(replace(campaign, faults=(*campaign.faults, *found)), prepare(campaign, progress))
+    campaign = replace(campaign, faults=(*campaign.faults, *dict.fromkeys(undeclared.values())))
+    return check_prepared(campaign, prepared)
 
 
-def _campaign_at(path: Path, progress: Callable[[float], None] | None) -> Campaign:
+def _campaign_at(path: Path, progress: Progress) -> Campaign:
     """Read a campaign as far as it is written down, or draft one from recordings alone."""
     if not path.is_dir() or any(path.glob("*.toml")):
-        return read(path, complete=False)
+        return read(path, complete=False, progress=progress)
     drafted = draft(path, progress=progress)
-    campaign = read_document(tomllib.loads(drafted.text), path / FILE, complete=False)
+    campaign = read_document(tomllib.loads(drafted.text), path / FILE, complete=False, progress=progress)
     return replace(campaign, faults=(*campaign.faults, *_without_drop(drafted)))
 
 
@@ -248,7 +256,7 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     recorded = tuple(Recorded.of(*pair) for pair in zip(prepared.seen, campaign.recordings, strict=True))
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
-    everything = (*campaign.faults, *of_drops, *of_left_out)
+    everything = tuple(dict.fromkeys((*campaign.faults, *of_drops, *of_left_out)))  # one may be that of several drops
     reports += [_unread(drop, everything) for drop in campaign.unread]
     return Check(tuple(reports), everything, recorded, campaign, campaign.missing)
 

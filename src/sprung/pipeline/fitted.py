@@ -13,13 +13,16 @@ from sprung.pipeline.diagnosis import (
     Bench,
     Hypothesis,
     diagnose,
+    examine,
     scores,
     walking_slowly,
     without_looking_at_wheels,
+    wrong_statement,
 )
 from sprung.pipeline.flight import fly, is_needed
 from sprung.pipeline.stand import Fitted, Stand, begun
 from sprung.prepare import Decay
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign
 from sprung.vehicle import Tracks
 
@@ -36,20 +39,23 @@ def fit_campaign(
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
     fall: bool | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
+    progress(Step("comparing the drops with the campaign file"))
+    campaign, _, undeclared = examine(campaign, progress)
 
     def begin(mended: Sequence[Hypothesis]) -> Stand:
-        return begun(campaign, tracks, extras, mended, progress)
+        return begun(campaign, tracks, extras, mended, progress, undeclared)
 
-    stand, mended, accused = begin(()), tuple[Hypothesis, ...](), tuple[Fault, ...]()
+    stand, mended = _with_statement(begin(()), begin)
+    accused = tuple[Fault, ...]()
     told = _looked_at(stand) if stand.open_to_forces else None
     if told and all(one.remedy != "named" for one in told):
         # Where what is put right leaves nothing to explain, no forces are looked for in what is spoilt.
-        other = begin(told)
+        other = begin((*mended, *told))
         if other.suspicion == "none":
-            stand, mended = other, told
+            stand, mended = other, (*mended, *told)
     stand = stand.with_forces()
     for turn in range(_DIAGNOSES):
         same = turn == 0 and not mended and not stand.way.choice.nonlinear
@@ -66,6 +72,7 @@ def fit_campaign(
         listed = scores(stand.campaign, stand.way.decays, stand.way.summit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         stand = begin(mended).with_forces()
+    accused = (*dict.fromkeys(undeclared.values()), *accused)
     fitted = _with_flights(_with_drifts(stand.judged()._replace(accused=accused)), progress)
     return _with_the_fall(fitted, campaign.model.fall if fall is None else fall, progress)
 
@@ -75,7 +82,7 @@ def _is_sound(fitted: Fitted) -> bool:
     return fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
 
 
-def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
+def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
     """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
     if not _is_sound(fitted) or fitted.choice.followed:
         return fitted
@@ -96,7 +103,7 @@ def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
     )
 
 
-def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
+def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Progress) -> Fitted:
     """Use the drops from their releases on, where that is wanted or needed, and where it says more."""
     if wanted is False or (wanted is None and not (_is_sound(fitted) and is_needed(fitted.fit))):
         return fitted
@@ -122,22 +129,44 @@ def _with_drifts(fitted: Fitted) -> Fitted:
     return fitted._replace(campaign=replace(campaign, faults=(*campaign.faults, *more)))
 
 
+def _with_statement(
+    stand: Stand, begin: Callable[[Sequence[Hypothesis]], Stand]
+) -> tuple[Stand, tuple[Hypothesis, ...]]:
+    """Correct the one statement about loads or masses that leaves nothing suspicious, being otherwise."""
+    statement = _wrong_statement(stand)
+    other = None if statement is None else begin((statement,))
+    if statement is None or other is None or other.suspicion != "none":
+        return stand, ()
+    return other, (statement,)
+
+
+def _wrong_statement(stand: Stand) -> Hypothesis | None:
+    """Look for one statement about loads or masses that explains what is not explained, before anything else is tried."""
+    if stand.suspicion == "none":
+        return None
+    stand.way.progress(Step("looking for a wrong statement about loads and masses"))
+    choice = stand.way.choice
+    tracks: Tracks = "separate" if choice.open else choice.tracks
+    return wrong_statement(Bench.of(stand.campaign, stand.prepared.decays, tracks, choice.linear_extras))
+
+
 def _looked_at(stand: Stand) -> tuple[Hypothesis, ...]:
     """Look for what is wrong, where there is reason to, with the larger of the models that are open."""
     suspicion, choice = stand.suspicion, stand.way.choice
     if suspicion == "none":
         return ()
-    stand.way.progress("looking for what is wrong")
+    progress = stand.way.progress
+    progress(Step("looking for what is wrong"))
     tracks: Tracks = "separate" if choice.open else choice.tracks
 
     def bench(decays: Sequence[Decay]) -> Bench:
         return Bench.of(stand.campaign, decays, tracks, choice.linear_extras)
 
     if suspicion == "contradicted":
-        return diagnose(bench(stand.way.decays))
+        return diagnose(bench(stand.way.decays), progress)
     # A sensor that tells something wrong may have told the landing wrong. Without any, what is left may be too little.
     safe = bench(without_looking_at_wheels(stand.campaign, stand.prepared.decays))
-    taken = diagnose(safe)
+    taken = diagnose(safe, progress)
     if safe.base.explained or any(not one.specific and one.fault.code != "drift" for one in taken):
-        return diagnose(bench(stand.prepared.decays)) or taken
+        return diagnose(bench(stand.prepared.decays), progress) or taken
     return taken

@@ -30,6 +30,7 @@ from sprung.modal import (
 )
 from sprung.pipeline.displays import found_modes_table
 from sprung.prepare import Decay, prepare
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign
 from sprung.tables import Table, escaped
 from sprung.vehicle import Sensor
@@ -161,6 +162,7 @@ def modes(
     *,
     amplitude: bool = False,
     diagram: bool = False,
+    progress: Progress = silent,
 ) -> ModesByLoad:
     """Find the modes of every load; no vehicle model is needed.
 
@@ -177,6 +179,8 @@ def modes(
         Whether to follow each mode through the decays, for frequency and damping against amplitude.
     diagram
         Whether to draw up a stabilisation diagram beside it.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -190,7 +194,7 @@ def modes(
         If there is no such method or no drop can be used.
     """
     campaign.require_complete()
-    decays = prepare(campaign).decays
+    decays = prepare(campaign, progress).decays
     if not decays:
         problems = Problems()
         problems.add(campaign.name, "no drop that can be used", "at least one", "Run `sprung check` on the campaign.")
@@ -199,12 +203,18 @@ def modes(
     for load in campaign.loads:
         of_load = [decay for decay in decays if decay.load == load.name]
         if of_load:
-            found[load.name] = _modes_of(of_load, campaign, method, order, amplitude, diagram)
+            found[load.name] = _modes_of(of_load, campaign, method, order, amplitude, diagram, progress)
     return found
 
 
 def _modes_of(
-    decays: list[Decay], campaign: Campaign, method: str, order: int | None, amplitude: bool, diagram: bool
+    decays: list[Decay],
+    campaign: Campaign,
+    method: str,
+    order: int | None,
+    amplitude: bool,
+    diagram: bool,
+    progress: Progress,
 ) -> LoadModes:
     # Records of another rate, or channels that one drop lacks, cannot stand in the same matrix.
     rate = Counter(decay.rate for decay in decays).most_common(1)[0][0]
@@ -224,6 +234,8 @@ def _modes_of(
         a=a.value if a is not None else None,
         amplitude=amplitude,
         diagram=diagram,
+        load=decays[0].load,
+        progress=progress,
     )
 
 
@@ -239,6 +251,8 @@ def examined(
     a: float | None = None,
     amplitude: bool = False,
     diagram: bool = False,
+    load: str = "",
+    progress: Progress = silent,
 ) -> LoadModes:
     """Identify the modes of some records and everything that is said of them.
 
@@ -256,7 +270,13 @@ def examined(
         Where the channels are, by which modes are named; without any they are numbered.
     a
         Front axle to the body's centre of gravity, m, if known.
+    load
+        On the vehicle, for what is told of the steps.
+    progress
+        Called with each step that begins.
     """
+    of_load = f" of load {load}" if load else ""
+    progress(Step(f"identifying the modes{of_load}"))
     found = identify_modes(records, rate, method, order)
     drawn = stabilisation_diagram(records, rate) if diagram else None
     # Of recordings alone nothing else is known by which an invented mode would stand out.
@@ -266,11 +286,15 @@ def examined(
         _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
     )
     peaks = fft_frequencies(records, rate, found)
+    if amplitude:
+        progress(Step(f"following the modes{of_load} through the decays"))
     traces = {id(trace.mode): trace for trace in follow_modes(records, rate, found)} if amplitude else {}
     estimates = tuple(
         _followed(_estimate(mode, name, peak), traces.get(id(mode)))
         for mode, name, peak in zip(found, names, peaks, strict=True)
     )
+    if diagram:
+        progress(Step(f"computing the stabilisation diagram{of_load}"))
     return LoadModes(
         estimates,
         method,

@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.identify import result_of
 from sprung.pipeline.planned import as_test
 from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign, Drop, ModelChoice, read, read_vehicle
 from sprung.simulation import DEFAULT_HEIGHT, Given, Setup
 from sprung.units import STANDARD_GRAVITY
@@ -120,7 +121,7 @@ def plan(
     return draw_up(PlannedTest(subject, planned), wanted)
 
 
-def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable[[str], None] = lambda _: None) -> Plan:
+def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Progress = silent) -> Plan:
     """Identify a vehicle, and say what to measure next.
 
     Parameters
@@ -130,7 +131,7 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable
     wanted
         Percent that the standard uncertainty of no parameter is to exceed.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
 
     Returns
     -------
@@ -148,11 +149,11 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Callable
     problems.raise_if_any()
     campaign.require_complete()
     fitted = fit_campaign(campaign, progress=progress)
-    result = result_of(fitted)
+    result = result_of(fitted, progress=progress)
     if result.verdict.state == "reject":
         rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
         return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
-    progress("weighing the alternatives")
+    progress(Step("computing the bounds of the alternatives"))
     return draw_up(as_test(fitted), wanted)
 
 
@@ -162,7 +163,7 @@ def plan_file(
     wanted: float = 1.0,
     rate: float | None = None,
     noise: float | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Plan:
     """Say what to measure, from a vehicle file or a campaign.
 
@@ -176,7 +177,7 @@ def plan_file(
         Samples per second, and m/s² root-mean-square of every channel: for a vehicle file alone, 500 and 0.02 unless
         given; a campaign has its own.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
 
     Returns
     -------
@@ -196,7 +197,7 @@ def plan_file(
                 do = f"Leave {name} out, or plan from a vehicle file."
                 problems.add(f"plan: {name}", f"{value:g}", "nothing: a campaign brings its own along", do)
         problems.raise_if_any()
-        return plan_campaign(read(path), wanted=wanted, progress=progress)
+        return plan_campaign(read(path, progress=progress), wanted=wanted, progress=progress)
     file = read_vehicle(path)
     known = dict(file.known) if file.wheelbase is None else {**file.known, "wheelbase": file.wheelbase}
     return plan(

@@ -13,6 +13,7 @@ from sprung.errors import Problems
 from sprung.modal import DEFAULT
 from sprung.pipeline.modes import ModesByLoad, examined
 from sprung.prepare import find_drops
+from sprung.progress import Progress, counted, silent
 from sprung.recording import FILE, Table, read_table
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
 
@@ -65,6 +66,7 @@ def modes_of_recordings(
     start: float | None = None,
     amplitude: bool = False,
     diagram: bool = False,
+    progress: Progress = silent,
 ) -> ModesByLoad:
     """Find the modes common to free decays that nothing is known of but their recordings.
 
@@ -77,6 +79,8 @@ def modes_of_recordings(
     start
         Where the free decay begins, s on the files' own clock. Unless given, after the landing of each drop that is found in a
         recording, as `check` finds it; in a recording without a drop at its largest reading.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -90,7 +94,8 @@ def modes_of_recordings(
     """
     problems = Problems()
     tables: list[tuple[Path, Table]] = []
-    for file in recordings_in(Path(path)):
+    files = recordings_in(Path(path))
+    for file in counted(progress, "reading the recordings", files):
         with problems.collecting():
             tables.append((file, read_table(file)))
     problems.raise_if_any()
@@ -129,7 +134,15 @@ def modes_of_recordings(
             names.append(file.stem if len(spans) == 1 else f"{file.stem} from {table.time[begin]:.3f} s")
     problems.raise_if_any()
     numbered = examined(
-        records, rates[0], method, order, tuple(channels), tuple(names), amplitude=amplitude, diagram=diagram
+        records,
+        rates[0],
+        method,
+        order,
+        tuple(channels),
+        tuple(names),
+        amplitude=amplitude,
+        diagram=diagram,
+        progress=progress,
     )
     return ModesByLoad({RECORDINGS: numbered})
 

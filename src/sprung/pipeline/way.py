@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,6 +13,7 @@ from sprung.identification import NEAR, Summit, inflation_of
 from sprung.pipeline.candidates import SEPARATE, brought, decided, fit_from, possible, size_of
 from sprung.pipeline.choice import Choice
 from sprung.prepare import Decay
+from sprung.progress import Progress, silent
 
 Real = NDArray[np.float64]
 
@@ -73,14 +74,14 @@ class Way:
     path
         What was tried.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
     """
 
     choice: Choice
     summit: Summit
     decays: Sequence[Decay]
     path: tuple[Attempt, ...] = ()
-    progress: Callable[[str], None] = lambda _: None
+    progress: Progress = silent
 
     def asked(self, extra: str) -> float:
         """Give what is asked of an extra."""

@@ -13,6 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.prepare.slow_motion import SlowMotion
 from sprung.recording import kind_of
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel
@@ -103,6 +104,9 @@ class FoundDrop:
         Channels that show the fall of a wheel, by their index.
     wheels
         Which wheels fell; none where the channels' wheels are not known.
+    slow
+        The slow part of it, of all channels, by which its periods are compared with those of other drops; None where the
+        recordings of several loggers were put together.
     """
 
     begin: float
@@ -114,6 +118,7 @@ class FoundDrop:
     seen: Readings
     fell: tuple[int, ...] = ()
     wheels: tuple[Wheel, ...] = ()
+    slow: SlowMotion | None = None
 
     @property
     def window(self) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sprung.prepare.fallen import FoundDrop, Place, on_wheels, tell_wheels
 from sprung.prepare.falls import BLOW
 from sprung.prepare.judging import AFTER, BEFORE, Fall, judge
+from sprung.prepare.slow_motion import SlowMotion
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Sensor
 
@@ -148,7 +149,7 @@ def find_drops(
             first = max(clear, origin)
             judged = judge(buffer[:, first - origin :], rate, event - first, wheels)
             if isinstance(judged, Fall):
-                drops.append(_drop(judged, first, start, rate))
+                drops.append(_drop(judged, first, start, rate, buffer[:, first - origin :]))
                 searched, clear = (
                     first + judged.last + 1,
                     first + min(judged.landing + int(_LANDED * rate), judged.last),
@@ -163,11 +164,12 @@ def find_drops(
     return Found(kept, refused.largest, refused.count)
 
 
-def _drop(fall: Fall, first: int, start: float, rate: float) -> FoundDrop:
+def _drop(fall: Fall, first: int, start: float, rate: float, values: Real) -> FoundDrop:
     begin, release, landing, faded, end = (
         start + (first + sample) / rate for sample in (fall.first, fall.release, fall.landing, fall.faded, fall.last)
     )
-    return FoundDrop(begin, release, landing, faded, end, fall.ended, fall.seen)
+    slow = SlowMotion.of(values[:, : fall.last + 1], rate, fall.release, fall.seen.level)
+    return FoundDrop(begin, release, landing, faded, end, fall.ended, fall.seen, slow=slow)
 
 
 def _without_a_fall(drops: Sequence[FoundDrop], sit: NDArray[np.bool_], refused: _Refused) -> Iterator[FoundDrop]:

@@ -25,6 +25,9 @@ _NEAR = 0.1
 _UNTOLD = 0.05
 """Part of gravity up to which that is not worth a word: a tilt of 18 degrees."""
 
+_SEVERAL = 3
+"""Sensors from which the same mistake with all of them is told once."""
+
 _FARTHEST = 3.0
 """g at rest from which it is no offset any more, but numbers in an unknown unit."""
 
@@ -83,7 +86,7 @@ def put_right(
     if not rests:
         return unchanged
     told = _read(np.array(rests) / STANDARD_GRAVITY, _peaks(recordings), sensors)
-    faults = [fault for reading in told for fault in _faults(reading)]
+    faults = _together([fault for reading in told for fault in _faults(reading)])
     if not faults:
         return unchanged
     factors = np.array([np.nan if r.strange else _SCALES[r.scale][0] * (-1.0 if r.turned else 1.0) for r in told])
@@ -196,6 +199,30 @@ def _faults(reading: _Reading) -> list[Fault]:
         do = "Mount the sensor upright, or have its zero set."
         faults.append(Fault("offset", sensor.channel, f"{what}; nothing was changed", do))
     return faults
+
+
+def _together(faults: Sequence[Fault]) -> list[Fault]:
+    """Name one mistake with several sensors once: the same code, and the same thing to do about it."""
+    groups: dict[tuple[str, str], list[Fault]] = {}
+    for fault in faults:
+        alike = fault.code in {"unit", "sign"}
+        groups.setdefault((fault.code, fault.do if alike else fault.where + fault.do), []).append(fault)
+    return [
+        _one(group) if len(group) >= _SEVERAL else fault
+        for group in groups.values()
+        for fault in group[: _shown(group)]
+    ]
+
+
+def _shown(group: Sequence[Fault]) -> int:
+    return 1 if len(group) >= _SEVERAL else len(group)
+
+
+def _one(group: Sequence[Fault]) -> Fault:
+    first = group[0]
+    where = ", ".join(fault.where for fault in group)
+    what = f"{len(group)} sensors alike, such as {first.where}: {first.what}"
+    return Fault(first.code, where, what, first.do.replace(" for it ", " for them "))
 
 
 def _in_every_drop(holds: Flags, levels: Real) -> Flags:

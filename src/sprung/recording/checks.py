@@ -10,8 +10,9 @@ import numpy as np
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
+from sprung.recording.plausibility import LIMITS, implausible
 from sprung.recording.schema import KNOWABLE, CampaignFile, VehicleFileSchema
-from sprung.recording.sizes import SMALLEST, check_sizes, too_large
+from sprung.recording.sizes import SMALLEST, check_sizes, check_together
 from sprung.units import acceleration_factor
 from sprung.vehicle import EXTRAS, PARAMETERS, Sensor
 
@@ -45,6 +46,7 @@ def check(draft: Draft[CampaignFile], problems: Problems) -> None:
     _check_model(draft, problems)
     _check_drops(draft, problems)
     known = _check_known(draft, problems)
+    check_together(draft, known, problems)
     _check_sums(draft, known, problems)
 
 
@@ -109,7 +111,7 @@ def _check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
     placed = [
         sensor.position[:2] for sensor in draft.file.sensor if sensor.on == "body" and sensor.position is not None
     ]
-    if any(too_large(length, "m") for position in placed for length in position):
+    if any(not LIMITS["x"].hold(length) for position in placed for length in position):
         return  # said already, and what they span is not worth saying
     if len(placed) < 3:
         found, do = f"{len(placed)} sensors on the body", 'Add [[sensor]] entries with on = "body".'
@@ -172,23 +174,26 @@ def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, Kn
         unit, meaning, positive = "kg", name.replace("_", " "), True
         if name in PARAMETERS:
             unit, meaning, positive = PARAMETERS[name].unit, PARAMETERS[name].meaning, PARAMETERS[name].positive
-        expected = too_large(measured.value, unit)
+        beyond = implausible(name, measured.value)
         if measured.value < 0 or (measured.value < SMALLEST and positive):
             sign = "positive" if positive else "not negative"
             problems.add(where, f"{measured.value:g}", f"a {sign} number: the {meaning} in {unit}", "Correct it.")
-        elif expected is not None:
-            problems.add(where, f"{measured.value:g}", f"{expected}: the {meaning}", f"Write it in {unit}.")
+        elif beyond is not None:
+            expected, do = beyond
+            problems.add(where, f"{measured.value:g}", f"{expected}: the {meaning}", do)
         else:
             known[name] = measured.known
     wheelbase = draft.file.vehicle.wheelbase
-    if wheelbase is not None and wheelbase.value >= SMALLEST and too_large(wheelbase.value, "m") is None:
-        known["wheelbase"] = wheelbase.known
-    elif wheelbase is not None:
-        where = draft.where("vehicle", "wheelbase")
-        expected = too_large(wheelbase.value, "m") or "a positive number: front axle to rear axle in m"
-        problems.add(
-            where, f"{wheelbase.value:g}", expected, "Write it in m." if wheelbase.value > 0 else "Correct it."
-        )
+    if wheelbase is not None:
+        where, length = draft.where("vehicle", "wheelbase"), wheelbase.value
+        beyond = implausible("wheelbase", length)
+        if length < SMALLEST:
+            expected = "a positive number: front axle to rear axle in m"
+            problems.add(where, f"{length:g}", expected, "Correct it.")
+        elif beyond is not None:
+            problems.add(where, f"{length:g}", *beyond)
+        else:
+            known["wheelbase"] = wheelbase.known
     return known
 
 

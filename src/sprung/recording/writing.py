@@ -56,6 +56,18 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
     InputError
         If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
+    write_whole(folder, campaign_files(campaign), overwrite=overwrite)
+    return Path(folder) / FILE
+
+
+def campaign_files(campaign: Campaign) -> dict[str, bytes]:
+    """Return what `write` writes of a campaign: content by file name, the campaign file last.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    """
     pieces = [recording.parts or (recording,) for recording in campaign.recordings]
     names = tuple(_file_names(campaign.drops, pieces))
     sensors = {sensor.channel: sensor for sensor in campaign.sensors}
@@ -66,8 +78,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
     }
     files[SCHEMA_FILE] = schema_text().encode()
     files[FILE] = (SCHEMA_LINE + commented(_toml(_document(campaign, names)))).encode()
-    write_whole(folder, files, overwrite=overwrite)
-    return Path(folder) / FILE
+    return files
 
 
 def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) -> Iterator[tuple[str, ...]]:

@@ -7,10 +7,18 @@ from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
-from sprung.report.folder import write_report, write_results
+from sprung.report.folder import (
+    REPORT_FILES,
+    RESULT_FILES,
+    Saved,
+    add_report,
+    save_result,
+    write_report,
+    write_results,
+)
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
-from sprung.report.page import page_of
+from sprung.report.page import drawn_page, page_of
 from sprung.report.palette import LIGHT
 from sprung.report.paper import paper_view
 from sprung.report.paper_copy import pdf_of
@@ -36,6 +44,8 @@ __all__ = [
     "BODY_EDGES",
     "CHECK_FILE",
     "LIGHT",
+    "REPORT_FILES",
+    "RESULT_FILES",
     "STRUTS",
     "Band",
     "Curve",
@@ -45,7 +55,9 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
+    "Saved",
     "VehicleSketch",
+    "add_report",
     "amplitude_pictures",
     "blank_sketch",
     "channels_picture",
@@ -57,6 +69,7 @@ __all__ = [
     "draw_check",
     "draw_validation",
     "drawing_svg",
+    "drawn_page",
     "modes_view",
     "motion_picture",
     "near_picture",
@@ -66,6 +79,7 @@ __all__ = [
     "pdf_of",
     "plan_view",
     "result_view",
+    "save_result",
     "sketch_sheet",
     "spectra_picture",
     "stability_picture",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from sprung.errors import Problems
+from sprung.progress import Progress, Step, counted, silent
 from sprung.recording import Campaign, Drop, ModelChoice
 from sprung.simulation.beforehand import Given
 from sprung.simulation.setup import Setup, check_not_negative
@@ -35,6 +36,7 @@ def simulate(
     known: Mapping[str, Given] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
     gravity: float = STANDARD_GRAVITY,
+    progress: Progress = silent,
 ) -> Campaign:
     """Simulate the drop tests of a vehicle, as they would have been recorded.
 
@@ -65,6 +67,8 @@ def simulate(
         What is said about the model to identify.
     gravity
         m/s².
+    progress
+        Called with each drop that is begun.
 
     Returns
     -------
@@ -105,7 +109,7 @@ def simulate(
     first = max(before / rate - rest, 0.0)
     loaded = {load.name: load for load in setup.loads}
     released, accelerations = [], []
-    for drop in setup.drops:
+    for drop in counted(progress, "simulating the drops", setup.drops):
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         released.append(replace(drop, height=height))
         with problems.collecting():
@@ -115,6 +119,7 @@ def simulate(
             accelerations.append(fall.motion(1 / rate, after, first).acceleration)
     problems.raise_if_any()
     if forces_beside(vehicle.tracks, vehicle.extras):
+        progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
         blocks = [Block(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
         accelerations = [motion.acceleration for motion in motions]

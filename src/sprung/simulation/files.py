@@ -5,12 +5,18 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
+from sprung.progress import Progress, silent
 from sprung.recording import Campaign, read_vehicle
 from sprung.simulation.drops import simulate
 
 
 def simulate_file(
-    path: str | os.PathLike[str], *, rate: float = 500.0, noise: float = 0.02, seed: int | None = None
+    path: str | os.PathLike[str],
+    *,
+    rate: float = 500.0,
+    noise: float = 0.02,
+    seed: int | None = None,
+    progress: Progress = silent,
 ) -> Campaign:
     """Simulate the drop tests that a vehicle file describes.
 
@@ -24,6 +30,8 @@ def simulate_file(
         White noise of every channel, m/s² rms.
     seed
         Of the noise; None gives other noise each time.
+    progress
+        Called with each drop that is begun.
 
     Returns
     -------
@@ -48,5 +56,6 @@ def simulate_file(
         seed=seed,
         known=known,
         model=file.model,
+        progress=progress,
     )
     return replace(campaign, identification=file.identification, test=file.test)

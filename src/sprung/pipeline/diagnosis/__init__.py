@@ -7,6 +7,7 @@ chance, and no other one may do so about as well.
 """
 
 from sprung.pipeline.diagnosis.bench import Bench, without_looking_at_wheels
+from sprung.pipeline.diagnosis.common import examine, wrong_statement
 from sprung.pipeline.diagnosis.competition import diagnose
 from sprung.pipeline.diagnosis.hypotheses import Hypothesis
 from sprung.pipeline.diagnosis.slowly import walking_slowly
@@ -17,8 +18,10 @@ __all__ = [
     "Hypothesis",
     "Suspicion",
     "diagnose",
+    "examine",
     "scores",
     "suspicious",
     "walking_slowly",
     "without_looking_at_wheels",
+    "wrong_statement",
 ]

@@ -16,7 +16,7 @@ from sprung.pipeline.drafting.loggers import called, together
 from sprung.pipeline.drafting.look import Look
 from sprung.pipeline.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.pipeline.drafting.records import DraftDrop, DraftSensor
-from sprung.prepare import FoundDrop, Place, tell_wheels, wheel_score
+from sprung.prepare import FoundDrop, Place, slower_drops, tell_wheels, wheel_score
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel
 
@@ -27,6 +27,11 @@ _STILL = 8.0
 
 _CLEARLY = 2.0
 """By how much more a corner of the body falls with its own wheels than with the others."""
+
+_TAKEN_EMPTY = "the name of the file tells no load: taken to be empty"
+
+_PROPOSED = "loaded"
+"""What the load is called of drops that show one."""
 
 _SHORT = 20.0
 """s: a recording with one drop, no longer than this, needs no window."""
@@ -84,12 +89,42 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
         )
         for (files, _, _), drop, hint in zip(recorded, told, hints, strict=True)
     ]
-    return sensors, tuple(drafted), still
+    return sensors, _with_loads(drafted, sensors, [_says_load(files) for files, _, _ in recorded]), still
+
+
+def _says_load(files: Sequence[str]) -> bool:
+    """Say whether the names of a drop's files tell its load."""
+    return any(load_named(name) is not None for name in (called(files), *files))
+
+
+def _with_loads(
+    drops: Sequence[DraftDrop], sensors: Sequence[DraftSensor], named: Sequence[bool]
+) -> tuple[DraftDrop, ...]:
+    """Group the drops of which no name tells the load by how the vehicle swings, and propose a load for the slower ones."""
+    body = [i for i, sensor in enumerate(sensors) if sensor.on == "body"]
+    open_ = [
+        i for i, (drop, told) in enumerate(zip(drops, named, strict=True)) if not told and drop.found.slow is not None
+    ]
+    motions = [found.at(body) for i in open_ if (found := drops[i].found.slow) is not None]
+    slower = slower_drops([drops[i].found.fell for i in open_], motions) if body else ()
+    given = list(drops)
+    for i, is_slower in zip(open_, slower, strict=False):
+        drop = given[i]
+        notes = tuple(note for note in drop.notes if note != _TAKEN_EMPTY)
+        if is_slower is None:
+            note = "nothing tells whether a load was on the vehicle, as it was in others of these drops"
+            given[i] = replace(drop, load=None, notes=(*notes, note))
+            continue
+        load, pace = (_PROPOSED, "more slowly") if is_slower else ("empty", "more quickly")
+        note = f"swings {pace} than others of the same wheels: taken to be {load}"
+        given[i] = replace(drop, load=load, notes=(*notes, note), proposed=True)
+    return tuple(given)
 
 
 def _of(drop: FoundDrop, held: Sequence[str], names: Sequence[str]) -> FoundDrop:
     """Give a drop with the readings of other channels than those it holds, or in another order."""
-    return replace(drop, seen=drop.seen.at([held.index(name) if name in held else None for name in names]))
+    channels = [held.index(name) if name in held else None for name in names]
+    return replace(drop, seen=drop.seen.at(channels), slow=None if drop.slow is None else drop.slow.at(channels))
 
 
 def _part(
@@ -247,5 +282,5 @@ def _drop(
     load = load_named(called(files)) or next((load for load in map(load_named, files) if load is not None), None)
     if load is None and several == 1:
         load = "empty"
-        notes.append("the name of the file tells no load: taken to be empty")
+        notes.append(_TAKEN_EMPTY)
     return DraftDrop(files, window, load, wheels, drop, tuple(notes))

@@ -98,4 +98,4 @@ def _merged(group: Sequence[Look]) -> Recorded:
     seen = [one for one in group if one.drops]
     readings = reduce(Readings.beside, (one.drops[0].seen for one in seen))
     held = tuple(channel.name for one in seen for channel in one.channels)
-    return tuple(one.file.name for one in group), replace(seen[0].drops[0], seen=readings), held
+    return tuple(one.file.name for one in group), replace(seen[0].drops[0], seen=readings, slow=None), held

@@ -74,6 +74,8 @@ class DraftDrop:
         What was seen of it.
     notes
         What was found and what was concluded from it, in words.
+    proposed
+        Whether its load is taken from how the vehicle swings, and not from a name.
     """
 
     files: tuple[str, ...]
@@ -82,6 +84,7 @@ class DraftDrop:
     wheels: tuple[Wheel, ...]
     found: FoundDrop
     notes: tuple[str, ...]
+    proposed: bool = False
 
     @property
     def kind(self) -> str | None:
@@ -162,8 +165,13 @@ class Draft:
         """Where the campaign file goes."""
         return self.folder / FILE
 
-    def write(self) -> Path:
+    def write(self, *, overwrite: bool = False) -> Path:
         """Write the campaign file and, for editors, its JSON Schema beside it; whole or not at all.
+
+        Parameters
+        ----------
+        overwrite
+            Whether files of these names that sprung did not write, or that were changed since, are replaced.
 
         Returns
         -------
@@ -173,9 +181,10 @@ class Draft:
         Raises
         ------
         InputError
-            If the folder cannot be written to.
+            If such files would be overwritten, with their list, or the folder cannot be written to.
         """
-        write_whole(self.folder, {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()})
+        files = {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()}
+        write_whole(self.folder, files, overwrite=overwrite)
         return self.path
 
     def document(self) -> dict[str, Any]:

@@ -25,6 +25,7 @@ _STATION = gap("fl, fr, rl or rr: the wheel it sits on")
 _UNIT = gap("g or m/s^2: its unit, which neither the file nor gravity tells")
 _HIGH_PASS = gap("Hz, lower limit of the sensor or its amplifier; remove the line if it has none, or nobody knows it")
 _ITEMS = gap("[ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece of this load")
+_WHICH = gap("which load? [ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece on the vehicle")
 _LOAD = gap("empty, or the name of the [[load]] that was on the vehicle")
 _WHEELS = gap("[fl, fr, rl, rr] each in quotes: those that were dropped")
 
@@ -62,7 +63,7 @@ def campaign_text(draft: Draft) -> str:
         _vehicle(draft.name),
         *map(_sensor, draft.sensors),
         _LOADS,
-        *map(_load, draft.loads),
+        *(_load(name, draft) for name in draft.loads),
         *(_drop(drop) for drop in draft.drops),
     ]
     others = [*_without_drop(draft), *_unread(draft), *_left_out(draft)]
@@ -131,9 +132,17 @@ def _sensor(sensor: DraftSensor) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _load(name: str) -> str:
-    lines = ["[[load]]", _comment("by the names of the recordings")]
-    lines += [_key("name", name), _key("items", _ITEMS)]
+def _load(name: str, draft: Draft) -> str:
+    own = [drop for drop in draft.drops if drop.load == name]
+    why = [_comment("by the names of the recordings")]
+    if any(drop.proposed for drop in own):
+        said = (
+            f"{len(own)} drops swing more slowly than others of the same wheels, as with something on the vehicle: which load "
+            'was it? If there was none, remove this section and write load = "empty" in these drops.'
+        )
+        why = wrap(said, 118, initial_indent="# ", subsequent_indent="# ")
+    lines = ["[[load]]", *why]
+    lines += [_key("name", name), _key("items", _WHICH if any(drop.proposed for drop in own) else _ITEMS)]
     lines.append(
         "# or, when only totals are known, centred on the body:  added = { mass = ..., I_yy = ..., I_xx = ... }"
     )

@@ -1,0 +1,166 @@
+"""Periods of the body compared between drops of the same wheels: a vehicle with another mass swings at another rate.
+
+Two drops of the same wheels from about the same height begin alike, so that the slow motion of one is that of the other with
+its time stretched by the ratio of their periods. That ratio needs no model, no place of a sensor and no fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+Real = NDArray[np.float64]
+
+_HIGHEST = 3.0
+"""Hz, the width of the Gaussian low-pass: bodies bounce at 1 to 2.5 Hz, and wheels hop from 8 Hz on."""
+
+_RATE = 50.0
+"""Samples per second of slow motion."""
+
+_BEGIN, _END = 0.3, 2.0
+"""s after the release that are compared: all wheels have landed, and something moves still."""
+
+_STRETCHES = np.exp(np.linspace(-0.2, 0.2, 81))
+_SHIFTS = np.linspace(-0.04, 0.04, 17)
+"""Ratios of time that are tried, and s by which one drop may be behind the other: each fell as long as its blocks were high."""
+
+_ALIKE = 0.05
+"""Part of the sum of squares that may be left for two drops to be alike but for time and size."""
+
+_LARGER, _SMALLER, _PER_PERIOD = 0.03, 0.05, 2.5
+"""Logarithms of how much larger, and smaller, the slower of two drops may be for its mass to be the reason. Mass goes with the
+square of the period and with the inverse of the size; a drop from higher blocks is larger, and with friction slower too."""
+
+_ANOTHER = 0.02
+"""Logarithm of the ratio of periods from which a drop swings at another rate: that of 5 % more mass, by its square root."""
+
+_CLEAR = 3.0
+"""Times the spread of the drops within a group that groups are apart."""
+
+_LEAST = 0.015
+"""The same of periods and sizes together where other drops have shown groups: a load in the middle changes the period of roll
+little, and a heavier body still moves less."""
+
+
+@dataclass(frozen=True, eq=False)
+class SlowMotion:
+    """What is slow of a drop.
+
+    Attributes
+    ----------
+    values
+        Off the rest, m/s², `_RATE` samples per second from the release on, shape (channel, time).
+    """
+
+    values: Real
+
+    @classmethod
+    def of(cls, values: Real, rate: float, release: int, level: Real) -> SlowMotion:
+        """Take it from a recording.
+
+        Parameters
+        ----------
+        values
+            m/s², shape (channel, time); NaN in channels that are left out.
+        rate
+            Samples per second.
+        release
+            Sample of the release.
+        level
+            What the channels read at rest, m/s², shape (channel,).
+        """
+        last = release + int((_END + 0.5) * _STRETCHES[-1] * rate)
+        moved = np.nan_to_num(values[:, release:last] - level[:, None])
+        if moved.shape[1] < 2:
+            return cls(np.zeros((len(values), 0)))
+        smooth = gaussian_filter1d(moved, rate / (2 * np.pi * _HIGHEST), axis=1, mode="nearest")
+        time = np.arange(moved.shape[1]) / rate
+        return cls(np.array([np.interp(np.arange(0, time[-1], 1 / _RATE), time, one) for one in smooth]))
+
+    def at(self, channels: Sequence[int | None]) -> SlowMotion:
+        """Return the same of other channels, by their index here; one that it does not have rests."""
+        padded = np.vstack([self.values, np.zeros((1, self.values.shape[1]))])
+        return SlowMotion(padded[[-1 if channel is None else channel for channel in channels]])
+
+    def beside(self, other: SlowMotion) -> tuple[float, float]:
+        """Return the logarithms of this drop's periods and size over those of another; NaN where the two are not alike."""
+        end = min(
+            _END, (other.values.shape[1] - 1) / _RATE / _STRETCHES[-1] - 0.05, self.values.shape[1] / _RATE - 0.05
+        )
+        time = np.arange(_BEGIN, end, 1 / _RATE)
+        if time.size < _RATE / 2:
+            return float("nan"), float("nan")
+        own = self.values[:, round(_BEGIN * _RATE) :][:, : time.size]
+        clock = np.arange(other.values.shape[1]) / _RATE
+        energy = float((own * own).sum())
+        best, stretch, size = np.inf, np.nan, np.nan
+        for ratio in _STRETCHES.tolist():
+            for shift in _SHIFTS.tolist():
+                warped = np.array(
+                    [np.interp(_BEGIN + shift + ratio * (time - _BEGIN), clock, one) for one in other.values]
+                )
+                scale = float((own * warped).sum() / max(float((warped * warped).sum()), np.finfo(float).tiny))
+                left = float(((own - scale * warped) ** 2).sum())
+                if left < best:
+                    best, stretch, size = left, ratio, scale
+        if not best < _ALIKE * energy or size <= 0:
+            return float("nan"), float("nan")
+        period, growth = -float(np.log(stretch)), float(np.log(size))
+        of_slower = growth * float(np.sign(period))
+        by_mass = -_PER_PERIOD * abs(period) - _SMALLER < of_slower < _LARGER
+        return (period, growth) if by_mass else (float("nan"), float("nan"))
+
+
+def slower_drops(kinds: Sequence[Hashable], motions: Sequence[SlowMotion]) -> tuple[bool | None, ...]:
+    """Tell two groups of drops that swing at different rates.
+
+    Parameters
+    ----------
+    kinds
+        Of each drop what has to be alike for two of them to be compared, such as the wheels that fell.
+    motions
+        Of each drop, the same channels.
+
+    Returns
+    -------
+    tuple of bool or None
+        For each drop whether it is of the slower group, None where it was compared and nothing tells; a drop that no other is
+        like is of the quicker one. Empty where all swing at one rate, or only one drop or a minority of the kinds does not.
+    """
+    several = [kind for kind in dict.fromkeys(kinds) if sum(one == kind for one in kinds) > 1]
+    compared = {kind: _beside_first([i for i, one in enumerate(kinds) if one == kind], motions) for kind in several}
+    periods = {kind: {drop: period for drop, (period, _) in own.items()} for kind, own in compared.items()}
+    clear = {kind: found for kind, own in periods.items() if (found := _split(own, _ANOTHER))}
+    slow = sum(len(slower) for _, slower in clear.values())
+    if slow < 2 or 2 * len(clear) < len(periods):
+        return ()
+    groups: list[bool | None] = [None if kind in compared else False for kind in kinds]
+    for kind, own in compared.items():
+        heavier = {drop: period - size for drop, (period, size) in own.items()}
+        quicker, slower = clear.get(kind) or _split(heavier, _LEAST) or ((), ())
+        for drop in quicker:
+            groups[drop] = False
+        for drop in slower:
+            groups[drop] = True
+    return tuple(groups)
+
+
+def _beside_first(drops: Sequence[int], motions: Sequence[SlowMotion]) -> dict[int, tuple[float, float]]:
+    first, *others = drops
+    return {first: (0.0, 0.0), **{drop: motions[drop].beside(motions[first]) for drop in others}}
+
+
+def _split(periods: dict[int, float], least: float) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
+    """Part drops of one kind at the largest step of their periods; None where no step is clear."""
+    ordered = sorted((drop for drop in periods if np.isfinite(periods[drop])), key=periods.__getitem__)
+    steps = [periods[later] - periods[earlier] for earlier, later in pairwise(ordered)]
+    if not steps or max(steps) < least:
+        return None
+    at = int(np.argmax(steps)) + 1
+    within = max((step for i, step in enumerate(steps) if i != at - 1), default=0.0)
+    return (tuple(ordered[:at]), tuple(ordered[at:])) if steps[at - 1] > _CLEAR * within else None

@@ -1,0 +1,166 @@
+"""What a two-axle road vehicle may have: limits of every quantity that a campaign states, and the unit in which it was meant.
+
+The limits hold from a quad bike of 100 kg to a truck or coach of 40 t, with room to spare on both sides. They are no prior of
+the estimate: they only tell a value from a slip of the unit or of the pen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from sprung.vehicle import PARAMETERS
+
+_OTHER_UNITS: Mapping[str, Mapping[str, float]] = {
+    "kg": {"tonnes": 1e3, "g": 1e-3, "pounds": 0.45359237},
+    "kg m^2": {"t m^2": 1e3, "kg cm^2": 1e-4, "kg mm^2": 1e-6},
+    "m": {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048},
+    "N/m": {"N/mm": 1e3, "kN/mm": 1e6, "lbf/in": 175.12684},
+    "N s/m": {"N s/mm": 1e3, "kN s/mm": 1e6, "lbf s/in": 175.12684},
+    "N": {"kN": 1e3, "kgf": 9.80665},
+}
+"""By SI unit the others in which such a quantity is stated, and what one of them is in SI."""
+
+
+class Limits(NamedTuple):
+    """What a quantity may be, SI.
+
+    Attributes
+    ----------
+    low, high
+        The least and the most, inclusive.
+    unit
+        SI, a key of the other units.
+    zero
+        Whether it may be 0 as well: what a vehicle need not have.
+    """
+
+    low: float
+    high: float
+    unit: str
+    zero: bool = False
+
+    def hold(self, value: float) -> bool:
+        """Say whether a value, SI, is one that a vehicle may have."""
+        return self.low <= value <= self.high or (self.zero and value == 0)
+
+    @property
+    def expected(self) -> str:
+        """What is expected, in words."""
+        none = "0, or " if self.zero else ""
+        return f"{none}{self.low:g} to {self.high:g} {self.unit}, as two-axle vehicles have it"
+
+
+_SYMMETRIC_LENGTH = Limits(-20.0, 20.0, "m")
+
+LIMITS: Mapping[str, Limits] = {
+    "total_mass": Limits(50, 60e3, "kg"),
+    "front_axle_mass": Limits(20, 40e3, "kg"),
+    "rear_axle_mass": Limits(20, 40e3, "kg"),
+    "m_s": Limits(40, 60e3, "kg"),
+    "m_uf": Limits(1, 2e3, "kg"),
+    "m_ur": Limits(1, 2e3, "kg"),
+    "I_yy": Limits(5, 2e6, "kg m^2"),
+    "I_xx": Limits(1, 2e5, "kg m^2"),
+    **dict.fromkeys(("k_sf", "k_sr"), Limits(1e3, 1e7, "N/m")),
+    **dict.fromkeys(("k_tf", "k_tr"), Limits(8e3, 5e7, "N/m")),
+    **dict.fromkeys(("c_sf", "c_sr"), Limits(25, 5e5, "N s/m", zero=True)),
+    **dict.fromkeys(("c_tf", "c_tr"), Limits(0, 5e5, "N s/m")),
+    **dict.fromkeys(("k_af", "k_ar"), Limits(50, 1e7, "N/m", zero=True)),
+    **dict.fromkeys(("s_f", "s_r"), Limits(1e3, 1e10, "N/m")),
+    **dict.fromkeys(("k_bf", "k_br"), Limits(500, 1e8, "N/m", zero=True)),
+    **dict.fromkeys(("F_f", "F_r"), Limits(0, 1e5, "N")),
+    "wheelbase": Limits(0.6, 12.0, "m"),
+    **dict.fromkeys(("a", "b"), Limits(0.02, 12.0, "m")),
+    **dict.fromkeys(("t_f", "t_r", "t_f1", "t_r1", "t_f2", "t_r2"), Limits(0.03, 2.0, "m")),
+    **dict.fromkeys(("x_bf", "x_br"), Limits(0, 1.0, "m")),
+    "y_s": Limits(-1.5, 1.5, "m"),
+    "x_e": _SYMMETRIC_LENGTH,
+    "cg_height": Limits(0.1, 4.0, "m"),
+    "wheel_height": Limits(0.05, 1.2, "m"),
+    "roll_axis_height": Limits(-2.0, 3.0, "m"),
+    "block height": Limits(0.002, 0.6, "m"),
+    "x": _SYMMETRIC_LENGTH,
+    "y": Limits(-3.0, 3.0, "m"),
+    "z": Limits(-1.0, 6.0, "m"),
+    "load mass": Limits(0.5, 40e3, "kg", zero=True),
+    "load mass on a wheel": Limits(0.02, 2e3, "kg", zero=True),
+    "load inertia": Limits(0, 2e6, "kg m^2"),
+    "corner frequency": Limits(1e-4, 30.0, "Hz"),
+    "full scale": Limits(1e-4, 1e6, "m/s^2"),
+    "resolution": Limits(1e-9, 10.0, "m/s^2"),
+}
+"""By quantity: parameters and derived quantities by their names, everything else in words; x, y and z are places."""
+
+_ANYTHING: Mapping[str, Limits] = {
+    "kg": Limits(-1e6, 1e6, "kg"),
+    "N/m": Limits(-1e10, 1e10, "N/m"),
+    "N s/m": Limits(-1e9, 1e9, "N s/m"),
+    "N": Limits(-1e8, 1e8, "N"),
+    "N m": Limits(-1e8, 1e8, "N m"),
+    "m": _SYMMETRIC_LENGTH,
+    "1/m": Limits(-1e3, 1e3, "1/m"),
+    "1": Limits(0, 1e3, "1"),
+}
+"""By unit: the limits of the parameters that have none of their own."""
+
+
+def limits_of(quantity: str) -> Limits:
+    """Return the limits of a quantity.
+
+    Parameters
+    ----------
+    quantity
+        A key of `LIMITS`, or the name of any parameter.
+    """
+    return LIMITS[quantity] if quantity in LIMITS else _ANYTHING[PARAMETERS[quantity].unit]
+
+
+def implausible(quantity: str, *values: float) -> tuple[str, str] | None:
+    """Say what is expected in place of a value that no vehicle has, and in which unit it may have been stated.
+
+    Parameters
+    ----------
+    quantity
+        A key of `LIMITS`, or the name of a parameter.
+    values
+        SI; several of one kind, which were stated in one unit.
+
+    Returns
+    -------
+    tuple of str or None
+        What is expected, and what to do; None where all are plausible.
+
+    Examples
+    --------
+    >>> implausible("total_mass", 1551.8)
+    >>> implausible("total_mass", 1.5518)[1]
+    'Write it in kg: 1551.8 if it was stated in tonnes.'
+    """
+    limits = limits_of(quantity)
+    if all(map(limits.hold, values)):
+        return None
+    return limits.expected, remedy(dict.fromkeys(values, limits))
+
+
+def remedy(stated: Mapping[float, Limits], first: Sequence[float] = ()) -> str:
+    """Say what to write in place of values that are not plausible.
+
+    Parameters
+    ----------
+    stated
+        The values, SI, and the limits of each; all of one unit.
+    first
+        Those of them that are written as they would be in SI; all where none is given.
+    """
+    unit = next(iter(stated.values())).unit
+    meant = [
+        (name, factor)
+        for name, factor in _OTHER_UNITS.get(unit, {}).items()
+        if all(limits.hold(value * factor) for value, limits in stated.items())
+    ]
+    if not meant:
+        return f"Correct it; it is read in {unit}."
+    shown = tuple(first) or tuple(stated)
+    sizes = [f"{', '.join(f'{value * factor:.5g}' for value in shown)} if it was stated in {n}" for n, factor in meant]
+    return f"Write it in {unit}: {', or '.join(sizes)}."
