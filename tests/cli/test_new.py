@@ -48,13 +48,18 @@ def test_it_writes_a_campaign_file_and_its_schema(folder: Path, new: Run) -> Non
     assert max(map(len, text.splitlines())) <= 130
 
 
-def test_check_lists_every_gap_with_its_place_and_what_to_do(folder: Path, new: Run) -> None:
+def test_every_gap_is_listed_with_its_place_and_what_to_do(folder: Path, new: Run) -> None:
+    """`check` judges the recordings all the same, `identify` refuses."""
     assert new.status == 0
-    checked = run("check", folder)
-    assert checked.status == 2
-    assert "6 faults" in checked.err  # wheelbase, mass on the scales, four positions
-    for where in ("vehicle.wheelbase", "known.total_mass", *(f"sensor[{i}].position (ch{i})" for i in range(1, 5))):
-        assert f"campaign.toml: {where}: found a gap that is still to be filled; expected" in checked.err
+    places = ["vehicle.wheelbase", "known.total_mass", *(f"sensor[{i}].position (ch{i})" for i in range(1, 5))]
+    missing = run("check", folder, "--no-page", "--json").json["missing"]
+    assert [one["where"] for one in missing] == [f"campaign.toml: {place}" for place in places]
+    assert all(one["what"] and one["do"] for one in missing)
+    refused = run("identify", folder)
+    assert refused.status == 2
+    assert "6 faults" in refused.err  # wheelbase, mass on the scales, four positions
+    for place in places:
+        assert f"campaign.toml: {place}: found a gap that is still to be filled; expected" in refused.err
 
 
 def test_it_never_overwrites_a_campaign_file(folder: Path, new: Run) -> None:

@@ -175,7 +175,14 @@ def test_every_fault_is_named_at_once() -> None:
                 {"channel": "b", "on": "fr", "high_pass": 40.0},
             ],
             loads=[{"name": "lead"}, {"name": "sand", "added": {"mass": 1}}, {"name": "sand", "added": {"mass": 2}}],
-            drops=[{"load": "lead"}, {"weels": 3}, {"load": "snad"}, {"file": "x.csv"}, {"file": "x.csv"}],
+            drops=[
+                {"load": "lead"},
+                {"weels": 3},
+                {"load": "snad"},
+                {"file": "x.csv"},
+                {"file": "x.csv"},
+                {"wheels": []},
+            ],
             rate=50,
             noise={"c": 1.0, "b": -1.0},
             offset=-0.1,
@@ -187,6 +194,7 @@ def test_every_fault_is_named_at_once() -> None:
         "sensors[0]",
         "loads[0]",
         "drops[1].weels",
+        "drops[4].wheels",  # of those that are left
         "sensors",
         "loads",
         "drops",

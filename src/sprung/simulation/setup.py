@@ -16,7 +16,7 @@ from sprung.recording import Campaign, Drop, ModelChoice, Recording, recording_n
 from sprung.simulation.beforehand import Given, known_quantities
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
-from sprung.vehicle import EMPTY, Load, Rows, Sensor, Vehicle
+from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
 
@@ -74,10 +74,26 @@ class Setup:
             Takes what does not fit.
         """
         chosen_sensors = default_sensors(vehicle) if sensors is None else records(Sensor, "sensors", sensors, problems)
+        placed = [sensor.on in WHEELS or sensor.position is not None for sensor in chosen_sensors]
+        for i, known_place in enumerate(placed):
+            if not known_place:
+                do = "A body sensor needs its position = [x, y, z], m; a wheel sensor its station."
+                problems.add(f"simulate: sensors[{i}]", "no place", "where the sensor sits", do)
+        # What is faulty itself has been named, and is not asked for anything else.
+        chosen_sensors = tuple(
+            sensor for sensor, known_place in zip(chosen_sensors, placed, strict=True) if known_place
+        )
         given_loads = records(Load, "loads", loads or (), problems)
+        for i, load in enumerate(given_loads):
+            if not load.described:
+                do = "A load needs items = [...] or added = {...}."
+                problems.add(f"simulate: loads[{i}]", "neither items nor added", "what the load adds", do)
         all_loads = (EMPTY, *(load for load in given_loads if load != EMPTY))
         chosen_drops = default_drops(all_loads) if drops is None else records(Drop, "drops", drops, problems)
 
+        for i, drop in enumerate(chosen_drops):
+            if not drop.wheels:
+                problems.add(f"simulate: drops[{i}].wheels", "[]", "the wheels that fall, not empty", "Name them.")
         for kind, given in (("sensors", sensors), ("drops", drops)):
             if given is not None and not len(given):
                 problems.add(
