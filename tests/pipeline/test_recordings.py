@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_a_folder_of_tables_gives_the_modes(folder: Path) -> None:
     assert sprung.is_recordings(folder)
-    found = sprung.modes_of_recordings(folder)["recordings"]
+    found = sprung.modes(folder)["recordings"]
     assert [mode.name for mode in found] == [f"mode {i}" for i in range(1, 8)]
     assert found.drops == ("drop0", "drop1", "drop2", "drop3")
     for mode in found:
@@ -34,8 +34,8 @@ def test_a_folder_of_tables_gives_the_modes(folder: Path) -> None:
 
 
 def test_one_file_will_do_and_begins_where_it_is_told(folder: Path) -> None:
-    whole = sprung.modes_of_recordings(folder / "drop0.csv", start=0.0)["recordings"]
-    later = sprung.modes_of_recordings(folder / "drop0.csv", start=0.5)["recordings"]
+    whole = sprung.modes(folder / "drop0.csv", start=0.0)["recordings"]
+    later = sprung.modes(folder / "drop0.csv", start=0.5)["recordings"]
     assert whole[0].frequency == pytest.approx(later[0].frequency, rel=0.02)
     assert whole[0].frequency_std is not None
     assert later[0].frequency_std is not None
@@ -51,7 +51,7 @@ def test_a_campaign_is_none(folder: Path) -> None:
 def test_what_does_not_go_together_is_refused_at_once(folder: Path) -> None:
     (folder / "other.csv").write_text("time,a0\n" + "".join(f"{i / 100},{i % 3}\n" for i in range(50)))
     with pytest.raises(InputError) as caught:
-        sprung.modes_of_recordings(folder)
+        sprung.modes(folder)
     said = str(caught.value)
     assert "1 channels that all 5 files have" in said
     assert "other.csv 100 Hz" in said

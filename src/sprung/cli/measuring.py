@@ -111,7 +111,7 @@ def modal(
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
     with working("reading the recordings"):
         if sprung.is_recordings(campaign):
-            found = sprung.modes_of_recordings(
+            found = sprung.modes(
                 campaign, method=method, order=order, start=start, amplitude=amplitude, diagram=diagram
             )
             faults: tuple[Fault, ...] = ()
@@ -146,7 +146,7 @@ def simulate(
 ) -> None:
     """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
     with working("simulating"):
-        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed)
+        campaign = sprung.simulate(vehicle, rate=rate, noise=noise, seed=seed)
         written = sprung.write(campaign, output)
     if as_json:
         say_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
@@ -176,7 +176,7 @@ def plan(
 ) -> None:
     """Say what to measure next: how well each parameter would be known from a test, and from its alternatives."""
     with working("reading") as progress:
-        drawn_up = sprung.plan_file(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
+        drawn_up = sprung.plan(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
     if as_json:
         say_json(drawn_up.document())
     else:

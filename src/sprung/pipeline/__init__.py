@@ -3,10 +3,11 @@
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
 from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
 from sprung.pipeline.drafting import Draft, draft
+from sprung.pipeline.found import FoundMode, LoadModes
 from sprung.pipeline.identify import identify
-from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
-from sprung.pipeline.plan import plan, plan_campaign, plan_file
-from sprung.pipeline.recordings import is_recordings, modes_of_recordings
+from sprung.pipeline.modes import ModesByLoad, modes
+from sprung.pipeline.plan import plan
+from sprung.pipeline.recordings import is_recordings
 from sprung.pipeline.result import FitReport, Result
 from sprung.pipeline.saved import load
 from sprung.pipeline.series import Recorded, Series
@@ -35,12 +36,9 @@ __all__ = [
     "load",
     "meaning_of",
     "modes",
-    "modes_of_recordings",
     "modes_table",
     "parameters_table",
     "plan",
-    "plan_campaign",
-    "plan_file",
     "ratios_table",
     "validate",
 ]

@@ -10,6 +10,7 @@ import numpy as np
 
 from sprung.errors import Fault
 from sprung.pipeline.clocks import ClockReport
+from sprung.pipeline.options import CampaignSource, campaign_from
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
 from sprung.recording import Campaign, Drop, drop_names
@@ -134,18 +135,24 @@ class Check:
         return {"drops": [asdict(drop) for drop in self.drops], "faults": [asdict(fault) for fault in self.faults]}
 
 
-def check(campaign: Campaign) -> Check:
+def check(campaign: CampaignSource) -> Check:
     """Judge the recordings of a campaign.
 
     Parameters
     ----------
     campaign
-        From `sprung.read`.
+        From `sprung.read`; or the path of a campaign file or of its folder.
 
     Returns
     -------
     Check
+
+    Raises
+    ------
+    InputError
+        If the campaign cannot be read.
     """
+    campaign = campaign_from(campaign)
     return check_prepared(campaign, prepare(campaign))
 
 

@@ -11,7 +11,7 @@ from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.vehicle import PARAMETERS
 
 if TYPE_CHECKING:
-    from sprung.pipeline.modes import FoundMode
+    from sprung.pipeline.found import FoundMode
 
 _OF_ALL = "of the empty vehicle"
 _DERIVED = {"I_xx_roll_axis": "roll inertia of the sprung mass about the axis of roll"}

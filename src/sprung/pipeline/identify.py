@@ -17,6 +17,7 @@ from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice
 from sprung.pipeline.clocks import clock_reports
 from sprung.pipeline.fitted import fit_campaign
+from sprung.pipeline.options import CampaignSource, campaign_from, model_options
 from sprung.pipeline.planned import as_test
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, TestedVehicle
@@ -26,7 +27,6 @@ from sprung.pipeline.stand import Fitted
 from sprung.pipeline.way import Attempt
 from sprung.planning import next_step
 from sprung.prepare import Decay
-from sprung.recording import Campaign
 from sprung.validation import BodyMotion, Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
 from sprung.vehicle import Tracks
 
@@ -34,10 +34,10 @@ METHOD = "joint maximum likelihood"
 
 
 def identify(
-    campaign: Campaign,
+    campaign: CampaignSource,
     *,
     tracks: Tracks | None = None,
-    extras: Sequence[str] | None = None,
+    extras: str | Sequence[str] | None = None,
     fall: bool | None = None,
     profile: str | Sequence[str] = (),
     amplitude: bool = False,
@@ -48,11 +48,11 @@ def identify(
     Parameters
     ----------
     campaign
-        From `sprung.read` or `sprung.simulate`.
+        From `sprung.read` or `sprung.simulate`; or the path of a campaign file or of its folder.
     tracks
         ``shared``: one half-distance per axle; ``separate``: springs and dampers apart. Overrides the campaign.
     extras
-        Exactly these extras beyond the paper's model, such as ``anti-roll``. Overrides the campaign.
+        Exactly these extras beyond the paper's model, such as ``anti-roll``; one may be given alone. Overrides the campaign.
     fall
         Whether drops are used from their release on, and not only from when the last tyre is down. It halves the uncertainties
         and takes a few times as long; left open, it is done where a parameter is uncertain by more than 2 %. Overrides the
@@ -73,8 +73,8 @@ def identify(
     Raises
     ------
     InputError
-        If no drop can be used, what is known contradicts the model that is wanted, or a profile is wanted of something that
-        the model does not have.
+        If the campaign cannot be read, tracks or an extra are unknown, no drop can be used, what is known contradicts the model
+        that is wanted, or a profile is wanted of something that the model does not have.
 
     Examples
     --------
@@ -86,6 +86,8 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
+    tracks, extras = model_options(tracks, extras)
+    campaign = campaign_from(campaign)
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
     options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from sprung.pipeline.amplitude import amplitude_document, amplitudes_of, plain_trace
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.identify import result_of
+from sprung.pipeline.options import CampaignSource, campaign_from, model_options
 from sprung.pipeline.result import Result
 from sprung.pipeline.series import packed
-from sprung.recording import Campaign, write_whole
+from sprung.recording import write_whole
 from sprung.validation import BodyMotion, ModeAmplitude, body_motions
 from sprung.vehicle import EMPTY, Tracks
 
@@ -87,10 +88,10 @@ class Validation:
 
 
 def validate(
-    campaign: Campaign,
+    campaign: CampaignSource,
     *,
     tracks: Tracks | None = None,
-    extras: Sequence[str] | None = None,
+    extras: str | Sequence[str] | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Validation:
     """Identify a vehicle, and hold what it does against what was measured.
@@ -98,7 +99,7 @@ def validate(
     Parameters
     ----------
     campaign
-        From `sprung.read` or `sprung.simulate`.
+        From `sprung.read` or `sprung.simulate`; or the path of a campaign file or of its folder.
     tracks, extras
         As for `identify`.
     progress
@@ -111,7 +112,8 @@ def validate(
     Raises
     ------
     InputError
-        If no drop can be used, or what is known contradicts the model that is wanted.
+        If the campaign cannot be read, tracks or an extra are unknown, no drop can be used, or what is known contradicts the
+        model that is wanted.
 
     Examples
     --------
@@ -123,7 +125,8 @@ def validate(
     >>> max(drop.predicted_residual for drop in validation.result.validation.values()) < 1.05
     True
     """
-    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
+    tracks, extras = model_options(tracks, extras)
+    fitted = fit_campaign(campaign_from(campaign), tracks=tracks, extras=extras, progress=progress)
     asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
     result = result_of(fitted, progress=progress, options=asked)
     progress("following the modes of the body through the decays")

@@ -1,5 +1,6 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
+from sprung.recording.beforehand import Given, known_quantities
 from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, drop_names, kind_of
 from sprung.recording.formats import Table, read_table, to_sep005
 from sprung.recording.formats.resampled import SLOWEST
@@ -24,6 +25,7 @@ __all__ = [
     "SLOWEST",
     "Campaign",
     "Drop",
+    "Given",
     "LoggerClock",
     "ModelChoice",
     "Recording",
@@ -36,6 +38,7 @@ __all__ = [
     "gap",
     "gaps_in",
     "kind_of",
+    "known_quantities",
     "merged",
     "read",
     "read_table",

@@ -11,8 +11,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from sprung.errors import Fault
+from sprung.errors import Fault, Problems
 from sprung.estimate import Known
+from sprung.recording.beforehand import Given, known_quantities
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
 from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, record
@@ -192,7 +193,8 @@ class Campaign:
     cg_height, wheel_height, roll_axis_height
         Heights above the ground, m, of the sprung mass's centre of gravity, the wheel centres and the roll axis.
     known
-        Quantities measured beforehand: parameters, ``total_mass``, ``front_axle_mass``, ``rear_axle_mass``.
+        Quantities measured beforehand: parameters, ``total_mass``, ``front_axle_mass``, ``rear_axle_mass``. Numbers, which are
+        exact, and mappings {value, std} become records.
     model
         What the user says about the model.
     sensors, loads
@@ -205,6 +207,11 @@ class Campaign:
         Where the campaign file is; None for a campaign made in memory.
     files
         What was read: the campaign file and the recordings, with their checksums.
+
+    Raises
+    ------
+    InputError
+        If a known quantity has no such name, or cannot have such a value; all faults at once.
     """
 
     name: str
@@ -221,6 +228,16 @@ class Campaign:
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
+
+    def __post_init__(self) -> None:
+        problems = Problems()
+        given: dict[str, Given] = dict(self.known)
+        if self.wheelbase is not None:
+            given["wheelbase"] = self.wheelbase
+        known = known_quantities(given, f"campaign {self.name}: known", problems)
+        problems.raise_if_any()
+        object.__setattr__(self, "wheelbase", known.pop("wheelbase", None))
+        object.__setattr__(self, "known", known)
 
     @property
     def heights(self) -> Heights:

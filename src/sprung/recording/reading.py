@@ -57,6 +57,11 @@ class VehicleFile:
     model: ModelChoice = field(default_factory=ModelChoice)
     path: Path | None = None
 
+    @property
+    def all_known(self) -> dict[str, Known]:
+        """What is known beforehand, the wheelbase included where the file gives it."""
+        return dict(self.known) if self.wheelbase is None else {**self.known, "wheelbase": self.wheelbase}
+
 
 def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Campaign:
     """Read a campaign and its recordings.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -10,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from sprung.errors import Problems
-from sprung.recording import Campaign, Drop, ModelChoice
-from sprung.simulation.beforehand import Given
+from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Block, Load, Sensor, Vehicle, drop_from_blocks, drops_with_forces, forces_beside
@@ -21,7 +21,7 @@ DEFAULT_HEIGHT = 0.05
 
 
 def simulate(
-    vehicle: Vehicle,
+    vehicle: Vehicle | str | os.PathLike[str],
     *,
     sensors: Sequence[Sensor | Mapping[str, Any]] | None = None,
     loads: Sequence[Load | Mapping[str, Any]] | None = None,
@@ -44,7 +44,8 @@ def simulate(
     Parameters
     ----------
     vehicle
-        The vehicle.
+        The vehicle; or the path of a vehicle file (``[vehicle]``, ``[parameters]`` in SI, ``[[sensor]]``, ``[[load]]`` and
+        ``[[drop]]`` without files), whose sensors, loads, drops, known quantities and model hold where none are given here.
     sensors, loads, drops
         Records, or mappings as they stand in a campaign file. Defaults: eight sensors, four at the body's corners and
         one on each wheel; the empty vehicle; with each load a drop of all, front, rear, left and right wheels. A drop
@@ -74,7 +75,7 @@ def simulate(
     Raises
     ------
     InputError
-        If something does not fit together; all faults at once.
+        If the file cannot be used, or something does not fit together; all faults at once.
 
     Examples
     --------
@@ -83,6 +84,14 @@ def simulate(
     >>> [drop.name for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
     (['empty_roll_right', 'sandbags_bounce'], (8, 1800))
     """
+    if not isinstance(vehicle, Vehicle):
+        file = read_vehicle(vehicle)
+        vehicle = file.vehicle
+        sensors = file.sensors or None if sensors is None else sensors
+        loads = file.loads if loads is None else loads
+        drops = file.drops or None if drops is None else drops
+        known = file.all_known if known is None else known
+        model = file.model if model is None else model
     problems = Problems()
     setup = Setup.of(
         vehicle,
