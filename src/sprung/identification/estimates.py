@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.identification.joint import Fit
 from sprung.vehicle import PARAMETERS, quantity
@@ -31,6 +32,7 @@ _DERIVED_UNITS = {"total_mass": "kg", "front_axle_mass": "kg", "rear_axle_mass":
 _PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
 
 
+@shown
 @dataclass(frozen=True)
 class Unidentifiable:
     """A combination of parameters that the data do not determine.
@@ -47,6 +49,7 @@ class Unidentifiable:
     text: str
 
 
+@shown
 @dataclass(frozen=True)
 class Scale:
     """The absolute scale, and what is left without it.
@@ -63,6 +66,7 @@ class Scale:
     per_total_mass: dict[str, Ratio]
 
 
+@shown
 @dataclass(frozen=True)
 class Correlation:
     """Correlation of the estimated parameters.
@@ -79,6 +83,7 @@ class Correlation:
     matrix: tuple[tuple[float, ...], ...]
 
 
+@shown
 @dataclass(frozen=True)
 class Estimates:
     """Everything that may be said about the parameters.

@@ -99,6 +99,23 @@ class Summit:
         """Up to a constant."""
         return -0.5 * self.climb.cost(self.point)
 
+    @property
+    def absolute_loglikelihood(self) -> float:
+        """Natural logarithm of the likelihood, with its constant: -½ Σ (ln 2πσ² + r²/σ²), and what is known uncertainly."""
+        observations = self.climb.likelihood.observations.sum(axis=0)
+        squares = self.point.evaluation.residual.sum(axis=0) / self.noise**2
+        return self.loglikelihood - 0.5 * float(
+            observations.sum() * np.log(2 * np.pi) + squares[observations > 0].sum()
+        )
+
+    @property
+    def unknowns(self) -> int:
+        """How many numbers the samples had to determine: parameters, noise levels, initial states, offsets and clocks."""
+        observations = self.climb.likelihood.observations > 0
+        free = self.climb.knowledge.free(self.point.u).shape[1]
+        eliminated = round(float(self.point.evaluation.leverage.sum()))
+        return free + int(observations.any(axis=0).sum()) + int(observations.sum()) + eliminated
+
     @cached_property
     def disagreement(self) -> float:
         """By how much the drops contradict each other, as a factor on every variance; 1 where not significantly."""

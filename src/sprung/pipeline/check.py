@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.errors import Fault
 from sprung.pipeline.clocks import ClockReport
 from sprung.pipeline.options import CampaignSource, campaign_from
@@ -16,7 +17,11 @@ from sprung.prepare import Decay, Events, Prepared, Seen, prepare
 from sprung.recording import Campaign, Drop, drop_names
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
+if TYPE_CHECKING:
+    import pandas as pd
 
+
+@shown
 @dataclass(frozen=True)
 class ChannelReport:
     """What one channel of one drop shows.
@@ -46,6 +51,7 @@ class ChannelReport:
     faults: tuple[str, ...]
 
 
+@shown
 @dataclass(frozen=True)
 class DropReport:
     """One drop: what happened when, which part of it was used, why, and the codes of its faults.
@@ -107,6 +113,7 @@ class DropReport:
         return self.wheels_seen is not None and set(self.wheels_seen) != set(self.wheels)
 
 
+@shown
 @dataclass(frozen=True)
 class Check:
     """What a look at the recordings shows.
@@ -129,6 +136,14 @@ class Check:
     def usable(self) -> bool:
         """Whether at least one drop can be used."""
         return any(drop.start is not None for drop in self.drops)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return what happened in each drop as a table, times in s on the recording's own clock."""
+        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+
+        columns = ["file", "load", "kind", "release", "landing", "start", "end", "rate", "faults"]
+        rows = [[getattr(drop, one) for one in columns[:-1]] + [", ".join(drop.faults)] for drop in self.drops]
+        return pd.DataFrame(rows, columns=columns).set_index("file")
 
     def document(self) -> dict[str, Any]:
         """Give drops and faults as JSON holds them."""

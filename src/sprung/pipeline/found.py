@@ -9,6 +9,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import ModeEstimate
 from sprung.modal import (
     Diagram,
@@ -29,6 +30,7 @@ from sprung.vehicle import Sensor
 Real = NDArray[np.float64]
 
 
+@shown
 @dataclass(frozen=True)
 class FoundMode(ModeEstimate):
     """One mode found in the records, without a vehicle model.
@@ -66,6 +68,7 @@ class FoundMode(ModeEstimate):
     damping_trend: tuple[float, float] | None = None
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class LoadModes(Sequence[FoundMode]):
     """The modes of one load, a sequence in the order of undamped natural frequency.

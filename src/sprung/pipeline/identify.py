@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, conclude, mode_estimates
+from sprung.identification import Fit, Summit, conclude, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.check import check_prepared
@@ -135,7 +135,7 @@ def result_of(
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
         modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
-        fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
+        fit=_fit_report(choice, why, path, fit, decays, channels, misfit, summit),
         drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         validation=validated,
@@ -157,6 +157,7 @@ def _fit_report(
     decays: Sequence[Decay],
     channels: Sequence[str],
     misfit: Misfit,
+    summit: Summit,
 ) -> FitReport:
     return FitReport(
         samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
@@ -177,6 +178,8 @@ def _fit_report(
         inflated_by=fit.inflated_by,
         most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
         misfit=dict(zip(channels, misfit.relative.tolist(), strict=True)),
+        loglikelihood=summit.absolute_loglikelihood,
+        unknowns=summit.unknowns,
     )
 
 

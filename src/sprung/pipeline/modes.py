@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.errors import Problems
+from sprung.estimate import Named
 from sprung.modal import DEFAULT
 from sprung.pipeline.found import LoadModes, examined
 from sprung.pipeline.options import CampaignSource, campaign_from
@@ -16,14 +19,30 @@ from sprung.pipeline.recordings import RECORDINGS, is_recordings, modes_of_array
 from sprung.prepare import Decay, prepare
 from sprung.recording import Campaign
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 Real = NDArray[np.float64]
 
 _SEVERAL = 3
 """Dimensions of an array that holds several decays."""
 
 
-class ModesByLoad(dict[str, LoadModes]):
+@shown
+class ModesByLoad(Named[LoadModes]):
     """The modes of every load, by its name."""
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return frequencies (Hz) and damping ratios (1) with their uncertainties as a table, a row for each load and mode."""
+        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+
+        columns = ("frequency", "frequency_std", "damped_frequency", "damping_ratio", "damping_ratio_std", "status")
+        rows = [
+            (load, mode.name, *(getattr(mode, one) for one in columns))
+            for load, found in self.items()
+            for mode in found
+        ]
+        return pd.DataFrame(rows, columns=["load", "mode", *columns]).set_index(["load", "mode"])
 
     def _repr_html_(self) -> str:
         """Show them in a notebook."""

@@ -73,7 +73,7 @@ def plan(
     """
     problems = Problems()
     _check_wanted(wanted, problems)
-    test = {"sensors": sensors, "loads": loads, "drops": drops, "rate": rate, "noise": noise}
+    test: dict[str, object] = {"sensors": sensors, "loads": loads, "drops": drops, "rate": rate, "noise": noise}
     test |= {"duration": duration, "known": known, "model": model}
     if isinstance(source, Campaign) or not (isinstance(source, Vehicle) or _describes_vehicle(source)):
         for name, value in test.items():

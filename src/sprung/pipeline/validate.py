@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.pipeline.amplitude import amplitude_document, amplitudes_of, plain_trace
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.identify import result_of
@@ -22,6 +23,7 @@ from sprung.validation import BodyMotion, ModeAmplitude, body_motions
 from sprung.vehicle import EMPTY, Tracks
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Validation:
     """What a validation shows.

@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from sprung.display import shown
 from sprung.errors import Fault, Problems
 from sprung.estimate import Known
 from sprung.recording.beforehand import Given, known_quantities
@@ -180,6 +181,7 @@ class ModelChoice:
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Campaign:
     """All drops of one vehicle, and what was measured beforehand.

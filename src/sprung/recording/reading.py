@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.errors import InputError, Problem, Problems, did_you_mean
 from sprung.recording.campaign import Campaign, Drop, ModelChoice, recording_names
 from sprung.recording.checks import check, refused_unit
@@ -30,6 +31,7 @@ FILE = "campaign.toml"
 """The campaign file's name, where only its folder is given."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class VehicleFile:
     """What a vehicle file says: a vehicle to simulate, and the campaign to simulate with it.

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import Fit
 from sprung.prepare import Decay
 from sprung.validation.whiteness import noise_of_sensors
@@ -26,6 +27,7 @@ _MOVING = 3.0
 """How many times its noise a motion must be for a comparison to mean anything."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class BodyMotion:
     """What the body did in one drop, and what the fitted vehicle does.

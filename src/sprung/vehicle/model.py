@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sprung.display import shown
 from sprung.vehicle.elements import Element, Law
 from sprung.vehicle.rows import HEAVE, Row, coordinates
 
@@ -49,6 +50,7 @@ class Matrices(NamedTuple):
         return weight
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Rows:
     """Several rows over one list of parameters.
@@ -91,6 +93,7 @@ class Rows:
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class LinearModel:
     """M, C and K over one list of parameters, as polynomials in them.
