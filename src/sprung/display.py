@@ -53,7 +53,8 @@ def text_of_record(record: object) -> str:
     -------
     str
     """
-    said = ", ".join(f"{name}={value}" for name, value in _entries(record))
+    equals = ": " if isinstance(record, Mapping) else "="
+    said = ", ".join(f"{name}{equals}{value}" for name, value in _entries(record))
     lines = textwrap.wrap(
         f"{type(record).__name__}({said})",
         WIDTH,
@@ -86,8 +87,7 @@ def html_of_record(record: object) -> str:
 
 def _entries(record: object) -> Iterator[tuple[str, str]]:
     if isinstance(record, Mapping):
-        for name, value in record.items():
-            yield repr(name), _brief(value)
+        yield from ((str(name), _brief(value)) for name, value in record.items())
         return
     for one in fields(cast("Any", record)):
         value = getattr(record, one.name)
@@ -119,7 +119,10 @@ def _brief(value: object) -> str:
         text = f"{{{names}{', ...' if len(value) > _LISTED else ''}: {len(value)}}}" if value else "{}"
     elif is_dataclass(value) or (isinstance(value, tuple) and hasattr(value, "_fields")):
         # Small records are shown whole, large ones by what they are.
-        text = repr(value) if type(value).__repr__ is text_of_record else type(value).__name__
+        written = type(value).__str__ is not object.__str__ and type(value).__repr__ is text_of_record
+        text = (
+            str(value) if written else repr(value) if type(value).__repr__ is text_of_record else type(value).__name__
+        )
         text = text if len(text) <= _BRIEF and "\n" not in text else type(value).__name__
     elif isinstance(value, Sequence | Set):
         text = _several(list(value))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.identification.joint import Fit
-from sprung.vehicle import PARAMETERS, quantity
+from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
 
 Real = NDArray[np.float64]
 
@@ -125,7 +125,7 @@ def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:
     -------
     Estimates
     """
-    parameters = {name: estimate_of(fit, known, name) for name in fit.names}
+    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not name.startswith(LOAD_MASS)}
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 
@@ -144,7 +144,7 @@ def estimate_of(fit: Fit, known: Mapping[str, Known], name: str) -> Estimate:
     Estimate
     """
     value, gradient = quantity(name, fit.names, fit.values)
-    unit = PARAMETERS[name].unit if name in PARAMETERS else _DERIVED_UNITS[name]
+    unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
     if name in known and known[name].exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
@@ -170,7 +170,7 @@ def _scale(fit: Fit) -> Scale:
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
-        if PARAMETERS[name].scales:
+        if PARAMETERS[name].scales and not name.startswith(LOAD_MASS):
             ratio = float(fit.values[i]) / total
             direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
             std = fit.spread(direction, fit.size(name) / total)
@@ -193,7 +193,13 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
     # Whatever is undetermined belongs to the direction that moves it most, if to no other.
     named = {name for one in found for name in one.parameters}
     for i, name in enumerate(fit.names):
-        if parameters[name].status == "unidentifiable" and not together[i].any() and name not in named and shares.size:
+        if (
+            name in parameters
+            and parameters[name].status == "unidentifiable"
+            and not together[i].any()
+            and name not in named
+            and shares.size
+        ):
             together[i, np.argmax(shares[i])] = True
     for direction, moved in zip(directions.T, together.T, strict=True):
         names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
@@ -209,7 +215,7 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
 
 
 def _correlation(fit: Fit, parameters: Mapping[str, Estimate]) -> Correlation:
-    chosen = [i for i, name in enumerate(fit.names) if parameters[name].status == "estimated"]
+    chosen = [i for i, name in enumerate(fit.names) if name in parameters and parameters[name].status == "estimated"]
     covariance = fit.covariance[np.ix_(chosen, chosen)]
     spread = np.sqrt(np.diag(covariance))
     matrix = covariance / np.outer(spread, spread) if chosen else covariance

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.start import Outline, catalogue
 from sprung.prepare import Decay
-from sprung.vehicle import LinearModel, Rows, Sensor
+from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_names
 
 Real = NDArray[np.float64]
 
@@ -114,7 +115,8 @@ class Summit:
         observations = self.climb.likelihood.observations > 0
         free = self.climb.knowledge.free(self.point.u).shape[1]
         eliminated = round(float(self.point.evaluation.leverage.sum()))
-        return free + int(observations.any(axis=0).sum()) + int(observations.sum()) + eliminated
+        counted: int = free + int(observations.any(axis=0).sum()) + int(observations.sum()) + eliminated
+        return counted
 
     @cached_property
     def disagreement(self) -> float:
@@ -139,6 +141,7 @@ def ascend(
     known: Mapping[str, Known],
     *,
     start: Mapping[str, float] | None = None,
+    guess: Mapping[str, float] = MappingProxyType({}),
     starts: int = STARTS,
     enough: float = CONVERGED,
     progress: Callable[[str], None] = lambda _: None,
@@ -157,6 +160,8 @@ def ascend(
         Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
     start
         Parameter values, SI, to start from; where it is left out, a direct start and the catalogue of usual vehicles.
+    guess
+        Values of some parameters, SI, where `start` is left out: the vehicle with them competes with those of the catalogue.
     starts
         How many are refined: the direct one where there is one, and those of the catalogue that explain the records best
         as they are. The best end wins.
@@ -172,24 +177,28 @@ def ascend(
     if start is None and any(decay.clocks for decay in decays):
         # As far as the release has told, all clocks are one: near enough for a start.
         together = [replace(decay, clocks=()) for decay in decays]
-        first = ascend(together, models, sensors, known, starts=starts, enough=NEAR, progress=progress)
+        first = ascend(together, models, sensors, known, guess=guess, starts=starts, enough=NEAR, progress=progress)
         progress("setting the loggers' clocks")
         apart = ascend(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
     outline = Outline.of(known, sensors)
     engine = "m_e" in next(iter(models.values())).names
-    usual = [dict(start)] if start is not None else list(catalogue(outline, known, engine))
+    masses = {name: one.value for name, one in known.items() if name.startswith(LOAD_MASS)}
+    usual = [masses | dict(start)] if start is not None else [one | masses for one in catalogue(outline, known, engine)]
     climb = _climb(decays, models, sensors, known, usual[0])
     at = climb.knowledge.coordinates.by_name
     if start is not None:
-        return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(start)), None, enough, CLOSE_BY)], enough)
+        return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(usual[0])), None, enough, CLOSE_BY)], enough)
     likelihood = climb.likelihood
     assert isinstance(likelihood, Likelihood)  # noqa: S101 (made above; for the type checker)
-    direct = direct_start(likelihood.records.runs, likelihood.models, sensors, outline)
-    tried = [] if direct is None else [(at(direct), NEARER)]
+    nominal = [model.with_known(masses) for model in likelihood.models] if masses else likelihood.models
+    direct = direct_start(likelihood.records.runs, nominal, sensors, outline)
+    tried = [] if direct is None else [(at(direct | masses), NEARER)]
+    places = [at(values) for values in usual]
+    if guess:
+        places.insert(0, at(_completed(guess, {**usual[0], **(direct or {})})))
     if len(tried) < starts:
         progress(f"trying {len(usual)} usual vehicles")
-        places = [at(values) for values in usual]
         order = np.argsort(climb.first_costs(likelihood, places), kind="stable")
         tried += [(places[i], FAR) for i in order[: starts - len(tried)]]
     ends: list[Point] = []
@@ -198,6 +207,13 @@ def ascend(
         summit = min(ends, key=climb.cost, default=None)
         ends.append(climb.to_the_top(climb.knowledge.bind(u), summit, enough, damping))
     return _best(climb, ends, enough)
+
+
+def _completed(guess: Mapping[str, float], usual: Mapping[str, float]) -> dict[str, float]:
+    """Complete a guess by a usual vehicle's values; half-distances that it shares hold for springs and dampers apart too."""
+    shared = {own: value for name, value in guess.items() for own in separate_names(name)}
+    apart = {name: guess[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in guess}
+    return {**usual, **shared, **apart, **guess}
 
 
 def look_around(summit: Summit) -> Summit:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sprung.estimate import Estimate, Ratio, round_by_uncertainty
 from sprung.identification import ModeEstimate
 from sprung.tables import Table, unit_text, value_cells, with_std
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import LOAD_MASS, PARAMETERS
 
 if TYPE_CHECKING:
     from sprung.pipeline.found import FoundMode
@@ -30,7 +30,9 @@ def meaning_of(name: str) -> str:
     -------
     str
     """
-    return PARAMETERS[name].meaning if name in PARAMETERS else _DERIVED.get(name, _OF_ALL)
+    if name in PARAMETERS or name.startswith(LOAD_MASS):
+        return PARAMETERS[name].meaning
+    return _DERIVED.get(name, _OF_ALL)
 
 
 def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:

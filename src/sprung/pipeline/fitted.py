@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from sprung.errors import Fault
 from sprung.identification import CONVERGED, describe
@@ -36,12 +37,13 @@ def fit_campaign(
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
     fall: bool | None = None,
+    start: Mapping[str, float] = MappingProxyType({}),
     progress: Callable[[str], None] = lambda _: None,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
 
     def begin(mended: Sequence[Hypothesis]) -> Stand:
-        return begun(campaign, tracks, extras, mended, progress)
+        return begun(campaign, tracks, extras, mended, progress, start)
 
     stand, mended, accused = begin(()), tuple[Hypothesis, ...](), tuple[Fault, ...]()
     told = _looked_at(stand) if stand.open_to_forces else None

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, Summit, conclude, mode_estimates
+from sprung.identification import Fit, Summit, conclude, estimate_of, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.check import check_prepared
@@ -24,11 +24,12 @@ from sprung.pipeline.result import FitReport, Result, TestedVehicle
 from sprung.pipeline.series import Series
 from sprung.pipeline.setup import setup_of
 from sprung.pipeline.stand import Fitted
+from sprung.pipeline.starting import start_values
 from sprung.pipeline.way import Attempt
 from sprung.planning import next_step
 from sprung.prepare import Decay
 from sprung.validation import BodyMotion, Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
-from sprung.vehicle import Tracks
+from sprung.vehicle import LOAD_MASS, Tracks, Vehicle
 
 METHOD = "joint maximum likelihood"
 
@@ -39,6 +40,7 @@ def identify(
     tracks: Tracks | None = None,
     extras: str | Sequence[str] | None = None,
     fall: bool | None = None,
+    start: Result | Vehicle | Mapping[str, float] | None = None,
     profile: str | Sequence[str] = (),
     amplitude: bool = False,
     progress: Callable[[str], None] = lambda _: None,
@@ -57,6 +59,9 @@ def identify(
         Whether drops are used from their release on, and not only from when the last tyre is down. It halves the uncertainties
         and takes a few times as long; left open, it is done where a parameter is uncertain by more than 2 %. Overrides the
         campaign.
+    start
+        A vehicle near the one that is sought: an earlier result, a vehicle, or values by name, SI. It competes with usual
+        vehicles for where the search begins, which helps where the vehicle is unlike them all; the likeliest one found wins.
     profile
         Parameters whose 95 % interval is to follow from the whole profile of the likelihood, not from its curvature at the
         maximum: for those that are weakly determined, whose interval is not symmetric. Also derived quantities
@@ -88,9 +93,12 @@ def identify(
     """
     tracks, extras = model_options(tracks, extras)
     campaign = campaign_from(campaign)
+    begin = start_values(start)
     asked = check_asked(profile, campaign, tracks, extras)
-    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
-    options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
+    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
+    options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
+    if begin:
+        options["start"] = [f"{name} = {value:g}" for name, value in begin.items()]
     return result_of(fitted, asked, progress, amplitude=amplitude, options=options)
 
 
@@ -129,6 +137,7 @@ def result_of(
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
             **about_roll_axis(fit, choice.heights),
+            **{name: estimate_of(fit, choice.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
         },
         scale=estimates.scale,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import NamedTuple
 
 from sprung.errors import Fault, Problems
@@ -110,6 +111,7 @@ def begun(
     extras: Sequence[str] | None,
     mended: Sequence[Hypothesis],
     progress: Callable[[str], None],
+    guess: Mapping[str, float] = MappingProxyType({}),
 ) -> Stand:
     """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle."""
     left_out = {one.drop: one.fault for one in mended if one.drop is not None}
@@ -127,10 +129,10 @@ def begun(
         campaign,
         prepared,
         lambda known: _without(campaign, prepare(known), left_out),
-        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress),
+        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, guess),
     )
     start = None if first is None else first.parameters
-    first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
+    first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress, guess)
     way = carried(Way(choice, first, prepared.decays, (), progress))
     way = linear(wanting(way, [extra for extra in wanted.linear_extras if extra not in choice.extras]))
     way = _from_contact(way)
@@ -165,9 +167,10 @@ def _ascend(
     start: Mapping[str, float] | None,
     enough: float,
     progress: Callable[[str], None],
+    guess: Mapping[str, float],
 ) -> Summit:
     models, sensors, known = choice.models, campaign.sensors, choice.known
-    return ascend(decays, models, sensors, known, start=start, enough=enough, progress=progress)
+    return ascend(decays, models, sensors, known, start=start, guess=guess, enough=enough, progress=progress)
 
 
 def _need_decays(campaign: Campaign, prepared: Prepared) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -162,6 +162,16 @@ class LinearModel:
             np.array(list(kept.values())).reshape(shape),
         )
         return cls(tuple(names), products, constants, tuple(elements))
+
+    def with_known(self, known: Mapping[str, float]) -> LinearModel:
+        """Return the model in which some parameters that multiply elements are known numbers, SI by name."""
+        elements = [
+            replace(one, coefficient=known[one.coefficient])
+            if isinstance(one.coefficient, str) and one.coefficient in known
+            else one
+            for one in self.elements
+        ]
+        return LinearModel.of(elements, [name for name in self.names if name not in known])
 
     @classmethod
     def side_by_side(cls, models: Sequence[LinearModel]) -> LinearModel:

@@ -232,9 +232,13 @@ class Vehicle:
         Parameters
         ----------
         values, name, heights
-            As for `from_parameters`.
+            As for `from_parameters`; masses of loads among the values are passed over.
         """
-        able = {one: value if PARAMETERS[one].signed else max(value, 0.0) for one, value in values.items()}
+        able = {
+            one: value if PARAMETERS[one].signed else max(value, 0.0)
+            for one, value in values.items()
+            if one in PARAMETERS
+        }
         return cls.from_parameters(able, name=name, **heights)
 
     @property
