@@ -92,8 +92,8 @@ def identify(
     ('accept', True)
     """
     tracks, extras = model_options(tracks, extras)
-    campaign = campaign_from(campaign)
     begin = start_values(start)
+    campaign = campaign_from(campaign)
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
     options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
