@@ -27,8 +27,18 @@ def shared() -> Path:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Displays that tests compare with are written anew with ``pytest tests/report --regenerate``."""
-    parser.addoption("--regenerate", action="store_true", help="write the displays in tests/report anew")
+    """Results and displays that tests compare with are written anew with ``pytest tests/report --regenerate``."""
+    parser.addoption("--regenerate", action="store_true", help="write the results and displays in tests/report anew")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_cmdline_main(config: pytest.Config) -> None:
+    """Write the stored results anew before any test reads one of them, in one process."""
+    if config.getoption("--regenerate"):
+        import goldens  # noqa: PLC0415 (NumPy with it, which reads the above)
+
+        config.option.numprocesses, config.option.dist = None, "no"
+        goldens.regenerate_results()
 
 
 @pytest.fixture

@@ -42,10 +42,10 @@ def table_3() -> str:
         return [f"{value:.4f}" for value in (values.damped_frequency, values.natural_frequency, values.damping_ratio)]
 
     rows = [
-        [row.mode, f"{TABLE_3[row.mode].fft or '-'}", *three(row.paper), *three(row.computed)]
+        [row.mode, row.paper_name, f"{TABLE_3[row.paper_name].fft or '-'}", *three(row.paper), *three(row.computed)]
         for row in _reproduced().table3
     ]
-    head = ("mode", "paper: FFT", "$f_d$", "$f_n$", "$\\zeta$", "computed: $f_d$", "$f_n$", "$\\zeta$")
+    head = ("mode", "in the paper", "paper: FFT", "$f_d$", "$f_n$", "$\\zeta$", "computed: $f_d$", "$f_n$", "$\\zeta$")
     return _table(head, rows)
 
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+import campaign_keys
 import paper_tables
 import typer
 from sphinx.pycode import ModuleAnalyzer
@@ -45,7 +46,7 @@ ROOMS = (
 def command_reference() -> str:
     """Write one section for each command: what it does, how it is called, its arguments and options, an example."""
     group: Any = typer.main.get_command(commands)
-    return "\n\n".join("\n\n".join(_command(name, command)) for name, command in group.commands.items())
+    return "\n\n".join("\n\n".join(_command(name, group.commands[name])) for name in group.list_commands(None))
 
 
 def _command(name: str, command: Any) -> Iterator[str]:
@@ -144,6 +145,7 @@ _WRITTEN = {
     "<!-- parameters -->": parameter_table,
     "<!-- api -->": api_reference,
     "<!-- rooms -->": rooms_reference,
+    **campaign_keys.WRITTEN,
     **paper_tables.WRITTEN,
 }
 

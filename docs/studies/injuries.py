@@ -230,7 +230,7 @@ def twist(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator
     omega, damping = 2 * np.pi * random.uniform(9, 15), random.uniform(0.02, 0.05)
     filters = bilinear([1, 0, 0], [1, 2 * damping * omega, omega**2], test.rate)
     signs = {"fl": 1.0, "fr": -1.0, "rl": -1.0, "rr": 1.0}
-    drive = np.array([signs.get(one.on, 0.0) for one in campaign.sensors])
+    drive = np.array([signs.get(one.on or "body", 0.0) for one in campaign.sensors])
     places = np.array([one.position or (0.0, 0.0, 0.0) for one in campaign.sensors])
     shape = (2 * places[:, 0] / test.vehicle.wheelbase + 1) * places[:, 1] * (drive == 0)
     twists = []

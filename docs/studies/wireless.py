@@ -104,10 +104,10 @@ def wireless(
             first = int(np.ceil(-begins[channel] / step))
             moving = row @ fall.motion(step, samples - first, begins[channel] + first * step).acceleration
             values = 9.80665 + np.concatenate([np.zeros(first), moving]) + noise * random.standard_normal(samples)
-            name = f"{drop.name}_{one.channels[channel]}.csv"
+            name = f"{drop.label}_{one.channels[channel]}.csv"
             parts.append(Recording(name, (one.channels[channel],), values[None], float(shown[channel]), rates[channel]))
         ahead.append(shown - begins * fast)
-        whole = Recording(f"{drop.name}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
+        whole = Recording(f"{drop.label}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
         recordings.append(merged(whole, [part.start for part in parts]))
     drops = tuple(
         replace(drop, file=None, files=tuple(part.name for part in recording.parts))

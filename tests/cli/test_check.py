@@ -26,7 +26,7 @@ def test_the_table_fits_a_terminal_and_says_everything(one: Folder) -> None:
     row = next(line for line in said.out.splitlines() if line.startswith("empty_roll_left.csv"))
     assert "roll left" in row
     for moment in ("release", "landing", "last_lift_off", "start", "end"):
-        assert f"{drop[moment]:.3f}" in row.split()
+        assert ("-" if drop[moment] is None else f"{drop[moment]:.3f}") in row.split()
     for words in (drop["why_start"], drop["why_end"], "500 samples per second"):
         assert words in said.out
     for channel in drop["channels"]:

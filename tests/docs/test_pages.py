@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 import sprung
+from sprung.recording.keys import KEYS
+from sprung.recording.schema import KNOWABLE
 from sprung.vehicle import PARAMETERS
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -65,6 +67,18 @@ def test_the_commands_are_described(built: Path) -> None:
     seen = words(built, "commands")
     assert "--fall, --no-fall" in seen
     assert "Example: sprung compare before/results after/results" in seen
+
+
+def test_every_key_of_the_campaign_file_is_described(built: Path) -> None:
+    seen = words(built, "campaign")
+    for model, own in KEYS.items():
+        for key, note in own.items():
+            assert f" {key} = " in seen, (model, key)  # its example
+            assert note.unit in seen
+    assert [name for name in KNOWABLE if f" {name} " not in seen] == []
+    assert [name for name in PARAMETERS if f" {name} " not in seen] == []
+    assert page(built, "campaign").count('<svg class="sketch"') == 2  # from above and from the side
+    assert "<!-- " not in seen
 
 
 def test_the_public_names_are_described(built: Path) -> None:

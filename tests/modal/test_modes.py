@@ -21,21 +21,29 @@ def test_a_mode_says_what_its_pole_means() -> None:
     assert mode.damping_ratio == pytest.approx(0.6, rel=1e-15)
 
 
+def test_rounding_does_not_choose_the_sign_of_a_shape() -> None:
+    """Left and right wheels move equally far in opposition; which of them rounding makes the larger differs by processor."""
+    for left in (1 - 1e-14, 1 + 1e-14):
+        shape = np.array([0.2, left, -1.0])[:, None]
+        [mode] = modes_from([complex(-1, 5)], shape)
+        assert mode.shape == pytest.approx([0.2, 1.0, -1.0])
+
+
 def test_a_real_pole_has_no_damped_frequency_and_critical_damping() -> None:
     mode = Mode(complex(-3, 0), np.ones(1, dtype=complex))
     assert (mode.damped_frequency, mode.damping_ratio) == (0.0, 1.0)
 
 
-def test_the_bus_has_the_frequencies_and_names_of_tables_3_to_5() -> None:
-    # Natural frequencies of Tables 4 and 5; Table 3 prints those of roll, wheel roll and articulation to four digits.
+def test_the_bus_has_the_frequencies_of_tables_3_to_5() -> None:
+    # Natural frequencies of Tables 4 and 5; Table 3 prints those of roll and of the front axle to four digits.
     expected = [
         ("body roll", 1.071),
         ("body bounce", 2.015),
         ("body pitch", 2.812),
-        ("wheel bounce", 12.417),
-        ("wheel pitch", 12.442),
-        ("wheel roll", 14.096),
-        ("wheel articulation", 14.181),
+        ("rear axle hop", 12.417),
+        ("rear axle tramp", 12.442),
+        ("front axle hop", 14.096),
+        ("front axle tramp", 14.181),
     ]
     modes = modes_of(SCHOOL_BUS.matrices())
     assert [mode.name for mode in modes] == [name for name, _ in expected]
@@ -45,7 +53,7 @@ def test_the_bus_has_the_frequencies_and_names_of_tables_3_to_5() -> None:
 def test_table_3_prints_the_damping_ratios_of_the_bus() -> None:
     # Table 3, column ζ, where it agrees with Tables 4 and 5 to all its digits.
     ratio = {mode.name: mode.damping_ratio for mode in modes_of(SCHOOL_BUS.matrices())}
-    printed = {"body roll": 0.1297, "wheel pitch": 0.0984, "wheel roll": 0.1835, "wheel articulation": 0.1736}
+    printed = {"body roll": 0.1297, "rear axle tramp": 0.0984, "front axle hop": 0.1835, "front axle tramp": 0.1736}
     assert {name: round(ratio[name], 4) for name in printed} == printed
 
 
@@ -56,7 +64,7 @@ def test_the_ends_of_the_body_move_together_in_bounce_and_apart_in_pitch() -> No
         assert ends["body bounce"] > 0 > ends["body pitch"]
 
 
-def test_wheels_that_hop_all_together_are_named_literally() -> None:
+def test_wheels_of_like_axles_are_named_all_together() -> None:
     # A symmetric vehicle: every mode is a pure pattern of the four wheels, so the words can be checked one by one.
     car = Vehicle(
         m_s=1380, I_yy=2440, I_xx=380, m_uf=40, m_ur=40, k_sf=20000, k_sr=20000, k_tf=192000, k_tr=192000,
@@ -66,7 +74,7 @@ def test_wheels_that_hop_all_together_are_named_literally() -> None:
         "wheel bounce": [1, 1, 1, 1],
         "wheel pitch": [-1, -1, 1, 1],
         "wheel roll": [1, -1, 1, -1],
-        "wheel articulation": [1, -1, -1, 1],
+        "wheel warp": [1, -1, -1, 1],
     }
     shapes = {mode.name: mode.shape[3:, None] for mode in modes_of(car.matrices())}
     for name, pattern in patterns.items():
@@ -91,8 +99,10 @@ def test_every_name_is_used_once_or_for_a_pair_of_real_poles(vehicle: Vehicle) -
     poles: dict[str | None, list[complex]] = {}
     for mode in modes:
         poles.setdefault(mode.name, []).append(mode.pole)
-    assert set(poles) == set(MODE_NAMES[:7])
-    assert all(len(found) == 1 or (len(found) == 2 and not np.imag(found).any()) for found in poles.values())
+    assert set(poles) <= {*MODE_NAMES, None}
+    assert {"body bounce", "body pitch", "body roll"} < set(poles)
+    named = [found for name, found in poles.items() if name is not None]
+    assert all(len(found) == 1 or (len(found) == 2 and not np.imag(found).any()) for found in named)
 
 
 @given(vehicles)
@@ -141,5 +151,5 @@ def test_shapes_at_eight_sensors_give_back_coordinates_and_names(vehicle: Vehicl
 def test_a_few_modes_get_the_names_that_fit_them() -> None:
     truth = modes_of(SCHOOL_BUS.matrices())
     some = [truth[i] for i in (2, 0, 4)]
-    assert [mode.name for mode in name_modes(some)] == ["body roll", "body pitch", "wheel pitch"]
+    assert [mode.name for mode in name_modes(some)] == ["body roll", "body pitch", "rear axle tramp"]
     assert name_modes([]) == ()

@@ -12,6 +12,7 @@ from pydantic import TypeAdapter
 
 import sprung
 from sprung.pipeline import Check, DropReport
+from sprung.pipeline.check import check_prepared
 from sprung.prepare import prepare
 from sprung.recording import Campaign
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, drop_from_blocks
@@ -51,13 +52,15 @@ def test_events(vehicle: Vehicle) -> None:
         first = max(next(event.time for event in landings if event.wheel == wheel) for wheel in drop.wheels)
         assert report.release is not None
         assert report.landing is not None
-        assert report.last_lift_off is not None
         assert report.start is not None
         assert report.release == pytest.approx(REST, abs=0.0021)  # one sample at 500 Hz
         # The steepest rise of the wheel's reading comes a tenth of a period of wheel hop after the contact at most.
         assert report.landing == pytest.approx(REST + first, abs=0.01)
-        assert report.last_lift_off >= REST + landings[-1].time - 0.0041
-        assert report.start == pytest.approx(report.last_lift_off + 1 / 500)
+        assert report.start >= REST + landings[-1].time - 0.0021
+        # In this order, and the decay begins with the sample after the last of them: no lift-off before a landing.
+        last = report.landing if report.last_lift_off is None else report.last_lift_off + 1 / 500
+        assert report.release <= report.landing <= last
+        assert report.start == pytest.approx(last)
 
 
 def test_kinds_and_wheels(car: Campaign, seen: Check) -> None:
@@ -162,17 +165,28 @@ def test_a_drop_left_out(car: Campaign) -> None:
     assert all(channel.noise is not None for channel in report.channels)
 
 
-def test_a_start_that_the_fit_moved_says_so(car: Campaign) -> None:
-    decay = prepare(car).decays[0]
-    assert decay.moved(0).events == decay.events
-    later = decay.moved(3)
-    assert later.events.why_start == "in the fitted vehicle every tyre is down for good"
-    assert (later.events.last_lift_off, later.events.release) == (later.start, decay.events.release)
+@pytest.mark.parametrize("samples", [-2, 0, 3])
+def test_a_start_that_the_fit_moved_changes_no_other_moment(car: Campaign, seen: Check, samples: int) -> None:
+    """`check` and a report say one number for one drop, whatever the fit makes of it."""
+    prepared = prepare(car)
+    moved = prepared._replace(decays=tuple(decay.moved(samples) for decay in prepared.decays))
+    for one, decay, before in zip(check_prepared(car, moved).drops, moved.decays, seen.drops, strict=True):
+        assert one.end == pytest.approx(before.end)
+        assert replace(one, end=before.end, fit_start=None, why_fit="") == before
+        said = (decay.start, "in the fitted vehicle every tyre is down for good")
+        assert (one.fit_start, one.why_fit) == (said if samples else (None, ""))
+
+
+def test_a_drop_that_ends_with_its_window_says_so(car: Campaign) -> None:
+    """One file of a day holds several drops; where a drop's window ends the recording goes on."""
+    last = car.recordings[0].time[-1]
+    for end, said in ((last, "its window ends"), (last + 1.0, "the recording ends")):
+        assert sprung.check(changed(car, {"window": (0.0, float(end))})).drops[0].why_end == said
 
 
 def test_the_document_is_json_and_has_what_the_contract_says(seen: Check) -> None:
     document = json.loads(json.dumps(seen.document(), allow_nan=False))
-    assert document.keys() == {"drops", "faults"}
+    assert document.keys() == {"drops", "faults", "missing"}
     for drop in document["drops"]:
         assert drop.keys() >= {"file", "load", "start", "end", "faults"}
     again = TypeAdapter(tuple[DropReport, ...]).validate_json(json.dumps(document["drops"]))

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 import sprung
 from days import Day, day
+from layouts import check_view_is_whole
 from sessions import NEUTRAL, fill_in, write_session, write_table
 from sprung.errors import InputError
 from sprung.pipeline import Draft
 from sprung.pipeline.drafting.names import axis_named, load_named, part_named, station_named, wheels_named
 from sprung.recording import Campaign
+from sprung.report import draft_view
 from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import TABLE_1_CAR, WHEELS, Wheel
@@ -65,6 +67,7 @@ def test_a_session_with_neutral_names_is_drafted_filled_in_and_identified(tmp_pa
     )
     corners = [sensor.corner for sensor in draft.sensors if sensor.on == "body"]
     assert corners == ["fl", "fr", "rl", "rr"]
+    check_view_is_whole(draft_view(draft), tables=2)
     path = draft.write()
     with pytest.raises(InputError) as caught:
         sprung.read(path)
@@ -229,7 +232,7 @@ def test_wireless_loggers_that_all_call_their_channel_z(
     for drop, recording in zip(campaign.drops, campaign.recordings, strict=True):
         for logger, values in zip(loggers, recording.values, strict=True):
             first = int(random.integers(0, 60))  # no two are started together
-            path = tmp_path / f"{drop.name}_{logger}.csv"
+            path = tmp_path / f"{drop.label}_{logger}.csv"
             write_table(path, values[None, first:], recording.rate, ("z",), start=float(random.uniform(0, 100)))
     draft = sprung.draft(tmp_path)
     assert {sensor.logger: sensor.on for sensor in draft.sensors} == dict(zip(loggers, truth().values(), strict=True))

@@ -90,13 +90,15 @@ def test_the_shared_recordings_are_the_ones_tested(shared: Path) -> None:
             assert (DATA / name / file.name).read_bytes() == file.read_bytes()
 
 
-def test_modes_carry_the_paper_names_and_true_uncertainty(sedan: sprung.Result) -> None:
+def test_modes_carry_both_names_and_true_uncertainty(sedan: sprung.Result) -> None:
     assert set(sedan.modes) == {"empty", "ballast"}
     poles = np.linalg.eigvals(TABLE_1_CAR.matrices().state)
     truth = np.sort(np.abs(poles[poles.imag > 0])) / (2 * np.pi)
     modes = sedan.modes["empty"]
-    assert {mode.name for mode in modes} == {
-        "body bounce", "body pitch", "body roll", "wheel bounce", "wheel pitch", "wheel roll", "wheel articulation",
+    assert {mode.name: mode.paper_name for mode in modes} == {
+        "body bounce": "body bounce", "body pitch": "body pitch", "body roll": "body roll",
+        "rear axle hop": "wheel bounce", "rear axle tramp": "wheel pitch",
+        "front axle hop": "wheel roll", "front axle tramp": "wheel articulation",
     }  # fmt: skip
     for mode, frequency in zip(modes, truth, strict=True):
         assert mode.frequency_std is not None

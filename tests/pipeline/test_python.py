@@ -192,8 +192,12 @@ def test_records_name_what_is_wrong_with_their_keys() -> None:
     wrong: Any = {"chanel": "a", "on": "fl"}
     with pytest.raises(InputError, match="Did you mean 'channel'"):
         sprung.Sensor(**wrong)
-    with pytest.raises(InputError, match="needs its position"):
-        sprung.Sensor(channel="a", on="body")
+    wrong = {"channel": "a", "on": "rear"}
+    with pytest.raises(InputError, match="Sensor a.on: found 'rear'; expected 'body', 'fl'"):
+        sprung.Sensor(**wrong)
+    wrong = {"name": "bags"}
+    with pytest.raises(InputError, match="items"):
+        sprung.Load(**wrong).elements()
 
 
 def test_the_start_of_the_search_changes_no_result(result: Result, campaign: sprung.Campaign) -> None:

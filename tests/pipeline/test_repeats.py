@@ -18,7 +18,7 @@ def by_two_loggers(campaign: Campaign) -> Campaign:
     for drop, one in zip(campaign.drops, campaign.recordings, strict=True):
         parts = tuple(
             Recording(
-                f"{drop.name}_{logger}.csv",
+                f"{drop.label}_{logger}.csv",
                 tuple(one.channels[i] for i in own),
                 one.values[own],
                 one.start,
@@ -29,7 +29,7 @@ def by_two_loggers(campaign: Campaign) -> Campaign:
                 ("wheels", [i for i, sensor in enumerate(campaign.sensors) if sensor.on != "body"]),
             )
         )
-        whole = Recording(f"{drop.name}*", one.channels, np.empty((len(one.channels), 0)), 0.0, 1.0, parts=parts)
+        whole = Recording(f"{drop.label}*", one.channels, np.empty((len(one.channels), 0)), 0.0, 1.0, parts=parts)
         recordings.append(merged(whole, [part.start for part in parts]))
         drops.append(replace(drop, file=None, files=tuple(part.name for part in parts)))
     return replace(campaign, drops=tuple(drops), recordings=tuple(recordings))

@@ -68,7 +68,7 @@ def test_too_short_a_recording_is_left_out_and_told() -> None:
     prepared = prepare(short)
     assert len(prepared.decays) == 4
     ((drop, _, faults),) = prepared.left_out
-    assert drop.name == "empty_bounce"
+    assert drop.label == "empty_bounce"
     assert faults[-1].code == "no-decay"
     assert "empty_bounce.csv" in faults[-1].where
 

@@ -15,6 +15,7 @@ from jsonschema import Draft202012Validator
 import sprung
 from sprung.errors import InputError
 from sprung.recording import SCHEMA_FILE, SCHEMA_LINE, schema_text
+from sprung.recording.keys import KEYS, without_example
 from sprung.recording.published import campaign_schema
 
 DATA = Path(__file__).resolve().parents[1] / "data"
@@ -46,6 +47,18 @@ def test_every_key_is_described() -> None:
         for key, node in section.get("properties", {}).items():
             assert node["description"].endswith("."), key
     assert not any("null" in (node.get("type"), *node.get("enum", ())) for node in nodes(schema))  # TOML has none
+
+
+def test_every_key_has_an_example_that_holds_to_it() -> None:
+    schema = json.loads(schema_text())
+    assert list(without_example(schema)) == []
+    for model, own in KEYS.items():
+        entry = schema["$defs"][model] if model else schema
+        for key in own:
+            node = next(one[key] for one in (part.get("properties", {}) for part in nodes(entry)) if key in one)
+            for example in node["examples"]:
+                found = Draft202012Validator(node | {"$defs": schema["$defs"]}).iter_errors(example)
+                assert [fault.message for fault in found] == [], key
 
 
 @pytest.mark.parametrize("path", sorted(DATA.glob("*/campaign.toml")), ids=lambda path: path.parent.name)

@@ -88,7 +88,7 @@ def written(fast: Campaign, folder: Path, write: Write, other: int, every: int) 
             (500.0, {name: values[::2] for name, values in rows.items() if name != odd}),
             (1000.0 / every, {odd: rows[odd][::every]}),
         ]
-        new = write(folder / str(drop.name), groups)
+        new = write(folder / drop.label, groups)
         text = text.replace(f'"{drop.file}"', f'"{new.name}"')
     path.write_text(text)
     return sprung.read(path)

@@ -25,7 +25,7 @@ def test_a_sound_campaign(folder: Folder) -> None:
     assert campaign.wheelbase == Known(2.76)
     assert [load.name for load in campaign.loads] == ["empty", "ballast"]
     assert campaign.loads[0] == EMPTY
-    assert [drop.name for drop in campaign.drops] == ["one", "two"]
+    assert [drop.label for drop in campaign.drops] == ["one", "two"]
     assert campaign.path is not None
     one = campaign.recordings[0]
     assert one.name == "one.csv"
@@ -202,7 +202,7 @@ def test_a_vehicle_file(vehicle_file: Folder) -> None:
     assert file.known == {"m_s": Known(1380)}
     assert [sensor.channel for sensor in file.sensors] == ["body_fl", "body_fr", "body_rl"]
     assert [load.name for load in file.loads] == ["empty", "ballast"]
-    assert [drop.name for drop in file.drops] == ["empty_pitch_front", "ballast_bounce"]
+    assert [drop.label for drop in file.drops] == ["empty_pitch_front", "ballast_bounce"]
 
 
 def test_importing_the_room_loads_no_pandas() -> None:

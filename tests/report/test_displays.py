@@ -1,69 +1,35 @@
 """What people see, whole and line by line; `pytest tests/report --regenerate` writes it anew, to be read before it is kept.
 
-The results shown are real ones, kept as JSON beside their displays, so that a display changes only when its layout does.
+The results shown are real ones, kept as JSON beside their displays, so that a display changes only when its layout does;
+`goldens.py` has their campaigns.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import html
+import json
+import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import pytest
 from rich.console import Console
 
 import sprung
+from goldens import RESULTS, stored_result
+from layouts import check_view_is_whole
 from sprung.errors import Fault
-from sprung.estimate import Estimate, Known
-from sprung.pipeline import ChannelReport, Check, DropReport, Result
-from sprung.recording import Campaign
+from sprung.estimate import Estimate
+from sprung.pipeline import ChannelReport, Check, DropReport, FoundMode, LoadModes
 from sprung.report import check_view, comparison_view, modes_view, page_of, result_view, text_of
-from sprung.vehicle import TABLE_1_CAR, WHEELS
+from sprung.vehicle import WHEELS
 
 HERE = Path(__file__).parent
-DATA = HERE.parent / "data"
 CONSOLE = Console(width=80, highlight=False, color_system=None)
-
-
-def sedan() -> Campaign:
-    return sprung.read(DATA / "sedan")
-
-
-def leafbus() -> Campaign:
-    return sprung.read(DATA / "leafbus")
-
-
-def drops_without_load() -> Campaign:
-    """Two drops of the empty car; in the first one a wheel's cable was loose."""
-    whole = sedan()
-    fault = Fault(
-        "missing",
-        "empty_bounce.csv: wheel_fl",
-        "1 of 1800 samples are missing, the first in line 502; the channel is left out of this drop",
-        "Check the sensor's cable and the logger, or export the recording again.",
-    )
-    values = whole.recordings[0].values.copy()
-    values[list(whole.recordings[0].channels).index("wheel_fl")] = float("nan")
-    recording = dataclasses.replace(whole.recordings[0], values=values, faults=(fault,))
-    return dataclasses.replace(whole, drops=whole.drops[:2], recordings=(recording, whole.recordings[1]))
-
-
-def weighed_wrongly() -> Campaign:
-    """The car and its known load, with a weight that contradicts them: it is 1551.8 kg."""
-    return dataclasses.replace(sedan(), known={"total_mass": Known(1700.0, 1.0)})
-
-
-RESULTS: dict[str, Callable[[], Campaign]] = {
-    "accept": sedan,
-    "doubtful": weighed_wrongly,
-    "reject": leafbus,
-    "unidentifiable": drops_without_load,
-}
 
 
 def compare(name: str, shown: str, regenerate: bool, ending: str = "txt") -> None:
@@ -75,31 +41,35 @@ def compare(name: str, shown: str, regenerate: bool, ending: str = "txt") -> Non
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_result(name: str, regenerate: bool) -> None:
-    path = HERE / f"{name}.json"
-    if regenerate:
-        path.write_text(sprung.identify(RESULTS[name]()).to_json(), encoding="utf-8")
-    result = sprung.load(path, series=False)
-    compare(name, text_of(result_view(result), CONSOLE), regenerate)
-
-
-def read(name: str) -> Result:
-    return sprung.load(HERE / f"{name}.json", series=False)
+    view = result_view(stored_result(name))
+    check_view_is_whole(view, tables=2)
+    compare(name, text_of(view, CONSOLE), regenerate)
 
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_a_result_in_a_notebook(name: str, regenerate: bool) -> None:
-    shown = read(name)._repr_html_()
+    shown = stored_result(name)._repr_html_()
     ET.fromstring(f"<div>{shown}</div>")  # noqa: S314 (well-formed, or it raises)
     compare(name, shown, regenerate, "html")
 
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_the_words_of_a_report(name: str, regenerate: bool) -> None:
-    """All but the doubtful one were written by an older sprung, without setup and shapes: what is missing is said."""
-    page = page_of(read(name))
+    page = page_of(stored_result(name))
     body = re.sub(r"<(style|script|svg)\b.*?</\1>", "", page[page.index("<body>") :], flags=re.DOTALL)
     lines = (" ".join(html.unescape(re.sub(r"<[^>]+>", " ", line)).split()) for line in body.splitlines())
     compare(name, "".join(f"{line}\n" for line in lines if line), regenerate, "page.txt")
+
+
+def test_a_result_of_an_older_sprung_says_what_it_lacks(tmp_path: Path) -> None:
+    document = json.loads((HERE / "accept.json").read_text(encoding="utf-8"))
+    del document["setup"], document["checksums"]
+    for found in document["modes"].values():
+        for one in found:
+            del one["motion"]
+    (tmp_path / "results.json").write_text(json.dumps(document), encoding="utf-8")
+    page = page_of(sprung.load(tmp_path / "results.json", series=False))
+    assert "an older sprung wrote this result, without the shapes" in page
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -117,7 +87,7 @@ def test_the_displays_show_what_their_names_say(name: str) -> None:
 
 def test_intervals_from_profiles(regenerate: bool) -> None:
     """Open to one side, to the other, far from even, of a derived quantity; and residuals that are coloured."""
-    result = sprung.load(HERE / "accept.json", series=False)
+    result = stored_result("accept")
     limits = {"k_sf": (16821.3, 17352.9), "k_tf": (188123.0, None), "c_sf": (None, 1515.2), "t_f": (0.00123, 0.7452)}
     parameters = dict(result.parameters)
     for name, interval in limits.items():
@@ -125,6 +95,7 @@ def test_intervals_from_profiles(regenerate: bool) -> None:
     derived = {"total_mass": Estimate(1553.1, 5.0, (1543.4, 1562.9), "kg", "estimated", "profile")}
     fit = replace(result.fit, inflated_by="coloured residuals", most_coloured="wheel_rl")
     changed = replace(result, parameters=parameters, derived=derived, fit=fit)
+    check_view_is_whole(result_view(changed), tables=3)
     compare("profiles", text_of(result_view(changed), CONSOLE), regenerate)
 
 
@@ -139,18 +110,20 @@ def changed(result: sprung.Result, name: str, by: float) -> sprung.Result:
 
 def test_two_results_beside_each_other(regenerate: bool) -> None:
     """With dampers of which one is 8 standard uncertainties, and so 5.7 of the difference, stronger."""
-    first = sprung.load(HERE / "accept.json", series=False)
+    first = stored_result("accept")
     found = sprung.compare([first, changed(first, "c_sf", 8.0)], names=["before", "after"])
+    check_view_is_whole(comparison_view(found), tables=3)
     compare("comparison", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
 def test_many_results_beside_each_other(regenerate: bool) -> None:
     """Eight alike, one that stands out, and one that was rejected."""
-    first = sprung.load(HERE / "accept.json", series=False)
+    first = stored_result("accept")
     alike = [changed(first, "k_sf", by) for by in (0.0, 0.5, -0.5, 1.0, -1.0, 0.2, -0.2, 0.7)]
-    others = [changed(first, "c_sf", 30.0), sprung.load(HERE / "reject.json", series=False)]
+    others = [changed(first, "c_sf", 30.0), stored_result("reject")]
     names = [*(f"car {i + 1}" for i in range(len(alike))), "worn", "bus"]
     found = sprung.compare([*alike, *others], names=names)
+    check_view_is_whole(comparison_view(found), tables=3)
     compare("comparisons", text_of(comparison_view(found), CONSOLE), regenerate)
 
 
@@ -163,6 +136,7 @@ def test_a_check(regenerate: bool) -> None:
     )
     clipped = Fault("clipped", "empty_bounce.csv: wheel_fl", "14 samples are at full scale", "Use a larger range.")
     check = Check((bounce(), roll(), left_out()), (clipped, gap, late))
+    check_view_is_whole(check_view(check), tables=2)
     compare("check", text_of(check_view(check), CONSOLE), regenerate)
 
 
@@ -241,7 +215,49 @@ def left_out() -> DropReport:
     )
 
 
-def test_modes_without_uncertainty(regenerate: bool) -> None:
-    # Four drops without noise have the modes of the Table 1 car to all digits shown.
-    campaign = sprung.simulate(TABLE_1_CAR, noise=0.0)
-    compare("modes", text_of(modes_view(sprung.modes(campaign)), CONSOLE), regenerate)
+def mode(name: str, frequency: float, ratio: float, *std: float, **more: Any) -> FoundMode:
+    """Make up a mode; without standard uncertainties of frequency and damping ratio its method tells none."""
+    rate = 2 * math.pi * frequency
+    damped = frequency * math.sqrt(1 - ratio**2)
+    return FoundMode(
+        name=name,
+        pole=(-ratio * rate, 2 * math.pi * damped),
+        frequency=frequency,
+        frequency_std=std[0] if std else None,
+        damped_frequency=damped,
+        damping_ratio=ratio,
+        damping_ratio_std=std[1] if std else None,
+        **more,
+    )
+
+
+def test_modes(regenerate: bool) -> None:
+    """With their uncertainties; one without noise, one that is not resolved, one that was followed through its decay."""
+    followed: dict[str, Any] = {
+        "amplitudes": ((31.2, 10.62, 0.013, 0.2311, 0.0012), (1.04, 11.03, 0.024, 0.2042, 0.0021)),
+        "frequency_trend": (-2.61, 0.17),
+    }
+    modes = (
+        mode(
+            "body bounce",
+            1.05107,
+            0.26627,
+            0.00027,
+            0.00017,
+            fft_frequency=0.95,
+            fft_difference=-6.19,
+            collinearity=0.994,
+        ),
+        mode("body pitch", 1.3078189, 0.2502047, 8e-8, 7e-8, collinearity=0.991),
+        mode("wheel roll", 10.7678, 0.25412, 0.0023, 0.00021, fft_frequency=10.1, fft_difference=-2.97, **followed),
+        mode("wheel pitch", 11.3, 0.26, status="unresolved"),
+    )
+    said = ("These records do not determine wheel pitch near 11.3 Hz: other drops, or less noise, would.",)
+    missing = Fault(
+        "missing", "loaded_roll.csv: wheel_fl", "every sample is missing; the channel is left out", "Check it."
+    )
+    found = {
+        "empty": LoadModes(modes, "ml", ("body", "wheel_fl"), ("empty_bounce", "empty_roll"), unresolved=said),
+        "ballast": LoadModes((mode("mode 1", 1.0029, 0.25328),), "itd", ("body",), ("loaded_bounce",)),
+    }
+    compare("modes", text_of(modes_view(found, [missing]), CONSOLE), regenerate)

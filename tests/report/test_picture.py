@@ -19,8 +19,8 @@ from sprung.pipeline import Result
 from sprung.recording import Campaign
 from sprung.report import Band, Curve, Panel, Picture, Points, Rule, page_of, svg_of
 from sprung.report.axis import Axis, room, round_ticks
+from sprung.report.legend import WIDTH
 from sprung.report.picture import labelled_together
-from sprung.report.svg import WIDTH
 from sprung.vehicle import TABLE_1_CAR
 
 HERE = Path(__file__).parent

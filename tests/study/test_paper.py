@@ -3,8 +3,12 @@
 import numpy as np
 import pytest
 
+from layouts import check_view_is_whole
+from sprung.report import paper_view
 from sprung.study import PaperReproduction, reproduce
 from sprung.study.misprints import find_misprints, table_2_misfits, table_3_misfits
+from sprung.study.paper import CAR_LOAD, fit_all_records
+from sprung.study.paper_method import FIVE_BUMPS, bump_campaign
 from sprung.study.printed import TABLE_2, TABLE_3
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR
 
@@ -23,7 +27,7 @@ def test_table_2_without_noise_is_exact(reproduction: PaperReproduction) -> None
 
 
 def test_table_3_is_the_model_of_tables_4_and_5(reproduction: PaperReproduction) -> None:
-    rows = {row.mode: row for row in reproduction.table3}
+    rows = {row.paper_name: row for row in reproduction.table3}
     assert list(rows) == list(TABLE_3)
     # Rows without a misprint whose mode the rounding of Table 5 leaves alone: all four printed digits.
     for mode in ("body roll", "wheel roll", "wheel articulation"):
@@ -45,6 +49,16 @@ def test_noise_ruins_the_papers_method(reproduction: PaperReproduction) -> None:
     assert 0.01 < errors[1e-4] < 5
     assert errors[1e-2] > 20
     assert all(point.joint_fit is None for point in reproduction.noise)
+
+
+def test_every_width_shows_all_of_it(reproduction: PaperReproduction) -> None:
+    check_view_is_whole(paper_view(reproduction), tables=4)
+
+
+def test_corners_that_the_vehicle_imitates_overflow_nothing() -> None:
+    # The second draw of this noise: warnings are errors here.
+    campaign = bump_campaign(TABLE_1_CAR, CAR_LOAD, FIVE_BUMPS, noise=0.01, seed=1)
+    assert set(fit_all_records(campaign)) >= set(TABLE_2)
 
 
 def test_the_joint_fit_stands_beside_it() -> None:

@@ -1,103 +1,79 @@
-"""Motions of the body, and what is left of them and of every channel."""
+"""When the body moved: statements about motions that are small, against noise and decaying motions of known size."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-import sprung
-from sprung.identification import Fit
-from sprung.pipeline.fitted import fit_campaign
-from sprung.pipeline.stand import Fitted
-from sprung.validation import body_motions, remainders, validate_drops
-from sprung.vehicle import TABLE_1_CAR
+from sprung.pipeline import Series
+from sprung.report.pictures import motion_picture
+from sprung.validation import BodyMotion, DropValidation
 
-
-@pytest.fixture(scope="module")
-def fitted() -> Fitted:
-    made = sprung.simulate(TABLE_1_CAR, noise=0.02, seed=3, known={"total_mass": TABLE_1_CAR.total_mass})
-    return fit_campaign(made, tracks="shared", extras=())
+RATE, SECONDS, NOISE = 500.0, 3.2, 0.02
+TIME = np.arange(int(RATE * SECONDS)) / RATE
+SEEDS = 200
 
 
-def test_motions_are_those_of_a_rigid_body(fitted: Fitted) -> None:
-    """A point x ahead of the front axle and y left of the centreline reads z - (x + a) pitch + y roll."""
-    sensors, fit = fitted.campaign.sensors, fitted.fit
-    a = fit.values[fit.names.index("a")]
-    on_body = [i for i, sensor in enumerate(sensors) if sensor.on == "body"]
-    places = np.array([sensors[i].position for i in on_body], dtype=float)
-    rows = np.column_stack([np.ones(len(places)), -(places[:, 0] + a), places[:, 1]])
-    decay, motion = fitted.prepared.decays[1], body_motions(fit, fitted.prepared.decays, sensors)[1]
-    centred = decay.values[on_body] - decay.values[on_body].mean(axis=1, keepdims=True)
-    # Weighted by the sensors' noise, which is nearly the same in all of them.
-    np.testing.assert_allclose(motion.measured, np.linalg.lstsq(rows, centred, rcond=None)[0], atol=2e-3)
-    assert motion.time[0] == pytest.approx(decay.start)
-    assert motion.time[-1] == pytest.approx(decay.end)
+def decaying(peak: float) -> np.ndarray:
+    """A roll of 1.6 Hz and damping ratio 0.4, with its peak as a multiple of the noise."""
+    motion: np.ndarray = np.exp(-4 * TIME) * np.sin(2 * np.pi * 1.6 * TIME)
+    return np.asarray(peak * NOISE * motion / np.abs(motion).max())
 
 
-def test_what_is_left_is_what_noise_makes_of_the_motion(fitted: Fitted) -> None:
-    for motion in body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors):
-        left = (motion.measured - motion.simulated).std(axis=1)
-        # 1500 samples tell a standard deviation to 2 %; six decays and three motions.
-        np.testing.assert_allclose(left / motion.noise, 1, atol=0.08)
-        moved = ~np.isnan(motion.errors)
-        expected = motion.noise / np.sqrt((motion.measured**2).mean(axis=1))
-        np.testing.assert_allclose(motion.errors[moved], expected[moved], rtol=0.1)
-    bounce = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)[0]
-    assert np.isnan(bounce.errors).tolist() == [False, False, True]  # dropped on all wheels, it does not roll
+def seen(motion: np.ndarray, noise: np.ndarray) -> BodyMotion:
+    """One motion in all three coordinates, of which the model knows everything but the noise."""
+    return BodyMotion("drop", TIME, np.tile(motion + noise, (3, 1)), np.tile(motion, (3, 1)), np.full(3, NOISE), 1000.0)
 
 
-def test_what_the_sensors_in_use_do_not_tell_is_said_to_be_unknown(fitted: Fitted) -> None:
-    """With the sensors of one side alone vertical and roll motion cannot be told apart; pitch can."""
-    sensors = fitted.campaign.sensors
-    right = [i for i, one in enumerate(sensors) if one.position is not None and one.position[1] < 0]
-    assert len(right) == 2
-    decays = []
-    for decay in fitted.prepared.decays:
-        values = decay.values.copy()
-        values[right] = np.nan
-        decays.append(replace(decay, values=values))
-    for motion in body_motions(fitted.fit, decays, sensors):
-        assert np.isnan(motion.errors[[0, 2]]).all()
-        assert np.isfinite(motion.measured[1]).all()
+def white(seed: int) -> np.ndarray:
+    return NOISE * np.random.default_rng(seed).standard_normal(TIME.size)
 
 
-def spoilt(fit: Fit, drop: int, channel: int, wave: NDArray[np.float64]) -> Fit:
-    records = [record.copy() for record in fit.fitted]
-    records[drop][channel] += wave
-    return replace(fit, fitted=tuple(records))
+def coloured(seed: int, correlation: float = 0.9) -> np.ndarray:
+    """First-order noise of the same variance."""
+    drive = np.random.default_rng(seed).standard_normal(TIME.size)
+    values = np.empty_like(drive)
+    last = 0.0
+    for i, one in enumerate(drive):
+        last = correlation * last + np.sqrt(1 - correlation**2) * one
+        values[i] = last
+    return NOISE * values
 
 
-def test_what_is_not_white_is_seen_in_its_drop_and_channel(fitted: Fitted) -> None:
-    decays = fitted.prepared.decays
-    clean = remainders(fitted.fit, decays, fitted.fit.noise)
-    colours = np.array([[left.colour for left in drop.values()] for drop in clean])
-    # Ljung and Box: of white noise a chi-squared of many degrees of freedom, here in its standard deviations.
-    assert np.abs(colours).max() < 5
-    assert abs(colours.mean()) < 0.5
-    period = 40
-    wave = 0.02 * np.sin(2 * np.pi * np.arange(decays[2].samples) / period)
-    found = remainders(spoilt(fitted.fit, 2, 5, wave), decays, fitted.fit.noise)
-    changed = {(i, channel) for i, drop in enumerate(found) for channel, left in drop.items() if left.colour > 20}
-    assert changed == {(2, 5)}
-    left = found[2][5]
-    # Noise of 0.02 and a wave of 0.02/√2 beside it: a third of the variance correlates with itself.
-    assert abs(left.correlation) == pytest.approx(1 / 3, abs=0.07)
-    assert left.over_noise == pytest.approx(np.sqrt(1.5), rel=0.06)
+@pytest.mark.parametrize("peak", [5.0, 13.0])
+def test_a_motion_that_everybody_sees_is_no_noise(peak: float) -> None:
+    # Peaks of five to thirteen times the noise whose root-mean-square over the whole decay is below three times the noise.
+    motions = [seen(decaying(peak), white(seed)) for seed in range(20)]
+    assert all(np.isnan(one.errors).all() for one in motions)
+    assert all((one.over_noise > 1).all() for one in motions)
 
 
-def test_drops_of_the_right_model_are_explained_and_predicted(fitted: Fitted) -> None:
-    decays, sensors = fitted.prepared.decays, fitted.campaign.sensors
-    motions = body_motions(fitted.fit, decays, sensors)
-    channels = [sensor.channel for sensor in sensors]
-    found = validate_drops(fitted.summit, fitted.fit, decays, channels, motions)
-    assert list(found) == [decay.name for decay in decays]
-    for decay, drop in zip(decays, found.values(), strict=True):
-        # The rests of six drops tell the noise to a few percent.
-        assert drop.residual == pytest.approx(1, abs=0.06)
-        assert drop.predicted_residual == pytest.approx(drop.residual, rel=0.01)
-        assert drop.fitted == pytest.approx(0.02 / decay.values.std(axis=1).mean(), rel=0.6)
-        assert drop.unexpected == 0
-        assert list(drop.whiteness) == channels
+@pytest.mark.parametrize("noise", [white, coloured])
+def test_noise_alone_is_no_motion(noise: object) -> None:
+    # Four standard deviations: 3 in 100 000; of 200 draws one at the most.
+    false = sum(bool(seen(np.zeros_like(TIME), noise(seed)).over_noise[0] > 0) for seed in range(SEEDS))  # type: ignore[operator]
+    assert false <= 1
+
+
+def test_what_the_sensors_do_not_tell_is_no_motion() -> None:
+    one = BodyMotion("drop", TIME, np.full((3, TIME.size), np.nan), np.full((3, TIME.size), np.nan), np.full(3, NOISE))
+    assert np.isnan(one.over_noise).all()
+    assert np.isnan(one.errors).all()
+
+
+@pytest.mark.parametrize(
+    ("over_noise", "said"),
+    [
+        ({"roll": 1.84}, "1.8 times the noise, too small for an error in %"),
+        ({"roll": None}, "no motion beyond the noise"),
+        ({}, ""),  # of an older sprung nothing is known
+    ],
+)
+def test_the_picture_says_which_of_both(over_noise: dict[str, float | None], said: str) -> None:
+    values = np.tile(decaying(8.0), (3, 1)).astype(np.float32)
+    one = values[:1].astype(np.float64)
+    series = Series(("a",), TIME, one, one, values, values)
+    drop = DropValidation(0.01, 0.02, None, 0.01, 1.0, None, None, 0.0, None, over_noise=over_noise)
+    picture = motion_picture("drop", series, drop)
+    assert picture is not None
+    assert [panel.note for panel in picture.panels][::2] == ["error 1.0 %", "error 2.0 %", said]

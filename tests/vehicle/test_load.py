@@ -103,7 +103,6 @@ def test_empty_adds_nothing() -> None:
 @pytest.mark.parametrize(
     ("given_load", "message"),
     [
-        ({"name": "x"}, "A load needs items"),
         ({"name": "empty", "added": {"mass": 1}}, "give this load another name"),
         ({"name": "x", "added": {"mass": 1}, "items": [{"mass": 1, "on": "fl"}]}, "not both"),
         ({"name": "x", "items": [{"mass": 1}]}, "n item needs either a position on the body or the wheel"),
@@ -118,3 +117,8 @@ def test_empty_adds_nothing() -> None:
 def test_a_load_that_cannot_be_is_refused(given_load: dict[str, Any], message: str) -> None:
     with pytest.raises(InputError, match=message):
         Load(**given_load)
+
+
+def test_a_load_of_which_nothing_is_known_adds_nothing_in_silence() -> None:
+    with pytest.raises(InputError, match=r"load 'x': found neither items nor added"):
+        Load(name="x").elements()

@@ -9,6 +9,7 @@ import traceback
 from sprung.cli import identifying as identifying
 from sprung.cli import measuring as measuring
 from sprung.cli.app import app
+from sprung.cli.helping import readable
 from sprung.cli.output import BAD_INPUT, DEFECT, complain
 from sprung.errors import SprungError
 
@@ -26,7 +27,7 @@ def main() -> None:
     try:
         app(prog_name="sprung")
     except SprungError as error:
-        complain(f"{_headline(error)}\n{error}")
+        complain(readable(f"{_headline(error)}\n{error}"))
         raise SystemExit(BAD_INPUT) from None
     except Exception as error:
         complain(f"{traceback.format_exc()}\n{_report(error)}")

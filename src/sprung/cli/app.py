@@ -2,18 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import typer
 from typer.core import TyperGroup
 
 import sprung
+from sprung.cli.completing import campaigns
+from sprung.cli.helping import Command, group_help
 from sprung.cli.output import INTERRUPTED, complain, say
+
+ORDER = (
+    "demo",
+    "new",
+    "check",
+    "identify",
+    "report",
+    "validate",
+    "modal",
+    "plan",
+    "compare",
+    "simulate",
+    "paper",
+    "schema",
+)
+"""The commands in the order of work: first an example to look at, then the way from recordings to results."""
 
 
 class Commands(TyperGroup):
     """The commands; Ctrl-C ends any of them with the shell's own status and without a traceback."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """List the commands in the order of work."""
+        names = super().list_commands(ctx)
+        return sorted(names, key=lambda name: ORDER.index(name) if name in ORDER else len(ORDER))
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Write the help of the program."""
+        options = [one for one in self.get_params(ctx) if one.param_type_name == "option"]
+        commands = [self.commands[name] for name in self.list_commands(ctx)]
+        usage = f"{ctx.command_path} COMMAND [OPTIONS] [ARGUMENTS]"
+        formatter.write(group_help(usage, self.help or "", options, commands))
 
     def invoke(self, ctx: Any) -> Any:
         """Run the command that was asked for."""
@@ -24,17 +55,29 @@ class Commands(TyperGroup):
             raise SystemExit(INTERRUPTED) from None
 
 
-app = typer.Typer(
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Program(typer.Typer):
+    """The program; its commands write their own help."""
+
+    def command(self, name: str | None = None, **options: Any) -> Callable[[Function], Function]:
+        """Add a command."""
+        return super().command(name, **{"cls": Command, **options})
+
+
+app = Program(
     cls=Commands,
     help="Find the physical parameters of a two-axle road vehicle from drop tests.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
-CampaignFile = Annotated[Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.")]
+CampaignFile = Annotated[
+    Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.", autocompletion=campaigns)
+]
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
 
 

@@ -11,6 +11,7 @@ import typer
 
 import sprung
 from sprung.cli.app import CampaignFile, Json, app
+from sprung.cli.completing import parameters, results
 from sprung.cli.output import REJECTED, say, say_json, working
 
 
@@ -25,6 +26,7 @@ def identify(
         Optional[list[str]],  # noqa: UP045 (typer reads it)
         typer.Option(
             metavar="NAME",
+            autocompletion=parameters,
             help="Take the 95 % interval of a parameter from the whole likelihood, for one that is weakly determined; "
             "can be given more than once; all for every one.",
         ),
@@ -66,7 +68,10 @@ def conclude(result: Any, written: Sequence[Path], as_json: bool) -> None:
 @app.command(epilog="Example: [bold]sprung report results --pdf[/bold]")
 def report(
     folder: Annotated[
-        Path, typer.Argument(metavar="DIR", help="The results folder, with results.json and series.npz.")
+        Path,
+        typer.Argument(
+            metavar="DIR", help="The results folder, with results.json and series.npz.", autocompletion=results
+        ),
     ],
     pdf: Annotated[bool, typer.Option("--pdf", help="Write report.pdf too.")] = False,
     as_json: Json = False,

@@ -10,45 +10,53 @@ from typing import Annotated, Optional
 import typer
 
 import sprung
-from sprung.cli.app import CampaignFile, Json, app
+from sprung.cli import completing
+from sprung.cli.app import Json, app
 from sprung.cli.output import REJECTED, advancing, complain, say, say_json, working
 from sprung.errors import Fault, InputError, Problem
 
 
-@app.command(epilog="Example: [bold]sprung check campaign.toml --no-drawings[/bold]")
+@app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
 def check(
-    campaign: CampaignFile,
+    campaign: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CAMPAIGN",
+            help="campaign.toml, complete or not, or the folder it is in; or a folder of nothing but recordings.",
+        ),
+    ],
     output: Annotated[
         Optional[Path],  # noqa: UP045 (typer reads it)
-        typer.Option(
-            "-o", "--output", metavar="DIR", help="Where to draw the drops (default: check/ beside the campaign)."
-        ),
+        typer.Option("-o", "--output", metavar="DIR", help="Where to write (default: check/ beside the campaign)."),
     ] = None,
-    drawings: Annotated[bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file.")] = True,
+    page: Annotated[bool, typer.Option("--page/--no-page", help="Write check.html, with every drop drawn.")] = True,
+    drawings: Annotated[
+        bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file too.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
-    """Read and judge the recordings, identify nothing; draw each drop."""
+    """Judge the recordings, identify nothing: what is usable, what is wrong, what is missing. Needs no geometry."""
     with working("reading the recordings"):
-        read = sprung.read(campaign)
-        found = sprung.check(read)
+        found = sprung.check(campaign)
     if not found.usable:
         raise InputError(
             Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
         )
-    drawn: tuple[Path, ...] = ()
-    if drawings:
-        folder = (output or (read.path or campaign).parent / "check").resolve()
+    beside = campaign if campaign.is_dir() else campaign.parent
+    folder = (output or beside / "check").resolve()
+    written: tuple[Path, ...] = ()
+    if page or drawings:
         try:
             with working("drawing"):
-                drawn = sprung.report.write_check(found, folder)
+                written = sprung.report.write_check(found, folder, page=page, drawings=drawings)
         except InputError as error:
-            complain(f"No drawings: {error}")
+            complain(f"Nothing was written: {error}")
+    pages = [path for path in written if path.name == sprung.report.CHECK_FILE]
+    drawn = [str(path) for path in written if path not in pages]
     if as_json:
-        say_json({**found.document(), "drawings": [str(path) for path in drawn]})
+        say_json({**found.document(), "page": str(pages[0]) if pages else None, "drawings": drawn})
     else:
-        say(sprung.report.text_of(sprung.report.check_view(found)))
-        if drawn:
-            say(f"\nDrawn: {len(drawn)} drop{'s' * (len(drawn) > 1)} in {drawn[0].parent}\n")
+        say(sprung.report.text_of(sprung.report.check_view(found, pages[0] if pages else None)))
 
 
 @app.command(epilog="Example: [bold]sprung compare before/results after/results[/bold]")
@@ -56,7 +64,9 @@ def compare(
     results: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RESULTS...", help="Two results folders or more, or their results.json; the first is the reference."
+            metavar="RESULTS...",
+            help="Two results folders or more, or their results.json; the first is the reference.",
+            autocompletion=completing.results,
         ),
     ],
     as_json: Json = False,
@@ -78,13 +88,15 @@ def modal(
         typer.Argument(
             metavar="CAMPAIGN",
             help="campaign.toml, or the folder it is in; or a recording, or a folder of nothing but them.",
+            autocompletion=completing.campaigns,
         ),
     ],
     method: Annotated[
         str,
         typer.Option(
+            autocompletion=completing.methods,
             help="ml, the likeliest modes, with uncertainty; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
-            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd."
+            "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd.",
         ),
     ] = "ml",
     order: Annotated[
@@ -135,7 +147,9 @@ def simulate(
     vehicle: Annotated[
         Path,
         typer.Argument(
-            metavar="VEHICLE.toml", help="Its parameters; sensors, loads and drops where not the usual ones."
+            metavar="VEHICLE.toml",
+            help="Its parameters; sensors, loads and drops where not the usual ones.",
+            autocompletion=completing.campaigns,
         ),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The campaign folder to write.")],
@@ -160,7 +174,9 @@ def plan(
     source: Annotated[
         Path,
         typer.Argument(
-            metavar="VEHICLE.toml|CAMPAIGN", help="A vehicle as it is thought to be, or a campaign to go on from."
+            metavar="VEHICLE.toml|CAMPAIGN",
+            help="A vehicle as it is thought to be, or a campaign to go on from.",
+            autocompletion=completing.campaigns,
         ),
     ],
     wanted: Annotated[float, typer.Option(help="Percent that no parameter's uncertainty is to exceed.")] = 1.0,

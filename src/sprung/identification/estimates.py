@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.identification.joint import Fit
+from sprung.identification.subspace import canonical_basis
+from sprung.modal import leading_entry
 from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
 
 Real = NDArray[np.float64]
@@ -20,7 +22,6 @@ _SCALE = (
     "drops with a known load, weigh the vehicle (total_mass, front_axle_mass, rear_axle_mass), or give one mass or rate that "
     "is known"
 )
-_REFUSED = "the numbers of a model that does not hold are worth nothing and are not given"
 
 _HARDLY = (
     "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
@@ -105,11 +106,6 @@ class Estimates:
     unidentifiable: tuple[Unidentifiable, ...]
     correlation: Correlation
 
-    def refused(self, reason: str) -> Estimates:
-        """Give the same where the model does not hold, for a reason: then nothing else explains what is not determined."""
-        names = tuple(name for name, one in self.parameters.items() if one.status == "unidentifiable")
-        return replace(self, unidentifiable=(Unidentifiable(names, f"{_REFUSED}: {reason}"),) if names else ())
-
 
 def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:
     """Say what the fit allows to be said.
@@ -187,7 +183,7 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
         found.append(Unidentifiable(tuple(name for name in fit.names if PARAMETERS[name].scales), _SCALE))
         unit = scaling / np.linalg.norm(scaling)
         left, size, _ = np.linalg.svd(directions - np.outer(unit, unit @ directions), full_matrices=False)
-        directions = left[:, size > 0.5]
+        directions = canonical_basis(left[:, size > 0.5])
     shares = np.abs(directions)
     together = shares > 0.1 * shares.max(axis=0, initial=1e-300)
     # Whatever is undetermined belongs to the direction that moves it most, if to no other.
@@ -203,7 +199,7 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
             together[i, np.argmax(shares[i])] = True
     for direction, moved in zip(directions.T, together.T, strict=True):
         names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
-        leading = direction[np.argmax(np.abs(direction))]
+        leading = direction[leading_entry(direction)]
         ways = [
             f"{name} {'up' if part * leading > 0 else 'down'}"
             for name, part, moves in zip(fit.names, direction, moved, strict=True)

@@ -13,6 +13,7 @@ from sprung.display import shown
 from sprung.estimate import Known
 from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.inflation import of_colour
+from sprung.identification.subspace import canonical_basis
 from sprung.identification.summit import STARTS, Summit, ascend, look_around
 from sprung.prepare import Decay
 from sprung.vehicle import PARAMETERS, LinearModel, Sensor
@@ -52,7 +53,8 @@ class Fit:
     covariance
         Of the values, SI, shape (parameter, parameter).
     undetermined
-        Directions of the coordinates that neither data nor knowledge determine, dimensionless, shape (parameter, direction).
+        Directions of the coordinates that neither data nor knowledge determine, dimensionless, shape (parameter, direction):
+        the `canonical_basis` of all of them.
     noise
         Noise level of each channel, m/s², shape (channel,).
     residual
@@ -122,19 +124,6 @@ class Fit:
             covariance=self.covariance[square],
             undetermined=self.undetermined[chosen],
         )
-
-    def widened(self, by: float) -> Fit:
-        """Give the fit with less said of everything that is not known exactly.
-
-        Parameters
-        ----------
-        by
-            Standard uncertainty to be added in every direction of the coordinates that is open, as a part.
-        """
-        variances, directions = np.linalg.eigh(self.relative_covariance)
-        open_ = directions[:, variances > RANK * variances.max(initial=0.0)]
-        wider = self.relative_covariance + by**2 * open_ @ open_.T
-        return replace(self, relative_covariance=wider, covariance=wider * np.outer(self.slopes, self.slopes))
 
     @property
     def scaling(self) -> Real:
@@ -220,7 +209,7 @@ def describe(summit: Summit, decays: Sequence[Decay]) -> Fit:
         slopes=slopes,
         relative_covariance=relative,
         covariance=relative * np.outer(slopes, slopes),
-        undetermined=directions[:, eigenvalues < NO_INFORMATION],
+        undetermined=canonical_basis(directions[:, eigenvalues < NO_INFORMATION]),
         noise=summit.noise,
         residual=best.evaluation.residual,
         inflation=inflated,

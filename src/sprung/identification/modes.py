@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.identification.joint import Fit
 from sprung.identification.solution import differentiate_modes, solve_modes
-from sprung.modal import Mode, name_modes
+from sprung.modal import Mode, leading_entry, name_modes, paper_name
 from sprung.vehicle import LinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
 
+
+UNNAMED = "unnamed"
+"""What a mode is called whose shape is like no template."""
 
 _TOLD = 0.5
 """Part of itself by which a value may be uncertain, to count as told."""
@@ -29,7 +32,7 @@ class ModeEstimate:
     Attributes
     ----------
     name
-        One of the paper's seven.
+        After what moves: one of `sprung.modal.MODE_NAMES`, or ``unnamed`` where the shape is like none of them.
     pole
         [re, im], 1/s; im is 0 for a real pole, not negative for others.
     frequency, frequency_std
@@ -42,6 +45,8 @@ class ModeEstimate:
     motion
         How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
         imaginary part of each, the largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
+    paper_name
+        What Table 3 of the paper calls it; None where it has no such mode, or an older sprung wrote the result.
     """
 
     name: str
@@ -52,6 +57,7 @@ class ModeEstimate:
     damping_ratio: float
     damping_ratio_std: float | None
     motion: tuple[tuple[float, float], ...] = ()
+    paper_name: str | None = None
 
 
 def mode_estimates(fit: Fit, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
@@ -102,7 +108,7 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
         return None if near is None or max(near, far) > _TOLD * abs(value) else max(near, far)
 
     return ModeEstimate(
-        name=mode.name or "unnamed",
+        name=mode.name or UNNAMED,
         pole=(float(pole.real), float(pole.imag)),
         frequency=mode.frequency,
         frequency_std=std(of_size / (2 * np.pi), mode.frequency, np.abs(followed) / (2 * np.pi)),
@@ -110,10 +116,11 @@ def _estimate(mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.c
         damping_ratio=mode.damping_ratio,
         damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
         motion=_largest_one(mode.shape),
+        paper_name=paper_name(mode.name),
     )
 
 
 def _largest_one(shape: NDArray[np.complex128]) -> tuple[tuple[float, float], ...]:
     """Turn and scale a shape so that its largest entry is 1; real and imaginary part of each."""
-    scaled = shape / shape[np.argmax(np.abs(shape))]
+    scaled = shape / shape[leading_entry(shape)]
     return tuple((float(part.real), float(part.imag)) for part in scaled)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
+from sprung.modal.modes import EQUAL
 from sprung.modal.spectrum import Spectrum
 
 Real = NDArray[np.float64]
@@ -53,7 +54,8 @@ class Poles:
     @classmethod
     def of(cls, exponent: Complex, shapes: Complex) -> Poles:
         """Scale shapes to a largest entry of 1; those of real poles become real."""
-        held = np.argmax(np.abs(shapes), axis=0)
+        sizes = np.abs(shapes)
+        held = np.argmax(sizes >= (1 - EQUAL) * sizes.max(axis=0), axis=0)
         scaled = shapes / shapes[held, np.arange(len(held))]
         real = exponent.imag == 0
         return cls(exponent, np.where(real, scaled.real, scaled).astype(np.complex128), held)

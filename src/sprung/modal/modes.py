@@ -15,6 +15,9 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+EQUAL = 1e-6
+"""Relative difference below which two entries of a shape are as large as each other."""
+
 UNRESOLVED = 0.1
 """Standard uncertainty of a pole, as a part of its size, from which on the records do not determine it."""
 
@@ -153,6 +156,24 @@ def together(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
     return sorted(groups, key=lambda group: float(np.mean([np.log(max(abs(m.pole), 1e-300)) for m in group])))
 
 
+def leading_entry(shape: ArrayLike) -> int:
+    """Index of the largest entry of a shape; of entries as large as each other the first.
+
+    Left and right of a symmetric vehicle are equal but for rounding, which must not decide the sign of a shape.
+
+    Parameters
+    ----------
+    shape
+        Real or complex, shape (channel,).
+
+    Returns
+    -------
+    int
+    """
+    sizes = np.abs(np.asarray(shape))
+    return int(np.argmax(sizes >= (1 - EQUAL) * sizes.max()))
+
+
 def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
     """Make modes of all poles of a real system.
 
@@ -172,7 +193,7 @@ def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
     modes = []
     for pole, shape in zip(poles.tolist(), shapes.T, strict=True):
         if pole.imag >= 0:
-            largest = shape[np.argmax(np.abs(shape))]
+            largest = shape[leading_entry(shape)]
             modes.append(Mode(pole, shape / (largest if largest != 0 else 1.0)))
     return tuple(mode for group in together(modes) for mode in group)
 

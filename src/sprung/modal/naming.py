@@ -1,9 +1,10 @@
-"""Naming modes as the paper does, by what moves."""
+"""Names of modes, from their shapes: what moves, and how."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,59 +16,90 @@ from sprung.vehicle import Matrices, Rows, Sensor
 
 Real = NDArray[np.float64]
 
-MODE_NAMES = (
-    "body bounce",
-    "body pitch",
-    "body roll",
-    "wheel bounce",
-    "wheel pitch",
-    "wheel roll",
-    "wheel articulation",
-    "engine bounce",
-)
-"""The paper's seven modes, Table 3, and the one that an engine on its mounts adds."""
+_BODY = ("body bounce", "body pitch", "body roll")
 
-LEAST_SIMILARITY = 0.2
-"""A shape less like every template than this gets no name."""
+# Patterns of the wheels A front left, B front right, C rear left, D rear right. Left and right move alike in the first two
+# sets, oppositely in the other two; in each of these pairs either the axles move on their own, or all four wheels together.
+_HOP = {
+    ("front axle hop", "rear axle hop"): np.array([[1, 1, 0, 0], [0, 0, 1, 1]]) / np.sqrt(2),
+    ("wheel bounce", "wheel pitch"): np.array([[1, 1, 1, 1], [-1, -1, 1, 1]]) / 2,
+}
+_TRAMP = {
+    ("front axle tramp", "rear axle tramp"): np.array([[1, -1, 0, 0], [0, 0, 1, -1]]) / np.sqrt(2),
+    ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
+}
+
+_ENGINE = "engine bounce"
+
+MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), _ENGINE)
+"""Every name that a mode may get. Of the eight names of wheel modes one vehicle has four: for hop and for tramp either those of
+the axles or those of all four wheels."""
+
+_PAPER_NAMES = {
+    **{name: name for name in (*_BODY, "wheel bounce", "wheel pitch", "wheel roll")},
+    "rear axle hop": "wheel bounce",
+    "rear axle tramp": "wheel pitch",
+    "front axle hop": "wheel roll",
+    "front axle tramp": "wheel articulation",
+    "wheel warp": "wheel articulation",
+}
+"""Table 3 of the paper: the shapes of the modes of the bus of Tables 4 and 5, and the names it gives to their frequencies."""
+
+LEAST_SIMILARITY = 0.6
+"""Modal assurance criterion with a template below which a shape gets no name. A wheel that hops alone is half hop and half
+tramp of its axle, 0.5, and so are the wheels of an axle a quarter of a period apart: neither name would be true."""
+
+_TIE = 1e-9
+"""Part of the similarity by which a set of names has to be better than one before it: more than rounding."""
 
 _HALF_WHEELBASE, _HALF_TRACK = 1.35, 0.7
 """Levers, m, where no sensor tells better ones: those of a car. They only weigh angles against displacements."""
 
-_ALL_WHEELS = np.array([[1, 1, 1, 1], [-1, -1, 1, 1], [1, -1, 1, -1], [1, -1, -1, 1]]) / 2
-"""Wheel bounce, pitch, roll and articulation as the words say, on the wheels A to D: where all four hop together."""
 
-_AXLE_BY_AXLE = np.array([[0, 0, 1, 1], [0, 0, 1, -1], [1, 1, 0, 0], [1, -1, 0, 0]]) / np.sqrt(2)
-"""What Table 3 calls by these names: the school bus's axles hop one by one, the rear one in phase (12.42 Hz) and in
-opposition (12.44 Hz), the front one in phase (14.10 Hz) and in opposition (14.18 Hz)."""
+def paper_name(name: str | None) -> str | None:
+    """Return what the paper's Table 3 calls a mode.
+
+    Parameters
+    ----------
+    name
+        One of `MODE_NAMES`, or None.
+
+    Returns
+    -------
+    str or None
+        None where the paper has no such mode.
+    """
+    return None if name is None else _PAPER_NAMES.get(name)
 
 
 def name_modes(
     modes: Sequence[Mode], half_wheelbase: float = _HALF_WHEELBASE, half_track: float = _HALF_TRACK
 ) -> tuple[Mode, ...]:
-    """Give each mode the name of the template it is most like, no name twice but for pairs of real poles.
+    """Name each mode after the template that its shape is most like, no name twice but for pairs of real poles.
 
-    The best assignment as a whole is taken, so every name is used where there are modes enough.
+    Names are assigned to all modes of a vehicle at once, so that the sum of their similarities is largest.
 
     Bounce against pitch of the body: the mode with the larger share of bounce once the pitch angle is multiplied by
     half the wheelbase. That is, both ends of the body move the same way in body bounce, opposite ways in body pitch:
-    the point at rest lies outside the wheelbase in the first, between the axles in the second.
+    the point at rest lies outside the wheelbase in the first, between the axles in the second. Whether a mode is one of
+    the two at all is decided by their shares together.
 
-    Wheel modes: on a vehicle with unlike axles each axle hops on its own, in phase or in opposition left and right, and
-    none of the four words describes that. The names are then those the paper uses in Table 3, which do not mean what
-    they say: its wheel pitch is the rear axle in opposition, its wheel roll the front axle in phase. Where all four
-    wheels hop together the words are taken literally.
+    Wheel modes: on a vehicle with unlike axles each axle vibrates on its own, its wheels in phase (hop) or in opposition
+    (tramp). Where the axles are alike all four wheels move by the same amount: bounce, pitch, roll or warp. Whichever is
+    closer to the shapes is taken, for hop and tramp separately; the limit is where one axle moves 0.41 (tan 22.5°) times
+    as far as the other.
 
     Parameters
     ----------
     modes
-        Shapes in the coordinates of a vehicle: the paper's seven, or these and its engine's.
+        Shapes in the coordinates of a vehicle: its seven, or these and its engine's.
     half_wheelbase, half_track
         Levers that make pitch and roll angles comparable with displacements, m.
 
     Returns
     -------
     tuple of Mode
-        The same modes, in the order of undamped natural frequency.
+        The same modes, in the order of undamped natural frequency; ``name`` None where a shape is like no template.
     """
     groups = together(modes)
     if not groups:
@@ -76,18 +108,19 @@ def name_modes(
     scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])
     scale = scale[: len(groups[0][0].shape)]
     shapes = [scale[:, None] * np.stack([mode.shape for mode in group], axis=1) for group in groups]
-    readings = []
-    for wheels in (_AXLE_BY_AXLE, _ALL_WHEELS):
-        templates = block_diag(np.eye(3), wheels.T, np.eye(len(scale) - 7))
+    best, name_of = -np.inf, dict[int, str]()
+    for (hop, of_hop), (tramp, of_tramp) in product(_HOP.items(), _TRAMP.items()):
+        names = (*_BODY, *hop, *tramp, _ENGINE)
+        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T, np.eye(len(scale) - 7))
         alike = np.stack([similarity(shape, templates).mean(axis=0) for shape in shapes])
         rows, columns = linear_sum_assignment(alike, maximize=True)
-        readings.append((float(alike[rows, columns].sum()), alike, rows, columns))
-    _, alike, rows, columns = max(readings, key=lambda reading: reading[0])
-    name_of = {
-        int(row): MODE_NAMES[column]
-        for row, column in zip(rows, columns, strict=True)
-        if alike[row, column] >= LEAST_SIMILARITY
-    }
+        total = float(alike[rows, columns].sum())
+        if total > best + _TIE:
+            best = total
+            like = alike.copy()
+            like[:, :2] = alike[:, :2].sum(axis=1, keepdims=True)
+            found = zip(rows.tolist(), columns.tolist(), strict=True)
+            name_of = {row: names[column] for row, column in found if like[row, column] >= LEAST_SIMILARITY}
     return tuple(replace(mode, name=name_of.get(i)) for i, group in enumerate(groups) for mode in group)
 
 

@@ -1,7 +1,15 @@
 """The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
 
 from sprung.pipeline.check import ChannelReport, Check, DropReport, check
-from sprung.pipeline.displays import meaning_of, modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    derived_table,
+    meaning_of,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.found import FoundMode, LoadModes
 from sprung.pipeline.identify import identify
@@ -29,7 +37,9 @@ __all__ = [
     "Series",
     "Setup",
     "Validation",
+    "characteristics_tables",
     "check",
+    "derived_table",
     "draft",
     "identify",
     "is_recordings",
@@ -37,6 +47,7 @@ __all__ = [
     "meaning_of",
     "modes",
     "modes_table",
+    "other_quantities",
     "parameters_table",
     "plan",
     "ratios_table",

@@ -1,9 +1,12 @@
-"""Look at the recordings, identify nothing: which part of each drop can be used, why, and what is wrong."""
+"""Judge the recordings, identify nothing: which part of each drop can be used, why, what is wrong, and what is missing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+import os
+import tomllib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -11,10 +14,10 @@ import numpy as np
 from sprung.display import shown
 from sprung.errors import Fault
 from sprung.pipeline.clocks import ClockReport
-from sprung.pipeline.options import CampaignSource, campaign_from
+from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
-from sprung.recording import Campaign, Drop, drop_names
+from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
 if TYPE_CHECKING:
@@ -31,7 +34,7 @@ class ChannelReport:
     name
         The channel's.
     on
-        What its sensor sits on: the body, or a wheel station.
+        What its sensor sits on: the body, or a wheel station; None for a wheel station that is not known.
     noise
         At rest on the blocks, m/s² root-mean-square; None where the recording shows no rest.
     peak
@@ -44,7 +47,7 @@ class ChannelReport:
     """
 
     name: str
-    on: Literal["body", "fl", "fr", "rl", "rr"]
+    on: Literal["body", "fl", "fr", "rl", "rr"] | None
     noise: float | None
     peak: float | None
     used: bool
@@ -65,20 +68,24 @@ class DropReport:
     load
         Name of the load on the vehicle.
     start, end
-        Of the decay; None where none was used.
+        Of the decay, as the recording shows it, the same from `check` and in a result; None where none was used.
     faults
         Codes.
     kind
         ``bounce``, ``pitch front``, ``pitch rear``, ``roll left``, ``roll right``, or the wheels by name.
     wheels
-        Which wheels were dropped, as the campaign says.
+        Which wheels were dropped, as the campaign says; empty where it does not say it.
     wheels_seen
         Which wheels the release shows to have fallen; as stated where no sensor tells. None without a release.
     release, landing, last_lift_off
-        First motion; when the last wheel that fell met the ground; the last moment a tyre may have been off it. None
-        where the records do not tell.
+        First motion; when the last wheel that fell met the ground; the last moment, not before the landing, at which a tyre may
+        have been off the ground once more. They follow each other in this order, and ``start`` follows them. None where the
+        records do not tell, the last also where no tyre can have been off the ground again.
     why_start, why_end
         The reason for each limit of the decay, in words.
+    fit_start, why_fit
+        From where a fit uses the drop, and why, where that is not ``start``: it knows to the sample when the last tyre of the
+        fitted vehicle is down, or uses the fall too. None and empty from `check`.
     rate
         Samples per second.
     channels
@@ -87,6 +94,8 @@ class DropReport:
         For several loggers how their clocks stood, as the fit found it.
     name
         The drop's short name, by which its series are found.
+    title
+        The name that the campaign gives it; empty where it gives none.
     """
 
     file: str
@@ -102,21 +111,29 @@ class DropReport:
     last_lift_off: float | None = None
     why_start: str = ""
     why_end: str = ""
+    fit_start: float | None = None
+    why_fit: str = ""
     rate: float | None = None
     channels: tuple[ChannelReport, ...] = ()
     clocks: tuple[ClockReport, ...] = ()
     name: str = ""
+    title: str = ""
+
+    @property
+    def label(self) -> str:
+        """What to call it: the name that the campaign gives it, or else its recording."""
+        return self.title or self.file
 
     @property
     def contradicted(self) -> bool:
         """Whether the records show other wheels to have fallen than the campaign says."""
-        return self.wheels_seen is not None and set(self.wheels_seen) != set(self.wheels)
+        return bool(self.wheels) and self.wheels_seen is not None and set(self.wheels_seen) != set(self.wheels)
 
 
 @shown
 @dataclass(frozen=True)
 class Check:
-    """What a look at the recordings shows.
+    """What the recordings of a campaign show, and what the campaign does not say yet.
 
     Attributes
     ----------
@@ -125,12 +142,18 @@ class Check:
     faults
         Everything that is wrong, the harmless included.
     recorded
-        Each drop's whole recording, to draw.
+        Whole recordings, to draw: of the drops in their order, without the last ones, which could not be read.
+    campaign
+        What was judged; None where only its reports are at hand.
+    missing
+        What an identification would need besides the recordings, or profit from.
     """
 
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
     recorded: tuple[Recorded, ...] = field(default=(), repr=False)
+    campaign: Campaign | None = field(default=None, repr=False)
+    missing: tuple[Missing, ...] = ()
 
     @property
     def usable(self) -> bool:
@@ -145,18 +168,53 @@ class Check:
         rows = [[getattr(drop, one) for one in columns[:-1]] + [", ".join(drop.faults)] for drop in self.drops]
         return pd.DataFrame(rows, columns=columns).set_index("file")
 
+    @property
+    def summary(self) -> str:
+        """How many drops can be used, and what is missing: ``10 of 10 drops usable; missing: wheelbase``."""
+        usable = sum(drop.start is not None for drop in self.drops)
+        items = ", ".join(dict.fromkeys(one.item for one in self.missing))
+        counted = f"{usable} of {len(self.drops)} drop{'s' * (len(self.drops) != 1)} usable"
+        return f"{counted}; missing: {items}" if items else counted
+
+    def faults_of(self, drop: DropReport) -> tuple[Fault, ...]:
+        """Return what is wrong with one drop.
+
+        Parameters
+        ----------
+        drop
+            One of `drops`.
+        """
+        return tuple(fault for fault in self.faults if fault.where == drop.file or _is_within(fault.where, drop.file))
+
+    @property
+    def common_faults(self) -> tuple[Fault, ...]:
+        """What is wrong with the campaign or with a channel in all drops."""
+        of_drops = {fault for drop in self.drops for fault in self.faults_of(drop)}
+        return tuple(fault for fault in self.faults if fault not in of_drops)
+
     def document(self) -> dict[str, Any]:
-        """Give drops and faults as JSON holds them."""
-        return {"drops": [asdict(drop) for drop in self.drops], "faults": [asdict(fault) for fault in self.faults]}
+        """Return drops, faults and what is missing, as JSON holds them."""
+        return {
+            "drops": [asdict(drop) for drop in self.drops],
+            "faults": [asdict(fault) for fault in self.faults],
+            "missing": [one.document() for one in self.missing],
+        }
 
 
-def check(campaign: CampaignSource) -> Check:
-    """Judge the recordings of a campaign.
+def _is_within(place: str, file: str) -> bool:
+    return place.startswith(f"{file}: ")
+
+
+def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[float], None] | None = None) -> Check:
+    """Judge the recordings of a campaign; no geometry is needed for that.
 
     Parameters
     ----------
     campaign
-        From `sprung.read`; or the path of a campaign file or of its folder.
+        From `sprung.read`; or a campaign file, which need not be complete, or its folder; or a folder with nothing but
+        recordings, for which a campaign is drafted as `sprung.draft` does.
+    progress
+        Called while drafting with the part that is done, 0 to 1.
 
     Returns
     -------
@@ -165,10 +223,31 @@ def check(campaign: CampaignSource) -> Check:
     Raises
     ------
     InputError
-        If the campaign cannot be read.
+        If a path is given and there is nothing that can be judged.
     """
-    campaign = campaign_from(campaign)
+    if not isinstance(campaign, Campaign):
+        campaign = _campaign_at(Path(campaign), progress)
     return check_prepared(campaign, prepare(campaign))
+
+
+def _campaign_at(path: Path, progress: Callable[[float], None] | None) -> Campaign:
+    """Read a campaign as far as it is written down, or draft one from recordings alone."""
+    if not path.is_dir() or any(path.glob("*.toml")):
+        return read(path, complete=False)
+    drafted = draft(path, progress=progress)
+    campaign = read_document(tomllib.loads(drafted.text), path / FILE, complete=False)
+    return replace(campaign, faults=(*campaign.faults, *_without_drop(drafted)))
+
+
+def _without_drop(drafted: Draft) -> Iterator[Fault]:
+    """Name the recordings in which no drop was found."""
+    for file in drafted.files:
+        if not file.drops:
+            why = file.refused[0].why if file.refused else "nothing in it moves"
+            do = "Look whether it is the right recording, and name its unit if it has another."
+            yield Fault("no-drop", file.name, f"no drop was found: {why}", do)
+    for name, problems in drafted.unreadable.items():
+        yield Fault("unreadable", name, f"found {problems[0].found}; the recording is left out", problems[0].do)
 
 
 def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
@@ -185,7 +264,17 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
     everything = (*campaign.faults, *of_drops, *of_left_out)
-    return Check(tuple(reports), everything, recorded)
+    reports += [_unread(drop, everything) for drop in campaign.unread]
+    return Check(tuple(reports), everything, recorded, campaign, campaign.missing)
+
+
+def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
+    """Report a drop whose recording could not be read."""
+    file = drop.recording or drop.label
+    codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
+    return DropReport(
+        file, drop.load, None, None, codes, kind=kind_of(drop.wheels), wheels=drop.wheels, name=drop.label
+    )
 
 
 def _report(
@@ -195,12 +284,12 @@ def _report(
     released = None if seen.release is None else recording.start + seen.release / recording.rate
     events = Events(release=released) if decay is None else decay.events
     return DropReport(
-        file=recording.name,
+        file=recording.name if drop.name is None else drop.recording or recording.name,
         load=drop.load,
-        start=None if decay is None else decay.start,
+        start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
         faults=tuple(fault.code for fault in faults),
-        kind=drop.kind,
+        kind=kind_of(drop.wheels or seen.wheels),
         wheels=drop.wheels,
         wheels_seen=_fallen(drop, seen) if seen.fell else None,
         release=events.release,
@@ -208,9 +297,12 @@ def _report(
         last_lift_off=events.last_lift_off,
         why_start=events.why_start,
         why_end=events.why_end,
+        fit_start=decay.start if decay is not None and events.why_fit else None,
+        why_fit=events.why_fit,
         rate=recording.rate,
         channels=tuple(_channels(seen, decay, faults, sensors)),
         name=name,
+        title=drop.name or "",
     )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.identification import ModeEstimate
+from sprung.identification import UNNAMED, ModeEstimate
 from sprung.modal import (
     Diagram,
     Mode,
@@ -21,6 +21,7 @@ from sprung.modal import (
     follow_modes,
     identify_modes,
     name_by_sensors,
+    paper_name,
     stabilisation_diagram,
 )
 from sprung.pipeline.displays import found_modes_table
@@ -220,7 +221,7 @@ def _names(found: Modes, named: Sequence[Mode]) -> list[str]:
     names = []
     for mode in found:
         own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
-        names.append(left.pop(own).name or "unnamed")
+        names.append(left.pop(own).name or UNNAMED)
     return names
 
 
@@ -247,6 +248,7 @@ def _estimate(mode: Mode, name: str, peak: float | None) -> FoundMode:
     spread = mode.spread
     return FoundMode(
         name=name,
+        paper_name=paper_name(name),
         pole=(mode.pole.real, mode.pole.imag),
         frequency=mode.frequency,
         frequency_std=mode.frequency_std if told else None,

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import Fit, Summit, conclude, estimate_of, mode_estimates
+from sprung.identification import Fit, Summit, characteristics_of, conclude, estimate_of, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.check import check_prepared
@@ -26,10 +26,11 @@ from sprung.pipeline.setup import setup_of
 from sprung.pipeline.stand import Fitted
 from sprung.pipeline.starting import start_values
 from sprung.pipeline.way import Attempt
+from sprung.pipeline.withholding import withhold_estimates
 from sprung.planning import next_step
 from sprung.prepare import Decay
-from sprung.validation import BodyMotion, Misfit, body_motions, doubt_of, judge, judge_residuals, validate_drops
-from sprung.vehicle import LOAD_MASS, Tracks, Vehicle
+from sprung.validation import BodyMotion, Misfit, body_motions, judge, judge_residuals, validate_drops
+from sprung.vehicle import EMPTY, LOAD_MASS, Tracks, Vehicle
 
 METHOD = "joint maximum likelihood"
 
@@ -121,21 +122,20 @@ def result_of(
     motions = body_motions(fit, decays, campaign.sensors)
     validated = validate_drops(summit, fit, decays, channels, motions)
     verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
-    doubt = doubt_of(verdict, fit, misfit)
-    if doubt:
-        fit = fit.widened(doubt)
-        estimates = conclude(fit, choice.known).refused(verdict.reasons[0])
-    profiles = profiles_of(profile, summit, fit, choice.known, progress)
+    rejected = verdict.state == "reject"
+    profiles = {} if rejected else profiles_of(profile, summit, fit, choice.known, progress)
+    amplitude = amplitude and not rejected
     if amplitude:
         progress("following the modes of the body through the decays")
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
-    return Result(
+    result = Result(
         version=version("sprung"),
-        tested_vehicle=TestedVehicle(name=campaign.name),
+        tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
-        next_step=None if verdict.state == "reject" else next_step(as_test(fitted)).text,
+        next_step=None if rejected else next_step(as_test(fitted)).text,
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
+            **({} if rejected else characteristics_of(fit, choice.known, choice.models[EMPTY.name])),
             **about_roll_axis(fit, choice.heights),
             **{name: estimate_of(fit, choice.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
@@ -143,9 +143,9 @@ def result_of(
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
-        modes={load: mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
+        modes={load: () if rejected else mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
         fit=_fit_report(choice, why, path, fit, decays, channels, misfit, summit),
-        drops=tuple(replace(drop, clocks=clocks.get(drop.file, ())) for drop in looked_at.drops),
+        drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=(*looked_at.faults, *accused),
         validation=validated,
         setup=setup_of(campaign, fit, choice.known, options),
@@ -156,6 +156,7 @@ def result_of(
         },
         recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
     )
+    return withhold_estimates(result)
 
 
 def _fit_report(

@@ -89,7 +89,8 @@ def modes(
     -------
     ModesByLoad
         A dict by load, lowest frequency first; of recordings and arrays by the one key ``recordings``, their modes numbered and
-        in the unit of the channels.
+        in the unit of the channels. Otherwise they are named by the shapes at the sensors: one of `sprung.modal.MODE_NAMES`, or
+        ``unnamed``.
 
     Raises
     ------

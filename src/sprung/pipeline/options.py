@@ -29,11 +29,12 @@ def campaign_from(source: CampaignSource) -> Campaign:
     Raises
     ------
     InputError
-        If the file or its recordings cannot be used.
+        If the file or its recordings cannot be used, or the campaign is not complete.
     TypeError
         If it is neither.
     """
     if isinstance(source, Campaign):
+        source.require_complete()
         return source
     if isinstance(source, str | os.PathLike):
         return read(source)

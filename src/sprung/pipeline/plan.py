@@ -11,13 +11,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from sprung.errors import InputError, Problems
 from sprung.pipeline.choice import choose_model
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.identify import result_of
 from sprung.pipeline.options import CampaignSource, campaign_from
 from sprung.pipeline.planned import as_test
-from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up
+from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
 from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.simulation import DEFAULT_HEIGHT, Setup
 from sprung.units import STANDARD_GRAVITY
@@ -150,9 +152,12 @@ def plan(
 def _plan_further(campaign: Campaign, wanted: float, progress: Callable[[str], None]) -> Plan:
     """Identify a vehicle, and say what to measure next."""
     fitted = fit_campaign(campaign, progress=progress)
-    verdict = result_of(fitted).verdict
+    result = result_of(fitted)
+    if result.verdict.state == "reject":
+        rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
+        return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
     progress("weighing the alternatives")
-    return draw_up(as_test(fitted), wanted, verdict.reasons if verdict.state == "reject" else ())
+    return draw_up(as_test(fitted), wanted)
 
 
 def _describes_vehicle(path: str | os.PathLike[str]) -> bool:

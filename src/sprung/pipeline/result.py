@@ -19,7 +19,13 @@ from sprung.estimate import Covariance, Estimate, Named
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
-from sprung.pipeline.displays import modes_table, parameters_table, ratios_table
+from sprung.pipeline.displays import (
+    characteristics_tables,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.pipeline.identified import identified_vehicle
 from sprung.pipeline.plain import plain_document
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
@@ -51,11 +57,14 @@ class TestedVehicle:
     ----------
     name
         For people to read.
+    identification
+        Chassis, registration or test number, as the campaign file has it; None where it has none.
     """
 
     __pydantic_config__ = _EXACTLY
 
     name: str
+    identification: str | None = None
 
 
 @shown
@@ -140,10 +149,13 @@ class Result:
     verdict
         ``state`` and ``reasons``.
     parameters
-        By name: value, std, interval95, unit, status, interval_from.
+        By name: value, std, interval95, unit, status, interval_from. Where the verdict is reject, only what was known exactly
+        has a value.
     derived
-        The same of derived quantities: those whose profile was asked for, such as ``total_mass``, and ``I_xx_roll_axis``, the
-        roll inertia about the axis of roll, where its height is given.
+        The same of quantities that follow from the parameters: masses, static loads and centre of gravity of the empty vehicle,
+        ride and hop frequency and damping ratio of each axle (`sprung.vehicle.CHARACTERISTICS` and ``WHEEL_LOADS``);
+        ``I_xx_roll_axis``, the roll inertia about the axis of roll, where its height is given; and those whose profile was
+        asked for, such as ``wheelbase``.
     scale
         Whether absolute scale is known, and what is left without it.
     unidentifiable
@@ -151,7 +163,7 @@ class Result:
     correlation
         Of the estimated parameters.
     modes
-        By load: the modes of the identified vehicle, lowest first.
+        By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         How the fit went, what was used of each drop, and what was wrong.
     validation
@@ -162,7 +174,7 @@ class Result:
     setup
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
-        Frequency and damping of the body's modes against amplitude; empty where it was not asked for.
+        Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
     series
         By drop name: what was fitted.
     recordings
@@ -262,11 +274,14 @@ class Result:
         )
 
     def _repr_html_(self) -> str:
-        """Show the verdict, the parameters and the modes in a notebook."""
+        """Show the verdict, the parameters and the modes in a notebook; of a rejected result the verdict alone."""
+        if self.verdict.state == "reject":
+            return self.verdict._repr_html_() + "".join(f"<p>{escaped(one.text)}.</p>\n" for one in self.unidentifiable)
         parts = [
             self.verdict._repr_html_(),
-            parameters_table(self.name, {**self.parameters, **self.derived}).html(),
+            parameters_table(self.name, {**self.parameters, **other_quantities(self.derived)}).html(),
         ]
+        parts += [table.html() for table in characteristics_tables(self.name, self.derived)]
         parts += [f"<p>Not determined: {escaped(one.text)}.</p>\n" for one in self.unidentifiable]
         if not self.scale.known and self.scale.per_total_mass:
             parts.append(ratios_table(self.scale.per_total_mass).html())
@@ -282,13 +297,15 @@ class Result:
         seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
         return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write results.json and series.npz, whole or not at all.
 
         Parameters
         ----------
         folder
-            Made if it is missing.
+            Made if it is missing. Files that sprung wrote there are replaced.
+        overwrite
+            Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
         Returns
         -------
@@ -298,9 +315,9 @@ class Result:
         Raises
         ------
         InputError
-            If the folder cannot be written.
+            If such files would be overwritten, with their list, or the folder cannot be written.
         """
-        write_whole(Path(folder), self.files())
+        write_whole(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
     def files(self) -> dict[str, bytes]:

@@ -23,6 +23,7 @@ from sprung.pipeline.plain import record_from
 from sprung.pipeline.result import SCHEMA, Result
 from sprung.pipeline.seals import SEALS, arrays_seal, document_seal
 from sprung.pipeline.series import Everything, everything_in
+from sprung.pipeline.withholding import withhold_estimates
 from sprung.vehicle import UNKNOWN_KEY
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."
@@ -82,7 +83,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
             )
     if problems or result is None:
         raise ResultFileError(problems)
-    return replace(result, **everything._asdict())
+    return withhold_estimates(replace(result, **everything._asdict()))
 
 
 def _document(path: Path) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.metadata import version
 
 import numpy as np
@@ -13,7 +13,7 @@ from pydantic import ConfigDict
 from sprung.display import shown
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, estimate_of
-from sprung.recording import Campaign, ModelChoice, SourceFile
+from sprung.recording import Campaign, ModelChoice, SourceFile, TestRecord
 from sprung.vehicle import DERIVED, Load, Sensor
 
 _LIBRARIES = ("numpy", "scipy")
@@ -64,6 +64,8 @@ class Setup:
         The campaign file and the recordings, as they were read; empty where there were none.
     software
         Versions by name.
+    test
+        When, where and by whom the vehicle was tested, as far as the campaign file says it.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -76,6 +78,7 @@ class Setup:
     options: dict[str, str]
     files: tuple[SourceFile, ...] = ()
     software: dict[str, str]
+    test: TestRecord = field(default_factory=TestRecord)
 
 
 def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: Mapping[str, object]) -> Setup:
@@ -107,6 +110,7 @@ def setup_of(campaign: Campaign, fit: Fit, known: Mapping[str, Known], options: 
             "Python": platform.python_version(),
             **{name: version(name) for name in _LIBRARIES},
         },
+        test=campaign.test,
     )
 
 

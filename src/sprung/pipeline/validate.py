@@ -37,7 +37,7 @@ class Validation:
     load
         Of the drops from which `amplitudes` are.
     amplitudes
-        Frequency and damping of each mode of the body against amplitude.
+        Frequency and damping of each mode of the body against amplitude; empty where the verdict is reject.
     """
 
     result: Result
@@ -67,13 +67,15 @@ class Validation:
         text = json.dumps(self.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         return {"validation.npz": packed(arrays), "validation.json": text.encode()}
 
-    def save(self, folder: str | Path) -> Path:
+    def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write validation.json and validation.npz, whole or not at all.
 
         Parameters
         ----------
         folder
-            Made if it is missing.
+            Made if it is missing. Files that sprung wrote there are replaced.
+        overwrite
+            Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
         Returns
         -------
@@ -83,9 +85,9 @@ class Validation:
         Raises
         ------
         InputError
-            If the folder cannot be written.
+            If such files would be overwritten, with their list, or the folder cannot be written.
         """
-        write_whole(Path(folder), self.files())
+        write_whole(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
 
@@ -131,7 +133,9 @@ def validate(
     fitted = fit_campaign(campaign_from(campaign), tracks=tracks, extras=extras, progress=progress)
     asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
     result = result_of(fitted, progress=progress, options=asked)
-    progress("following the modes of the body through the decays")
     motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    if result.verdict.state == "reject":
+        return Validation(result, motions, EMPTY.name, ())
+    progress("following the modes of the body through the decays")
     amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

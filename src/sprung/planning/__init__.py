@@ -2,7 +2,7 @@
 
 from sprung.planning.bound import Bound, two_figures
 from sprung.planning.done import campaign_of_fit, subject_of_fit
-from sprung.planning.plan import NextStep, Plan, PlanRow, draw_up, next_step
+from sprung.planning.plan import NextStep, Plan, PlanRow, draw_up, draw_up_rejected, next_step
 from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
 
 __all__ = [
@@ -15,6 +15,7 @@ __all__ = [
     "Subject",
     "campaign_of_fit",
     "draw_up",
+    "draw_up_rejected",
     "next_step",
     "subject_of_fit",
     "two_figures",

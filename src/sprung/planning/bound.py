@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.identification import NO_INFORMATION, RANK, Fit, Unidentifiable, conclude
+from sprung.identification import NO_INFORMATION, RANK, Fit, Unidentifiable, canonical_basis, conclude
 from sprung.planning.subject import Subject
 
 Real = NDArray[np.float64]
@@ -91,7 +91,8 @@ class Bound:
         if not silent:
             return ()
         eigenvalues, directions = self._directions
-        named = conclude(self._expected(directions[:, eigenvalues < NO_INFORMATION]), self.subject.known).unidentifiable
+        silenced = canonical_basis(directions[:, eigenvalues < NO_INFORMATION])
+        named = conclude(self._expected(silenced), self.subject.known).unidentifiable
         found = tuple(one for one in named if set(one.parameters) & set(silent))
         left = tuple(name for name in silent if not any(name in one.parameters for one in found))
         if left:

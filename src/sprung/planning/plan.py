@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -56,13 +56,13 @@ class NextStep:
     text
         One sentence.
     bound
-        Of the test with that step.
+        Of the test with that step; None where the vehicle is not known.
     """
 
     labels: tuple[str, ...]
     enough: bool
     text: str
-    bound: Bound = field(repr=False)
+    bound: Bound | None = field(repr=False)
 
 
 @shown
@@ -79,11 +79,12 @@ class Plan:
     noise, rate
         Of the sensors, m/s² root-mean-square by channel, and samples per second.
     rows
-        The first one is the test as it is planned, or the campaign as it is.
+        The first one is the test as it is planned, or the campaign as it is; none of a rejected campaign, whose vehicle is not
+        known.
     next_step
         What to take of it.
     rejected
-        Why the campaign's own result must not be used, where that is so: no bound then holds.
+        Why the campaign's own result must not be used, where that is so.
     """
 
     vehicle: str
@@ -113,7 +114,7 @@ class Plan:
                 "alternatives": list(self.next_step.labels),
                 "enough": self.next_step.enough,
                 "text": self.next_step.text,
-                "percent": dict(self.next_step.bound.percents),
+                "percent": {} if self.next_step.bound is None else dict(self.next_step.bound.percents),
             },
             "rejected": list(self.rejected),
         }
@@ -128,7 +129,7 @@ class Plan:
         return {**head, **told, "unidentifiable": silent}
 
 
-def draw_up(test: PlannedTest, wanted: float = 1.0, rejected: Sequence[str] = ()) -> Plan:
+def draw_up(test: PlannedTest, wanted: float = 1.0) -> Plan:
     """Draw up the table of alternatives to a test.
 
     Parameters
@@ -137,8 +138,6 @@ def draw_up(test: PlannedTest, wanted: float = 1.0, rejected: Sequence[str] = ()
         The test, planned or done.
     wanted
         Percent that no parameter is to exceed.
-    rejected
-        Why a result that the test is taken from must not be used.
 
     Returns
     -------
@@ -159,7 +158,37 @@ def draw_up(test: PlannedTest, wanted: float = 1.0, rejected: Sequence[str] = ()
         rate=subject.rate,
         rows=(PlanRow(*own, None, bound(test)), *(_row(test, one) for one in others)),
         next_step=_choose(test, wanted, others),
-        rejected=tuple(rejected),
+    )
+
+
+def draw_up_rejected(
+    vehicle: str, wanted: float, noise: Mapping[str, float], rate: float, reasons: Sequence[str]
+) -> Plan:
+    """Return a plan that promises nothing: every bound would be one of a vehicle that is not known.
+
+    Parameters
+    ----------
+    vehicle
+        Name of the one whose campaign was rejected.
+    wanted
+        Percent that no parameter was to exceed.
+    noise, rate
+        Of its sensors, m/s² root-mean-square by channel, and samples per second.
+    reasons
+        Of the verdict.
+
+    Returns
+    -------
+    Plan
+    """
+    return Plan(
+        vehicle=vehicle,
+        wanted=wanted,
+        noise=dict(noise),
+        rate=rate,
+        rows=(),
+        next_step=NextStep((), False, "remove the reasons of the verdict", None),
+        rejected=tuple(reasons),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
-from sprung.pipeline import Result, Validation
+from sprung.pipeline import Result, Validation, other_quantities
 from sprung.plot.drawing import chosen, drawn, matrix, single
 from sprung.report import amplitude_pictures, parameters_picture
 
@@ -26,7 +26,7 @@ def parameters(result: Result, *, axes: Axes | None = None) -> Axes:
     -------
     Axes
     """
-    picture = parameters_picture({**result.parameters, **result.derived})
+    picture = parameters_picture({**result.parameters, **other_quantities(result.derived)})
     [found] = drawn(picture, None if axes is None else [axes])
     return found
 

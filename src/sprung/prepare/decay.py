@@ -15,7 +15,7 @@ from sprung.prepare.release import Rest, resolution
 from sprung.recording import LoggerClock
 
 FITTED = "in the fitted vehicle every tyre is down for good"
-"""Why a decay starts where it does, once a fit has moved its start."""
+"""Why a fit uses a decay from elsewhere than the recording alone shows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +133,7 @@ class Decay:
         whole = np.concatenate([self.earlier, self.values], axis=1)
         first = self.earlier.shape[1] + samples
         start = self.start + samples / self.rate
-        events = replace(self.events, last_lift_off=start, why_start=FITTED) if samples else self.events
+        events = replace(self.events, why_fit=FITTED) if samples else self.events
         return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start, events=events)
 
     @property

@@ -25,16 +25,23 @@ class Events:
     landing
         When the last wheel that fell met the ground, s; None where no sensor tells.
     last_lift_off
-        Last moment at which a tyre may have been off the ground, s; None where no sensor tells.
+        Last moment, not before the landing, at which a tyre may have been off the ground once more, s; None where none can have
+        been, or no sensor tells.
+    start
+        From when on the recording shows free vibration, s, not before any of these; None where nobody looked.
     why_start, why_end
         The reason for each limit of the decay, in words that go on after the time.
+    why_fit
+        The reason why a fit uses the decay from elsewhere; empty where it does not.
     """
 
     release: float | None = None
     landing: float | None = None
     last_lift_off: float | None = None
+    start: float | None = None
     why_start: str = ""
     why_end: str = ""
+    why_fit: str = ""
 
 
 class Mark(NamedTuple):

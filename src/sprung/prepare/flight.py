@@ -75,7 +75,7 @@ def _flight(decay: Decay, drop: Drop, seen: Seen) -> Flight | None:
     if np.isnan(values[decay.usable]).any():
         return None
     start = recording.start + first / decay.rate
-    events = replace(decay.events, last_lift_off=None, why_start=FROM_RELEASE)
+    events = replace(decay.events, why_fit=FROM_RELEASE)
     return Flight(
         replace(decay, values=values, earlier=values[:, :0], start=start, events=events),
         seen.wheels,

@@ -58,7 +58,8 @@ class Landing(NamedTuple):
     landed
         First sample after the last wheel that fell met the ground; None where no sensor tells.
     lifted
-        Last sample at which a tyre may have been off the ground; None where no sensor tells.
+        Last sample, not before that, at which a tyre may have been off the ground once more; None where none can have been, or
+        no sensor tells.
     """
 
     possible: int
@@ -94,7 +95,7 @@ def suspension_jump(
     window = slice(release.sample, release.sample + max(int(np.ceil(_JUMP * rate)), 2))
     jumps: dict[Wheel, float] = {}
     for channel, sensor in enumerate(sensors):
-        if sensor.on != "body" and sensor.on in dropped:
+        if sensor.on is not None and sensor.on != "body" and sensor.on in dropped:
             lowest = float(values[channel, window].min() - release.rest.level[channel])
             jumps[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
     return jumps
@@ -134,7 +135,7 @@ def find_decay(
         None where no wheel that can be judged ever left the ground and came back.
     """
     reading = values - release.rest.level[:, None] + STANDARD_GRAVITY
-    body = [i for i, s in enumerate(sensors) if s.on == "body" and not np.isnan(values[i]).any()]
+    body = [i for i, s in enumerate(sensors) if s.position is not None and not np.isnan(values[i]).any()]
     if len(body) < 3:
         return None
     places = np.array([sensors[i].position for i in body], dtype=float)
@@ -143,7 +144,7 @@ def find_decay(
     first = last = 0
     longest, impact, spike = int(_LONGEST * rate), int(_IMPACT * rate), 2 * int(_SPIKE * rate / 2) + 1
     for channel, sensor in enumerate(sensors):
-        if sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
+        if sensor.on is None or sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
             continue
         x = 0.0 if sensor.on in WHEELS[:2] else -wheelbase
         y = half_track if sensor.on in ("fl", "rl") else -half_track
@@ -163,7 +164,7 @@ def find_decay(
     why = (
         "no tyre can be off the ground any more" if last > first else "every wheel that fell has landed and stays down"
     )
-    return Landing(possible, max(first, last), why, first or None, max(first, last) - 1)
+    return Landing(possible, max(first, last), why, first or None, last - 1 if last > first else None)
 
 
 def steepest_rise(reading: Real, release: int) -> int:

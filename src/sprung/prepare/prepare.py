@@ -40,7 +40,15 @@ _LOW_BLOCKS, _HOPPING = 0.1, 0.25
 _CLIPPED = 0.6
 """s after the release up to which clipping only delays the decay; a channel that clips for longer is left out."""
 
+_NEAR_END = 2.0
+"""Samples before the end of its window at which a recording may end, its clock being made even."""
+
 _ALLOWED_FOR = "a fall and two periods of wheel hop after the release, as no sensor tells when the wheels landed"
+
+_NOT_PLACED = (
+    "a fall and two periods of wheel hop after the release, as the landing follows from the positions of the body sensors, "
+    "which are not known"
+)
 
 _TYPICAL_SUSPENSION = 70.0
 """Static suspension force over unsprung mass, m/s², for a wheel that no release has weighed: between car and bus."""
@@ -95,6 +103,9 @@ def prepare(campaign: Campaign) -> Prepared:
         fault = other_wheels(campaign.drops[i], fell[i], recordings[i].name)
         recordings[i] = replace(recordings[i], faults=(*recordings[i].faults, fault))
         drops[i] = replace(campaign.drops[i], wheels=as_seen(campaign.drops[i], fell[i]))
+    for i, drop in enumerate(drops):
+        if not drop.wheels:
+            drops[i] = replace(drop, wheels=as_seen(drop, fell[i]))
     campaign = replace(campaign, recordings=tuple(recordings), drops=tuple(drops))
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
@@ -197,7 +208,8 @@ def _decay(
     landing = _landing(campaign, drop, recording, release, suspension, clipped, faults)
     first = landing.certain
     recording = _without_clipped(recording, clipped, landing.possible, faults)
-    last, why_end = recording.values.shape[1] - 1, "the recording ends"
+    last = recording.values.shape[1] - 1
+    why_end = "its window ends" if _ends_with_window(drop, recording) else "the recording ends"
     if drop.end is not None:
         last, why_end = min(last, int(np.floor((drop.end - recording.start) * recording.rate + 1e-6))), "given as end"
     length = (last - first) / recording.rate
@@ -223,16 +235,22 @@ def _decay(
         shares=recording.shares,
         undone=undone,
         velocity=velocities(recording, release, undone, landing.possible),
-        events=_events(recording, release, landing, why_end),
+        events=_events(recording, release, landing, first, why_end),
     )
 
 
-def _events(recording: Recording, release: Release | None, landing: Landing, why_end: str) -> Events:
+def _ends_with_window(drop: Drop, recording: Recording) -> bool:
+    """Say whether the file goes on where the recording ends."""
+    return drop.window is not None and drop.window[1] - float(recording.time[-1]) < _NEAR_END / recording.rate
+
+
+def _events(recording: Recording, release: Release | None, landing: Landing, first: int, why_end: str) -> Events:
     def when(sample: int | None) -> float | None:
         return None if sample is None else recording.start + sample / recording.rate
 
     released = None if release is None else release.sample
-    return Events(when(released), when(landing.landed), when(landing.lifted), landing.why, why_end)
+    moments = when(released), when(landing.landed), when(landing.lifted), when(first)
+    return Events(*moments, why_start=landing.why, why_end=why_end)
 
 
 def _without_clipped(recording: Recording, clipped: NDArray[np.bool_], start: int, faults: list[Fault]) -> Recording:
@@ -277,9 +295,10 @@ def _landing(
     possible = release.sample + int(fall * recording.rate)
     guessed = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
-    found = find_decay(
-        recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
-    ) or Landing(possible, guessed, _ALLOWED_FOR)
+    found = find_decay(recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase)
+    if found is None:
+        placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.on == "body")
+        found = Landing(possible, guessed, _ALLOWED_FOR if placed else _NOT_PLACED)
     judged = {sensor.on for sensor, used in zip(campaign.sensors, recording.usable, strict=True) if used}
     if not judged.issuperset(drop.wheels):  # a wheel fell that nobody watched
         later = guessed > found.certain

@@ -47,7 +47,8 @@ def wheels_that_fell(recording: Recording, release: Release | None, sensors: Seq
     unclear: set[Wheel] = set()
     for channel in np.flatnonzero(on_wheels).tolist():
         station = sensors[channel].on
-        assert station != "body"  # noqa: S101 (for the type checker)
+        if station is None or station == "body":  # a wheel, but not known which
+            continue
         falls = channel in channels
         if falls != (seen.depth[channel] > STANDARD_GRAVITY) or fell.setdefault(station, falls) != falls:
             unclear.add(station)
@@ -85,7 +86,9 @@ def contradicted(drops: Sequence[Drop], fell: Sequence[Fell]) -> tuple[int, ...]
 
 
 def _otherwise(drop: Drop, fell: Fell) -> set[Wheel]:
-    """Give the wheels that are seen otherwise than stated."""
+    """Give the wheels that are seen otherwise than stated; none where nothing was stated."""
+    if not drop.wheels:
+        return set()
     return {wheel for wheel, falls in fell.items() if falls != (wheel in drop.wheels)}
 
 

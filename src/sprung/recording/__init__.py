@@ -1,15 +1,26 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
 from sprung.recording.beforehand import Given, known_quantities
-from sprung.recording.campaign import KINDS, Campaign, Drop, ModelChoice, drop_names, kind_of
+from sprung.recording.campaign import (
+    KINDS,
+    Campaign,
+    Drop,
+    ModelChoice,
+    TestRecord,
+    drop_names,
+    kind_of,
+    recording_names,
+)
+from sprung.recording.completeness import Missing
 from sprung.recording.formats import Table, read_table, to_sep005
 from sprung.recording.formats.resampled import SLOWEST
 from sprung.recording.gaps import gap, gaps_in
 from sprung.recording.loggers import files_named_after
 from sprung.recording.mending import MOST_MISSING, filled
 from sprung.recording.merging import merged
+from sprung.recording.ownership import overwriting_problems
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
-from sprung.recording.reading import FILE, VehicleFile, read, read_vehicle
+from sprung.recording.reading import FILE, VehicleFile, read, read_document, read_vehicle
 from sprung.recording.recording import ROUGHLY, LoggerClock, Recording
 from sprung.recording.sources import SourceFile
 from sprung.recording.whole import write_whole
@@ -27,10 +38,12 @@ __all__ = [
     "Drop",
     "Given",
     "LoggerClock",
+    "Missing",
     "ModelChoice",
     "Recording",
     "SourceFile",
     "Table",
+    "TestRecord",
     "VehicleFile",
     "drop_names",
     "files_named_after",
@@ -40,9 +53,12 @@ __all__ = [
     "kind_of",
     "known_quantities",
     "merged",
+    "overwriting_problems",
     "read",
+    "read_document",
     "read_table",
     "read_vehicle",
+    "recording_names",
     "schema_text",
     "to_sep005",
     "write",

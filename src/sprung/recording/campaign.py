@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import itertools
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -12,9 +13,10 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from sprung.display import shown
-from sprung.errors import Fault, Problems
+from sprung.errors import Fault, InputError, Problems
 from sprung.estimate import Known
 from sprung.recording.beforehand import Given, known_quantities
+from sprung.recording.completeness import Missing
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
 from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, record
@@ -48,15 +50,19 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
 class Drop:
     """One release off the blocks, as a campaign file describes it."""
 
+    # Where it is not known yet, the load is empty text and there are no wheels.
+
     file: str | None = None
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
     files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
     """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
+    name: str | None = Field(default=None, min_length=1)
+    """What to call it everywhere, unlike every other drop's; its recording's name where it is left out."""
     window: tuple[Finite, Finite] | None = None
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
     load: str = "empty"
     """Name of the load on the vehicle."""
-    wheels: Annotated[tuple[Wheel, ...], Field(min_length=1)] = ("fl", "fr", "rl", "rr")
+    wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
     """Of the blocks, m."""
@@ -75,6 +81,8 @@ class Drop:
             raise ValueError("name either the file or, where several loggers recorded it, the files")
         if len(set(self.files)) != len(self.files):
             raise ValueError("name each file once")
+        if self.name is not None and (not self.name.isprintable() or {"/", "\\"} & set(self.name)):
+            raise ValueError("a drop's name is printable text without / and \\")
         if self.window is not None and self.window[1] <= self.window[0]:
             raise ValueError(f"the window must end after {self.window[0]:g} s, where it begins")
         return self
@@ -94,8 +102,10 @@ class Drop:
         return shared if shared is None or self.window is None else f"{shared} from {self.window[0]:g} s"
 
     @property
-    def name(self) -> str:
-        """Short name: the recording's without its folder and ending, or made from the load and the wheels."""
+    def label(self) -> str:
+        """Short name: its own, the recording's without its folder and ending, or made from the load and the wheels."""
+        if self.name is not None:
+            return self.name
         if self.file is not None:
             return PurePath(self.file).stem + self._from
         shared = PurePath(self._shared).stem.replace("*", "").strip("_-. ") if self.files else ""
@@ -114,7 +124,7 @@ class Drop:
     @property
     def _long_name(self) -> str:
         """Name that says which folder the first of its files is in."""
-        path = PurePath(next(iter(self.recordings), self.name))
+        path = PurePath(next(iter(self.recordings), self.label))
         return "_".join([*path.parts[:-1], path.stem]) + self._from
 
     @property
@@ -136,11 +146,11 @@ def drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     tuple of str
         In the same order.
     """
-    return _told_apart([(drop.name, drop._long_name) for drop in drops])
+    return _told_apart([(drop.label,) if drop.name else (drop.label, drop._long_name) for drop in drops])
 
 
 def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
-    """Say what to call every drop's recording, no two alike: what its files have in common, or the first of them.
+    """Say what to call every drop's recording, no two alike: the drop's own name, or what its files have in common.
 
     Parameters
     ----------
@@ -148,7 +158,9 @@ def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
         All of a campaign.
     """
     firsts = [(f"{drop.files[0]} and {len(drop.files) - 1} more",) if drop.files[1:] else () for drop in drops]
-    return _told_apart([(drop.recording or drop.name, *first) for drop, first in zip(drops, firsts, strict=True)])
+    return _told_apart(
+        [(drop.name or drop.recording or drop.label, *first) for drop, first in zip(drops, firsts, strict=True)]
+    )
 
 
 def _told_apart(names: Sequence[Sequence[str]]) -> tuple[str, ...]:
@@ -181,6 +193,20 @@ class ModelChoice:
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
+@record
+class TestRecord:
+    """``[test]``: when, where and by whom the vehicle was tested; for the record, no number depends on it."""
+
+    date: dt.date | None = None
+    """Day of the test: 2026-11-22, without quotes."""
+    operator: Annotated[str, Field(min_length=1)] | None = None
+    """Who did the test."""
+    place: Annotated[str, Field(min_length=1)] | None = None
+    """Where it was done."""
+    remarks: Annotated[str, Field(min_length=1)] | None = None
+    """Whatever else belongs into the record: tyre pressures, fuel, weather."""
+
+
 @shown
 @dataclass(frozen=True, eq=False)
 class Campaign:
@@ -209,6 +235,15 @@ class Campaign:
         Where the campaign file is; None for a campaign made in memory.
     files
         What was read: the campaign file and the recordings, with their checksums.
+    missing
+        What the campaign file does not say yet, of a campaign that was read although it is not complete.
+    unread
+        Drops whose recordings could not be read, of a campaign that was read although it is not complete; they are not among
+        `drops`.
+    identification
+        Of the vehicle: chassis, registration or test number; None where nobody gave it.
+    test
+        When, where and by whom the vehicle was tested, as far as the campaign file says it.
 
     Raises
     ------
@@ -230,6 +265,10 @@ class Campaign:
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
+    missing: tuple[Missing, ...] = ()
+    unread: tuple[Drop, ...] = ()
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
 
     def __post_init__(self) -> None:
         problems = Problems()
@@ -245,6 +284,18 @@ class Campaign:
     def heights(self) -> Heights:
         """How high things are, as far as it was measured."""
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
+
+    def require_complete(self) -> None:
+        """Refuse a campaign that does not say everything that an identification needs.
+
+        Raises
+        ------
+        InputError
+            With everything that is missing.
+        """
+        needed = [one.problem for one in self.missing if one.needed]
+        if needed:
+            raise InputError(needed)
 
     def load(self, name: str) -> Load:
         """Give the load of that name.

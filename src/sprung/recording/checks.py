@@ -51,17 +51,18 @@ def check(draft: Draft[CampaignFile], problems: Problems) -> None:
 def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
     """Nothing may be named twice."""
     file = draft.file
-    named: dict[str, list[tuple[str, str, object]]] = {
-        "sensor": [("channel", sensor.channel, sensor.logger) for sensor in file.sensor],
-        "load": [("name", load.name, None) for load in file.load],
+    named: dict[tuple[str, str], list[tuple[str, str, object]]] = {
+        ("sensor", "channel"): [("channel", sensor.channel, sensor.logger) for sensor in file.sensor],
+        ("load", "name"): [("name", load.name, None) for load in file.load],
         # "./a.csv" is "a.csv"; one file may hold several drops, each in its window.
-        "drop": [
+        ("drop", "file"): [
             ("files" if drop.files else "file", ", ".join(str(PurePath(one)) for one in drop.recordings), drop.window)
             for drop in file.drop
         ],
+        ("drop", "name"): [("name", drop.name or "", None) for drop in file.drop],
     }
-    remedies = {"drop": "Each drop has its own recording, or its own window of one."}
-    for section, entries in named.items():
+    remedies = {("drop", "file"): "Each drop has its own recording, or its own window of one."}
+    for (section, kind), entries in named.items():
         first: dict[tuple[str, object], int] = {}
         for index, (key, name, beside) in zip(draft.numbered(section), entries, strict=True):
             if not name or first.setdefault((name, beside), index) == index:
@@ -69,7 +70,10 @@ def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
             found = f"'{name}', which {section}[{first[name, beside] + 1}] has too"
             expected = f"a {key} of its own for every {section}"
             problems.add(
-                draft.where(section, index, key), found, expected, remedies.get(section, "Rename one, or remove it.")
+                draft.where(section, index, key),
+                found,
+                expected,
+                remedies.get((section, kind), "Rename one, or remove it."),
             )
 
 
@@ -100,6 +104,8 @@ def _check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
     """Bounce, pitch and roll are three unknowns: three sensors not on one line tell them apart."""
     if not draft.complete("sensor") or _left_to_defaults(draft, "sensor"):
         return
+    if any(sensor.on == "body" and sensor.position is None for sensor in draft.file.sensor):
+        return  # said already
     placed = [
         sensor.position[:2] for sensor in draft.file.sensor if sensor.on == "body" and sensor.position is not None
     ]
@@ -132,7 +138,7 @@ def _check_loads(draft: Draft[CampaignFile], problems: Problems) -> None:
     written = draft.document.get("load", [])
     names = {"empty"} | {entry.get("name") for entry in written if isinstance(entry, dict)}
     for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
-        if drop.load not in names and ("load" in draft.document or draft.complete("load")):
+        if drop.load and drop.load not in names and ("load" in draft.document or draft.complete("load")):
             do = did_you_mean(drop.load, [name for name in names if isinstance(name, str)])
             problems.add(draft.where("drop", index, "load"), f"'{drop.load}'", "'empty' or the name of a [[load]]", do)
 

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
+from sprung.recording.keys import annotate
 from sprung.recording.schema import KNOWABLE, SCHEMA, CampaignFile
 from sprung.vehicle import EXTRAS, PARAMETERS
 
@@ -41,9 +42,9 @@ def schema_text() -> str:
     return files("sprung.recording").joinpath(SCHEMA_FILE).read_text(encoding="utf-8")
 
 
-def campaign_schema() -> str:
-    """Make the JSON Schema of campaign.toml anew from the models, as text."""
-    document = CampaignFile.model_json_schema(schema_generator=_Toml)
+def campaign_schema(of: type[CampaignFile] = CampaignFile) -> str:
+    """Make the JSON Schema of campaign.toml, or of another file of its kind, anew from the models, as text."""
+    document = of.model_json_schema(schema_generator=_Toml)
     entries: dict[str, dict[str, Any]] = document["$defs"]
     properties = document["properties"]
     properties["schema"]["const"] = SCHEMA
@@ -74,6 +75,7 @@ def campaign_schema() -> str:
         "$id": f"urn:sprung:campaign:{SCHEMA}",
         "title": "campaign.toml",
     }
+    annotate(document)
     document["description"] = "What a test engineer writes down at the drop test: lengths m, masses kg, times s."
     return json.dumps(head | document, indent=2, ensure_ascii=False).replace("``", "`") + "\n"
 
@@ -111,7 +113,8 @@ class _Toml(GenerateJsonSchema):
         return self.generate_inner(schema["schema"])
 
     def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
-        plain = isinstance(schema.get("default"), str | int | float)
+        default = schema.get("default")
+        plain = isinstance(default, str | int | float) or (isinstance(default, tuple) and len(default) > 0)
         return super().default_schema(schema) if plain else self.generate_inner(schema["schema"])
 
     def tuple_schema(self, schema: core_schema.TupleSchema) -> JsonSchemaValue:

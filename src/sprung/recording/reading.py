@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sprung.display import shown
-from sprung.errors import InputError, Problem, Problems, did_you_mean
-from sprung.recording.campaign import Campaign, Drop, ModelChoice, recording_names
+from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
+from sprung.recording.campaign import Campaign, Drop, ModelChoice, TestRecord, recording_names
 from sprung.recording.checks import check, refused_unit
+from sprung.recording.completeness import missing_in_file
+from sprung.recording.document import toml_document
 from sprung.recording.formats import Signals, Table, from_sep005, read_table, split_unit
 from sprung.recording.loggers import Wanted, named_apart, recording_of_drop
 from sprung.recording.schema import CampaignFile, VehicleFileSchema
@@ -42,7 +44,7 @@ class VehicleFile:
         Its parameters.
     sensors, loads, drops
         As in a `Campaign`; the drops have no recordings.
-    wheelbase, wheel_height, roll_axis_height, known, model
+    wheelbase, wheel_height, roll_axis_height, known, model, identification, test
         As in a `Campaign`: what the simulated campaign may say about itself.
     path
         Where the file is.
@@ -58,6 +60,8 @@ class VehicleFile:
     known: Mapping[str, Known] = field(default_factory=dict)
     model: ModelChoice = field(default_factory=ModelChoice)
     path: Path | None = None
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
 
     @property
     def all_known(self) -> dict[str, Known]:
@@ -65,7 +69,7 @@ class VehicleFile:
         return dict(self.known) if self.wheelbase is None else {**self.known, "wheelbase": self.wheelbase}
 
 
-def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Campaign:
+def read(path: str | os.PathLike[str], *, signals: Signals | None = None, complete: bool = True) -> Campaign:
     """Read a campaign and its recordings.
 
     Parameters
@@ -77,6 +81,10 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
         of dictionaries as SEP005 of the SDyPy project proposes them, one per signal, with ``name``, ``data`` of shape
         (time,), ``unit_str``, and ``fs`` in Hz or ``time`` in s. Unit and direction of a sensor in the campaign file hold for
         them as for a file.
+    complete
+        Whether the file must say everything that an identification needs. Otherwise what it does not say is in
+        `Campaign.missing`, recordings that cannot be read are left out and named in its faults, and `sprung.check` can judge
+        the others.
 
     Returns
     -------
@@ -95,23 +103,59 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
     >>> campaign = sprung.read("campaign.toml", signals={"empty_bounce": signals})          # doctest: +SKIP
     """
     path = Path(path) / FILE if Path(path).is_dir() else Path(path)
-    problems = Problems()
-    draft = understand(CampaignFile, path, problems)
+    return read_document(toml_document(path), path, signals=signals, complete=complete)
+
+
+def read_document(
+    document: Mapping[str, Any], path: Path, *, signals: Signals | None = None, complete: bool = True
+) -> Campaign:
+    """Read the recordings of a campaign file that has been read already, or is not written yet.
+
+    Parameters
+    ----------
+    document
+        What the campaign file holds, as TOML gives it.
+    path
+        Of the campaign file; the recordings are beside it.
+    signals, complete
+        As for `read`.
+
+    Returns
+    -------
+    Campaign
+
+    Raises
+    ------
+    InputError
+        As `read` does.
+    """
+    problems, unread = Problems(), Problems()
+    of_recordings = problems if complete else unread
+    draft = understand(CampaignFile, document, path.name, problems)
+    missing = tuple(missing_in_file(draft))
+    if complete:
+        for one in missing:
+            if one.needed:
+                problems.add(*astuple(one.problem))
     check(draft, problems)
     files = _files(draft, problems)
-    tables = _tables(files, path.parent, signals or {}, problems)
+    tables = _tables(files, path.parent, signals or {}, of_recordings)
     _check_signals(draft, files, signals or {}, problems)
     _check_channels(draft, tables, problems)
     _check_starts_and_ends(draft, tables, problems)
     sensors = named_apart(draft.file.sensor)
-    recordings = _recordings(draft, sensors, tables, problems)
+    read = _recordings(draft, sensors, tables, of_recordings)
     problems.raise_if_any()
+    recordings = tuple(read.values())
+    if not recordings:
+        unread.raise_if_any()
     _refuse_unusable(recordings)
     vehicle = draft.file.vehicle
+    drops = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     return Campaign(
         name=vehicle.name or _printable(path.absolute().parent.name),
         sensors=sensors,
-        drops=draft.file.drop,
+        drops=tuple(drop for index, drop in drops.items() if index in read),
         recordings=recordings,
         loads=_loads(draft.file),
         wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
@@ -120,8 +164,13 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None) -> Cam
         roll_axis_height=vehicle.roll_axis_height,
         known={name: measured.known for name, measured in draft.file.known.items()},
         model=draft.file.model,
+        faults=tuple(_unread_fault(problem) for problem in unread),
         path=path,
         files=_sources(files, path, signals or {}),
+        missing=missing,
+        unread=tuple(drop for index, drop in drops.items() if index not in read),
+        identification=vehicle.identification,
+        test=draft.file.test,
     )
 
 
@@ -144,7 +193,10 @@ def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
     """
     path = Path(path)
     problems = Problems()
-    draft = understand(VehicleFileSchema, path, problems)
+    draft = understand(VehicleFileSchema, toml_document(path), path.name, problems)
+    for one in missing_in_file(draft):
+        if one.needed:
+            problems.add(*astuple(one.problem))
     check(draft, problems)
     section = draft.file.vehicle
     name = section.name or path.stem
@@ -162,6 +214,8 @@ def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
         known={name: measured.known for name, measured in draft.file.known.items()},
         model=draft.file.model,
         path=path,
+        identification=section.identification,
+        test=draft.file.test,
     )
 
 
@@ -229,7 +283,14 @@ def _tables(
 def _sources(files: Mapping[int, Sequence[str]], path: Path, signals: Signals) -> tuple[SourceFile, ...]:
     """Give the checksum of everything that was read, each file once."""
     recordings = dict.fromkeys(file for names in files.values() for file in names if file not in signals)
-    return tuple(SourceFile.of(path.parent, name) for name in (path.name, *recordings))
+    names = (path.name, *recordings)
+    return tuple(SourceFile.of(path.parent, name) for name in names if (path.parent / name).is_file())
+
+
+def _unread_fault(problem: Problem) -> Fault:
+    """Say of a recording that cannot be read that it is left out."""
+    what = f"{problem.found}, where {problem.expected} is expected; the recording is left out"
+    return Fault("unreadable", problem.where, what, problem.do)
 
 
 def _check_signals(
@@ -266,7 +327,8 @@ def _recordings(
     sensors: Sequence[Sensor],
     tables: Mapping[int, Mapping[str, Table]],
     problems: Problems,
-) -> tuple[Recording, ...]:
+) -> dict[int, Recording]:
+    """Make the recording of every drop whose files could be read; by the drop's index."""
     pairs = [
         Wanted(written, named)
         for written, named in zip(draft.file.sensor, sensors, strict=True)
@@ -274,11 +336,11 @@ def _recordings(
     ]
     understood = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
-    recordings: list[Recording] = []
-    for of_drop, drop, name in zip(tables.values(), drops, recording_names(drops), strict=True):
+    recordings: dict[int, Recording] = {}
+    for (index, of_drop), drop, name in zip(tables.items(), drops, recording_names(drops), strict=True):
         with problems.collecting():
-            recordings.append(recording_of_drop(of_drop, pairs, drop, name))
-    return tuple(recordings)
+            recordings[index] = recording_of_drop(of_drop, pairs, drop, name)
+    return recordings
 
 
 def _check_starts_and_ends(

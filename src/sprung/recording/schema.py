@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from sprung.estimate import Known
-from sprung.recording.campaign import Drop, ModelChoice
+from sprung.recording.campaign import Drop, ModelChoice, TestRecord
 from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
 
 SCHEMA = 1
@@ -45,6 +45,8 @@ class VehicleSection(BaseModel):
 
     name: str | None = Field(default=None, min_length=1)
     """For people to read; the folder's name where it is left out."""
+    identification: str | None = Field(default=None, min_length=1)
+    """Chassis number, registration or test number, for the record."""
     wheelbase: Measured | None = None
     """Front axle to rear axle, m."""
     cg_height: Positive | None = None
@@ -69,6 +71,8 @@ class CampaignFile(BaseModel):
     """Version of the keys in this file."""
     vehicle: VehicleSection = VehicleSection()
     """What is measured on the vehicle with a tape."""
+    test: TestRecord = TestRecord()
+    """When, where and by whom the vehicle was tested."""
     known: Mapping[str, Measured] = Field(default_factory=dict)
     """Measured beforehand: any parameter, or a weighed mass; the names are those of `KNOWABLE`."""
     model: ModelChoice = ModelChoice()

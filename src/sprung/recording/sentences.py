@@ -144,10 +144,10 @@ def _described(node: dict[str, Any]) -> str:
             what = "a number, 0 or more"
         case {"type": "number"}:
             what = "a number"
-        case {"type": "string", "minLength": 1}:
-            what = "text in double quotes, not empty"
-        case {"type": "string"}:
-            what = "text in double quotes"
+        case {"type": "string", **more}:
+            what = "text in double quotes" + (", not empty" if more.get("minLength") == 1 else "")
+            if more.get("format") == "date":
+                what = "a date without quotes, year-month-day: 2026-11-22"
         case {"type": "array", "items": items}:
             of = "tables" if "$ref" in items else _described(items).removeprefix("one of ")
             what = f"a list in [ ] of {of}" + (", not empty" if node.get("minItems") else "")

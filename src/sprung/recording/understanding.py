@@ -9,19 +9,21 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from pydantic import ValidationError
 
 from sprung.errors import InputError, Problem, Problems
-from sprung.recording.document import toml_document
 from sprung.recording.gaps import gaps_in
 from sprung.recording.schema import SCHEMA, CampaignFile
 from sprung.recording.sentences import Place, problems_of, where_in
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
-    from pathlib import Path
+    from collections.abc import Collection, Iterator, Mapping
 
     from pydantic_core import ErrorDetails
 
 File = TypeVar("File", bound=CampaignFile)
 File_co = TypeVar("File_co", bound=CampaignFile, covariant=True)
+
+
+_UNKNOWN: Mapping[str, Any] = {"load": "", "wheels": [], "items": []}
+"""What stands for "not known" in a key that holds text or a list; None does elsewhere."""
 
 
 @dataclass(frozen=True)
@@ -38,12 +40,16 @@ class Draft(Generic[File_co]):
         What is left of it without its faulty entries.
     lost
         The entries left out, such as ("sensor", 2).
+    gaps
+        The gaps that are still to be filled, by their place: each as the problem that it is for an identification. What such a
+        place holds counts as not known.
     """
 
     name: str
     document: Mapping[str, Any]
     file: File_co
     lost: frozenset[Place]
+    gaps: Mapping[Place, Problem]
 
     def complete(self, section: str) -> bool:
         """Say whether nothing of a section was left out, or written under a name that is none."""
@@ -61,17 +67,19 @@ class Draft(Generic[File_co]):
         return where_in(self.name, place, self.document)
 
 
-def understand(model: type[File], path: Path, problems: Problems) -> Draft[File]:
-    """Read a file into its model, entry by entry as far as that goes.
+def understand(model: type[File], document: Mapping[str, Any], name: str, problems: Problems) -> Draft[File]:
+    """Turn a document into the records of its model, entry by entry as far as that goes.
 
     Parameters
     ----------
     model
         The file's schema.
-    path
-        The file.
+    document
+        What the file holds, as TOML gives it.
+    name
+        The file's.
     problems
-        Takes up every fault found in it.
+        Takes up every fault found in it; gaps are none.
 
     Returns
     -------
@@ -81,33 +89,41 @@ def understand(model: type[File], path: Path, problems: Problems) -> Draft[File]
     Raises
     ------
     InputError
-        If nothing of it can be understood: it is missing, not TOML, or of a newer schema.
+        If nothing of it can be understood, as it is of a newer schema.
     """
-    document = toml_document(path)
     number = document.get("schema", SCHEMA)
     if number != SCHEMA:
         newer = isinstance(number, int) and number > SCHEMA
         do = "Update sprung: the file was written for a newer version." if newer else f"Write schema = {SCHEMA}."
         found, expected = f"schema {number!r}", f"schema {SCHEMA}, which this version of sprung reads"
-        raise InputError([Problem(f"{path.name}: schema", found, expected, do)])
-    gaps = dict(gaps_in(document))
-    for place, what in gaps.items():
-        where, found = where_in(path.name, place, document), "a gap that is still to be filled"
-        problems.add(where, found, what, "Write it there, in place of the text.")
+        raise InputError([Problem(f"{name}: schema", found, expected, do)])
+    found, do = "a gap that is still to be filled", "Write it there, in place of the text."
+    gaps = {place: Problem(where_in(name, place, document), found, what, do) for place, what in gaps_in(document)}
+    known = _with_unknowns(document, gaps)
     details: list[ErrorDetails] = []
     try:
-        file = _validated(model, document)
+        return Draft(name, document, _validated(model, known), frozenset(), gaps)
     except ValidationError as error:
-        details = [fault for fault in error.errors(include_url=False) if not _within(fault["loc"], gaps)]
-    lost = {detail["loc"][:2] for detail in details} | {place[:2] for place in gaps}
-    if not lost:
-        return Draft(path.name, document, file, frozenset())
-    for problem in problems_of(model, details, path.name, document):
+        details = error.errors(include_url=False)
+    lost = frozenset(detail["loc"][:2] for detail in details)
+    wrong = [detail for detail in details if not _within(detail["loc"], gaps)]
+    for problem in problems_of(model, wrong, name, document):
         problems.add(problem.where, problem.found, problem.expected, problem.do)
-    return Draft(path.name, document, _validated(model, _without(document, lost)), frozenset(lost))
+    return Draft(name, document, _validated(model, _without(known, lost)), lost, gaps)
 
 
-def _within(place: Place, gaps: Mapping[Place, str]) -> bool:
+def _with_unknowns(part: Any, gaps: Collection[Place], place: Place = ()) -> Any:
+    """Put what stands for "not known" into every gap."""
+    if place in gaps:
+        return _UNKNOWN.get(str(place[-1]))
+    if isinstance(part, dict):
+        return {key: _with_unknowns(value, gaps, (*place, key)) for key, value in part.items()}
+    if isinstance(part, list):
+        return [_with_unknowns(value, gaps, (*place, index)) for index, value in enumerate(part)]
+    return part
+
+
+def _within(place: Place, gaps: Collection[Place]) -> bool:
     """Say whether a fault is only that of a gap."""
     return any(place[: len(gap)] == gap for gap in gaps)
 
@@ -117,7 +133,7 @@ def _validated(model: type[File], document: Mapping[str, Any]) -> File:
     return model.model_validate_json(json.dumps(document, default=str), strict=True)
 
 
-def _without(document: Mapping[str, Any], lost: set[Place]) -> dict[str, Any]:
+def _without(document: Mapping[str, Any], lost: Collection[Place]) -> dict[str, Any]:
     kept: dict[str, Any] = {}
     for key, value in document.items():
         if (key,) in lost:

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from sprung.recording.recording import Recording
 
 
-def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
+def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a campaign into a folder, whole or not at all.
 
     The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
@@ -42,7 +42,9 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     campaign
         The campaign.
     folder
-        Where to; made if it does not exist. Files of the same names in it are replaced.
+        Where to; made if it does not exist. Files that an earlier call wrote there are replaced.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -52,7 +54,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
     pieces = [recording.parts or (recording,) for recording in campaign.recordings]
     names = tuple(_file_names(campaign.drops, pieces))
@@ -64,7 +66,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str]) -> Path:
     }
     files[SCHEMA_FILE] = schema_text().encode()
     files[FILE] = SCHEMA_LINE.encode() + _toml(_document(campaign, names))
-    write_whole(folder, files)
+    write_whole(folder, files, overwrite=overwrite)
     return Path(folder) / FILE
 
 
@@ -74,7 +76,7 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
     for drop, of_drop in zip(drops, pieces, strict=True):
         own = []
         for file in [piece.name for piece in of_drop] if len(of_drop) > 1 else [drop.file]:
-            path = PurePosixPath(file or drop.name)
+            path = PurePosixPath(file or drop.label)
             if path.is_absolute() or ".." in path.parts:
                 path = PurePosixPath(path.name)
             plain = path.with_name(path.stem if file else path.name)
@@ -90,11 +92,14 @@ def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) ->
 def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, Any]:
     heights = ("cg_height", "wheel_height", "roll_axis_height")
     vehicle: dict[str, Any] = {"name": campaign.name}
+    if campaign.identification is not None:
+        vehicle["identification"] = campaign.identification
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
     sections = {
         "vehicle": vehicle,
+        "test": written(campaign.test),
         "known": {name: _measured(known) for name, known in campaign.known.items()},
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],

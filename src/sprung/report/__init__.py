@@ -2,6 +2,7 @@
 
 from sprung.report.car import BODY_EDGES, STRUTS, wire_car
 from sprung.report.check import check_view
+from sprung.report.check_page import CHECK_FILE, check_page
 from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
@@ -25,12 +26,14 @@ from sprung.report.pictures import (
     whole_picture,
 )
 from sprung.report.plan import plan_view
+from sprung.report.sketch import VehicleSketch, drawing_svg, vehicle_sketch
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [
     "BODY_EDGES",
+    "CHECK_FILE",
     "LIGHT",
     "STRUTS",
     "Band",
@@ -41,14 +44,17 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
+    "VehicleSketch",
     "amplitude_pictures",
     "channels_picture",
+    "check_page",
     "check_view",
     "comparison_view",
     "decays_by_load",
     "draft_view",
     "draw_check",
     "draw_validation",
+    "drawing_svg",
     "modes_view",
     "motion_picture",
     "near_picture",
@@ -63,6 +69,7 @@ __all__ = [
     "svg_of",
     "text_of",
     "validation_view",
+    "vehicle_sketch",
     "whole_picture",
     "wire_car",
     "write_check",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.modal import leading_entry
 from sprung.pipeline import Result
 from sprung.report.picture import Real
 
@@ -78,7 +79,7 @@ class WireCar:
         shape = np.array([complex(*part) for part in motion])
         moved: NDArray[np.complex128] = self.rows[:, : len(shape)] @ shape
         # In the phase in which what moves most is furthest up.
-        largest = moved[np.argmax(np.abs(moved))]
+        largest = moved[leading_entry(moved)]
         return moved * (_SWING * self._wheelbase / largest) if largest else moved
 
     @property

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
-from rich.cells import cell_len
-from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.estimate import round_by_uncertainty
@@ -27,45 +25,6 @@ _SMALLEST = 1e-9
 """A chance below which its size says nothing more."""
 
 
-@dataclass(frozen=True)
-class SideBySide:
-    """Values of many results, as many columns at a time as the terminal is wide.
-
-    Attributes
-    ----------
-    title
-        Above it.
-    columns
-        Labels of the results.
-    rows
-        By quantity: unit, and a cell for each result.
-    """
-
-    title: str
-    columns: tuple[str, ...]
-    rows: dict[str, tuple[str, tuple[str, ...]]]
-
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render it for a terminal."""
-        gap = 2
-        widths = [
-            gap + max(cell_len(label), *(cell_len(cells[i]) for _, cells in self.rows.values()))
-            for i, label in enumerate(self.columns)
-        ]
-        first = 2 * gap + max(map(cell_len, self.rows)) + max(cell_len(unit) for unit, _ in self.rows.values())
-        groups: list[list[int]] = [[]]
-        for i, width in enumerate(widths):
-            if groups[-1] and first + width + sum(widths[j] for j in groups[-1]) > options.max_width:
-                groups.append([])
-            groups[-1].append(i)
-        for k, group in enumerate(groups):
-            if k:
-                yield Text()
-            headers = ["", *(self.columns[i] for i in group), "unit"]
-            rows = [[name, *(cells[i] for i in group), unit] for name, (unit, cells) in self.rows.items()]
-            yield table(self.title if not k else f"{self.title}, continued", headers, rows, headers[1:-1])
-
-
 def comparison_view(comparison: Comparison) -> RenderableType:
     """Show results side by side, what differs, and how sure that is.
 
@@ -82,8 +41,9 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     parts: list[RenderableType] = [*_verdicts(comparison), Text()]
     labels = tuple(one.name for one in comparison.results)
     for title, rows in _tables(comparison).items():
-        cells = {name: (unit_text(row.unit), tuple(_cell(told) for told in row.told)) for name, row in rows.items()}
-        parts += [SideBySide(f"{title}, value ± standard uncertainty", labels, cells), Text()]
+        cells = [[name, unit_text(row.unit), *map(_cell, row.told)] for name, row in rows.items()]
+        headers = ("", "unit", *labels)
+        parts += [table(f"{title}, value ± standard uncertainty", headers, cells, labels, heads=2), Text()]
     first, *others = (one.name for one in comparison.results)
     for i, other in enumerate(others):
         parts += [*_against(comparison, first, other, i), Text()]
@@ -181,7 +141,7 @@ def _not_compared(rows: Mapping[str, Quantity], i: int) -> Iterator[RenderableTy
             same = "the same" if one.value == 0 else "not the same"
             reasons.setdefault(f"known beforehand in both, {same}", []).append(name)
     for why, names in reasons.items():
-        yield Text(f"Not compared: {', '.join(names)} ({why}).")
+        yield hanging("", f"Not compared: {', '.join(names)} ({why}).")
 
 
 def scatter_table(comparison: Comparison) -> RenderableType:
@@ -206,7 +166,7 @@ def scatter_table(comparison: Comparison) -> RenderableType:
     )
     out = {one.furthest for one in comparison.scatter.values() if one.stands_out}
     said = f"!: stands out from the others' scatter (5 %): {', '.join(sorted(out))}." if out else "None stands out."
-    return Group(shown, Text(said))
+    return Group(shown, hanging("", said))
 
 
 def _scatter_cells(one: Scatter) -> list[str]:

@@ -1,4 +1,4 @@
-"""Drawings of the recordings, one per drop."""
+"""Files of a check: its page, and drawings of the recordings, one per drop."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path, PurePath
 
 from sprung.pipeline import Check, DropReport
 from sprung.recording import write_whole
+from sprung.report.check_page import CHECK_FILE, check_page
 from sprung.report.pictures import near_picture, whole_picture
 from sprung.report.sheet import sheet
 
@@ -23,12 +24,12 @@ def draw_check(check: Check) -> dict[str, str]:
     Returns
     -------
     dict
-        SVG text by file name, in the campaign's order; the same for the same recordings.
+        SVG text by file name, in the campaign's order, of the recordings that could be read; the same for the same recordings.
     """
     drawn = {}
-    for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=True):
+    for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=False):
         pictures = [picture for picture in (whole_picture(drop, recorded), near_picture(drop, recorded)) if picture]
-        drawn[name] = sheet(drop.file, list(_said(drop)), pictures)
+        drawn[name] = sheet(drop.label, list(_said(drop)), pictures)
     return drawn
 
 
@@ -36,7 +37,7 @@ def _said(drop: DropReport) -> Iterator[tuple[str, bool]]:
     """Say what a drop is, which part of it is used and why, each line with whether it tells of something wrong."""
     wheels = "" if drop.kind == " ".join(drop.wheels) else f" ({', '.join(drop.wheels)})"
     rate = "" if drop.rate is None else f", {drop.rate:.6g} samples per second"
-    yield f"{drop.kind}{wheels}, load {drop.load}{rate}", False
+    yield f"{drop.kind or 'wheels not known'}{wheels}, load {drop.load or 'not stated'}{rate}", False
     if drop.start is None or drop.end is None:
         yield f"left out: {', '.join(drop.faults)}", True
     else:
@@ -46,34 +47,42 @@ def _said(drop: DropReport) -> Iterator[tuple[str, bool]]:
         yield f"the release shows {', '.join(drop.wheels_seen or ()) or 'no wheel'} to have fallen", True
 
 
-def write_check(check: Check, folder: Path) -> tuple[Path, ...]:
-    """Draw every drop into a folder, all of them or none.
+def write_check(
+    check: Check, folder: Path, *, page: bool = True, drawings: bool = False, overwrite: bool = False
+) -> tuple[Path, ...]:
+    """Write the page of a check, and drawings of its drops, into a folder: all files or none.
 
     Parameters
     ----------
     check
         From `sprung.check`.
     folder
-        Made if it does not exist. Files of the same names in it are replaced.
+        Made if it does not exist. Files that sprung wrote there are replaced.
+    page
+        Whether to write check.html.
+    drawings
+        Whether to draw each drop as an SVG file.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
     tuple of Path
-        One for each drop.
+        The page first, then one for each drop.
 
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If such files would be overwritten, or the folder cannot be written.
     """
-    drawings = draw_check(check)
-    write_whole(folder, {name: text.encode() for name, text in drawings.items()})
-    return tuple(folder / name for name in drawings)
+    files = ({CHECK_FILE: check_page(check)} if page else {}) | (draw_check(check) if drawings else {})
+    write_whole(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
+    return tuple(folder / name for name in files)
 
 
 def _names(check: Check) -> Iterator[str]:
     """Name each drop's drawing after its recording, no two alike."""
-    return file_names([str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
+    return file_names([drop.title or str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
 
 
 def file_names(drops: Iterable[str]) -> Iterator[str]:

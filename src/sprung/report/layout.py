@@ -1,44 +1,55 @@
-"""How text is laid out on a terminal of any width: what does not fit is left out or wrapped, never cut."""
+"""How text is laid out on a terminal of any width: what does not fit is wrapped or set below, never cut or left out."""
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
-from rich.table import Table as Grid
 from rich.text import Text
 
+from sprung.report.columns import arrange, breaks
 from sprung.tables import Table
 
-_GAP = 2
-"""Columns between the columns of a table."""
+_MEASURE = 100
+"""Columns that a line of prose has at most: longer ones are hard to read."""
+
+_UNLIMITED = 1 << 20
+"""Width of what is no terminal: a file or another program, which takes every table as wide as it is."""
 
 
 @dataclass(frozen=True)
 class Fitting:
-    """A table that leaves columns out where the terminal is narrow; made by `laid_out`."""
+    """A table that is arranged for the width of the terminal; made by `laid_out`."""
 
     table: Table
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Render it for a terminal."""
-        table = self.table
-        kept = dict(enumerate(table.headers))
-        widths = [max(map(cell_len, column)) + _GAP for column in zip(table.headers, *table.rows, strict=True)]
-        for header in table.spare:
-            if sum(widths[i] for i in kept) - _GAP <= options.max_width:
-                break
-            del kept[table.headers.index(header)]
-        # Of its natural width, whatever the terminal's: a line that wraps can still be read, a cut number cannot.
-        width = sum(widths[i] for i in kept) - _GAP
-        shown = Grid(header_style="dim", box=None, pad_edge=False, padding=(0, _GAP, 0, 0), width=width)
-        for header in kept.values():
-            shown.add_column(header, justify="right" if header in table.numbers else "left", no_wrap=True)
-        for row in table.rows:
-            shown.add_row(*(Text(row[i]) for i in kept))
-        yield shown
+        for line in arrange(self.table, options.max_width):
+            yield Text(line.text, style=line.style, no_wrap=True, overflow="ignore")
+
+
+@dataclass(frozen=True)
+class Hanging:
+    """A text beside what leads it in; made by `hanging`."""
+
+    first: str
+    text: Text
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Render it for a terminal: its further lines below its own first one, words whole."""
+        indent = cell_len(self.first)
+        width = max(min(options.max_width, _MEASURE) - indent, 1)
+        lead = self.first
+        for paragraph in self.text.split("\n", allow_blank=True):
+            for line in paragraph.divide(breaks(paragraph.plain, width)):
+                line.rstrip()
+                yield Text.assemble(lead, line, no_wrap=True, overflow="ignore")
+                lead = " " * indent
 
 
 def table(
@@ -47,6 +58,7 @@ def table(
     rows: Iterable[Sequence[str]],
     numbers: Iterable[str] = (),
     spare: Iterable[str] = (),
+    heads: int = 1,
 ) -> RenderableType:
     """Lay out one table.
 
@@ -61,9 +73,11 @@ def table(
     numbers
         Headers of the columns to set flush right.
     spare
-        Headers of the columns that a narrow terminal can do without, the first to go first.
+        Headers of the columns that a narrow terminal sets below the others, the first to go first.
+    heads
+        How many columns at the left name the rows.
     """
-    return laid_out(Table(title, tuple(headers), tuple(map(tuple, rows)), frozenset(numbers), tuple(spare)))
+    return laid_out(Table(title, tuple(headers), tuple(map(tuple, rows)), frozenset(numbers), tuple(spare), heads))
 
 
 def laid_out(table: Table) -> RenderableType:
@@ -74,7 +88,7 @@ def laid_out(table: Table) -> RenderableType:
     table
         The table.
     """
-    return Group(Text(table.title, style="bold"), Fitting(table))
+    return Group(hanging("", Text(table.title, style="bold")), Fitting(table))
 
 
 def hanging(first: str, text: str | Text) -> RenderableType:
@@ -87,11 +101,7 @@ def hanging(first: str, text: str | Text) -> RenderableType:
     text
         The text.
     """
-    grid = Grid.grid(padding=0)
-    grid.add_column(no_wrap=True)
-    grid.add_column(overflow="fold")
-    grid.add_row(first, text)
-    return grid
+    return Hanging(first, Text(text) if isinstance(text, str) else text)
 
 
 def figures(number: float, count: int) -> str:
@@ -120,14 +130,20 @@ def text_of(view: RenderableType, console: Console | None = None) -> str:
     view
         From one of this room's views.
     console
-        Knows the terminal's width and colours; standard output unless given.
+        Knows the width and the colours; standard output unless given. What is no terminal, a file or another program, takes
+        tables of any width, unless the variable COLUMNS says otherwise.
 
     Returns
     -------
     str
         Lines without trailing blanks; with colours if the console has any.
     """
-    console = console or Console(highlight=False)
+    console = console or _standard_output()
     with console.capture() as capture:
         console.print(view, crop=False)
     return "".join(f"{line.rstrip()}\n" for line in capture.get().splitlines())
+
+
+def _standard_output() -> Console:
+    limited = sys.stdout.isatty() or "COLUMNS" in os.environ
+    return Console(highlight=False, width=None if limited else _UNLIMITED)

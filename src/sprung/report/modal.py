@@ -35,17 +35,19 @@ class Chart:
         low, high = float(frequencies.min()) / 1.05, float(frequencies.max()) * 1.05
         width = max(min(options.max_width, 100) - _MARGIN, 20)
         columns = (width * np.log(frequencies / low) / np.log(high / low)).astype(int)
-        yield Text("Stabilisation: * there at the order before too, . not", style="bold")
+        yield hanging("", Text("Stabilisation: * there at the order before too, . not", style="bold"))
         for order in reversed(self.diagram.orders):
             line = [" "] * width
             for one, column in zip(vibrating, columns.tolist(), strict=True):
                 if one.order == order and line[column] != "*":
                     line[column] = "*" if one.stable else "."
-            yield Text(f"{order:>3}  {''.join(line)}".rstrip())
+            yield Text(f"{order:>3}  {''.join(line)}".rstrip(), no_wrap=True, overflow="ignore")
         left, right = f"{low:.3g} Hz", f"{high:.3g} Hz"
-        yield Text(" " * _MARGIN + left + " " * (width - len(left) - len(right)) + right)
+        yield Text(
+            " " * _MARGIN + left + " " * (width - len(left) - len(right)) + right, no_wrap=True, overflow="ignore"
+        )
         chosen = ", ".join(f"{abs(one.pole) / (2 * np.pi):.4g}" for one in self.diagram.chosen)
-        yield Text(f"Stays: {chosen} Hz" if chosen else "Nothing stays.")
+        yield hanging("", f"Stays: {chosen} Hz" if chosen else "Nothing stays.")
 
 
 def modes_view(found: Mapping[str, LoadModes], faults: Sequence[Fault] = ()) -> RenderableType:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.resources import files
 from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader
@@ -10,17 +11,19 @@ from markupsafe import Markup
 
 from sprung.pipeline import Result
 from sprung.report import sections
+from sprung.report.embedded import figure_json
 from sprung.report.palette import DARK, LIGHT
 from sprung.report.picture import Picture
+from sprung.report.sketch import Drawing, drawing_svg
 from sprung.report.style import alone_style, role_rules
-from sprung.report.svg import svg_of
-from sprung.report.words import facts_of, verdict_words
+from sprung.report.svg import lower, svg_of
+from sprung.report.words import facts_of, record_of, verdict_words
 
 FILE = "report.html"
 """The report's name beside results.json."""
 
-_FEW = 12
-"""Drops up to which their pictures are unfolded."""
+_SCRIPTS = ("data", "save", "scope", "figures", "modes", "main")
+"""What the page's script is put together from, in order."""
 
 _ENVIRONMENT = Environment(
     loader=PackageLoader("sprung.report"),
@@ -55,28 +58,44 @@ def page_of(result: Result, unfolded: bool = False) -> str:
         HTML; the same for the same result.
     """
     page = _ENVIRONMENT.get_template("page.html")
+    record = list(record_of(result))
     return page.render(
         result=result,
         verdict=verdict_words(result),
+        record=record,
+        running_head=_css_text(" · ".join([result.name, *(told for name, told in record if name == "Date")])),
         facts=facts_of(result),
         sections=list(_sections(result, unfolded)),
         light=LIGHT,
         dark=DARK,
         roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
+        script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )
 
 
+def _script() -> str:
+    folder = files("sprung.report").joinpath("scripts")
+    return "\n".join(folder.joinpath(f"{name}.js").read_text(encoding="utf-8") for name in _SCRIPTS)
+
+
+def _css_text(text: str) -> Markup:
+    """Write text as a string of a style sheet, every letter that could mean something there by its number."""
+    letters = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text if one.isprintable())
+    return Markup('"{}"').format(Markup("".join(letters)))  # noqa: S704 (nothing is left in it that means something)
+
+
 def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
-    few = unfolded or len(result.drops) <= _FEW
-    style = alone_style() if unfolded else ""
+    style = alone_style(halo=False) if unfolded else ""
     parts = (
+        ("characteristics", "Masses, ride and wheel hop", "characteristics.html", sections.characteristics(result)),
         ("parameters", "Parameters", "parameters.html", sections.parameters(result)),
-        ("known", "What was known, and what was found", "known.html", sections.known(result)),
-        ("recordings", "Recordings", "recordings.html", sections.recordings(result, few, unfolded)),
+        ("geometry", "Geometry, sensors and loads", "geometry.html", sections.geometry(result)),
+        ("known", "Known beforehand", "known.html", sections.known(result)),
+        ("recordings", "Recordings", "recordings.html", sections.recordings(result, unfolded)),
         ("spectra", "Spectra", "pictures.html", sections.spectra(result)),
         ("stabilisation", "Stabilisation diagram", "pictures.html", sections.stabilisation(result)),
         ("modes", "Modes", "modes.html", sections.modes(result)),
-        ("comparison", "Measured and simulated", "motions.html", sections.motions(result, few)),
+        ("comparison", "Measured and simulated", "motions.html", sections.motions(result, unfolded)),
         ("amplitude", "Frequency and damping against amplitude", "pictures.html", sections.amplitude(result)),
         ("correlation", "Correlation of the parameters", "correlation.html", sections.correlation(result)),
         ("next", "What to measure next", "next.html", sections.next_step(result)),
@@ -85,10 +104,16 @@ def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
     )
 
     def draw(picture: Picture) -> Markup:
-        return Markup(svg_of(picture, style))  # noqa: S704 (it escapes its words)
+        picture = lower(picture) if unfolded else picture
+        data = "" if unfolded else f'<script type="application/json" class="data">{figure_json(picture)}</script>'
+        return Markup(svg_of(picture, style) + data)  # noqa: S704 (they escape their words)
+
+    def sketch(drawing: Drawing) -> Markup:
+        return Markup(drawing_svg(drawing, style))  # noqa: S704 (it escapes its words)
 
     macros = _ENVIRONMENT.get_template("macros.html").module
+    tools = {"macros": macros, "draw": draw, "sketch": sketch, "style": Markup(style)}  # noqa: S704 (made here)
     for anchor, title, template, context in parts:
         if context is not None:
-            body = _ENVIRONMENT.get_template(template).render(macros=macros, draw=draw, style=Markup(style), **context)  # noqa: S704 (made here)
+            body = _ENVIRONMENT.get_template(template).render(**tools, **context)
             yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)

@@ -52,15 +52,15 @@ def _modes(rows: Sequence[ModeRow]) -> RenderableType:
             f"{values.damping_ratio:.4f}",
         ]
 
-    headers = ["mode", "paper f_n", "f_d", "ζ", "computed f_n", "f_d", "ζ"]
-    cells = [[row.mode, *three(row.paper), *three(row.computed)] for row in rows]
-    return table("Table 3: modes of the bus of Tables 4 and 5, Hz", headers, cells, headers[1:])
+    headers = ["mode", "paper's name", "paper f_n", "f_d", "ζ", "computed f_n", "f_d", "ζ"]
+    cells = [[row.mode, row.paper_name, *three(row.paper), *three(row.computed)] for row in rows]
+    return table("Table 3: modes of the bus of Tables 4 and 5, Hz", headers, cells, headers[2:])
 
 
 def _misprints(misprints: Sequence[Misprint]) -> RenderableType:
     lines: list[RenderableType] = [Text("Misprints", style="bold")]
     for misprint in misprints:
-        lines.append(Text.assemble((misprint.where, "bold"), f": {misprint.printed}"))
+        lines.append(hanging("", Text.assemble((misprint.where, "bold"), f": {misprint.printed}")))
         lines.append(hanging("  should be: ", misprint.should_be))
         lines.append(hanging("  because:   ", misprint.reason))
     return Group(*lines)

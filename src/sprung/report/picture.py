@@ -151,7 +151,9 @@ class Panel:
     wrong
         What is written below the note, as a fault.
     name
-        Written on its left instead of the axis' label, as channels have.
+        Written on its left, above the axis' label, as channels have.
+    channel
+        What it belongs to, where a reader may switch it off with others of the same; empty where not.
     """
 
     y: Axis
@@ -160,6 +162,7 @@ class Panel:
     note: str = ""
     wrong: str = ""
     name: str = ""
+    channel: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,12 +179,15 @@ class Picture:
         The first on top.
     told
         What there is to see, in a sentence, for who cannot.
+    zoomable
+        Whether a page's script may zoom it, read it out and switch its channels off.
     """
 
     title: str
     x: Axis
     panels: tuple[Panel, ...]
     told: str = ""
+    zoomable: bool = False
 
     @property
     def legend(self) -> Iterator[Curve | Points]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -11,7 +11,7 @@ from sprung.planning import Plan, PlanRow, two_figures
 from sprung.report.layout import hanging, table
 
 _FIRST = ("m_s", "I_yy", "I_xx", "k_sf", "k_sr", "c_sf", "c_sr", "m_uf", "m_ur", "k_tf", "k_tr", "a", "b")
-"""Parameters whose columns a narrow terminal keeps longest."""
+"""Parameters whose columns stand first."""
 
 _NAMED = 4
 """Alternatives that one reason names before it counts the others."""
@@ -30,13 +30,15 @@ def plan_view(plan: Plan) -> RenderableType:
     RenderableType
         For `text_of`.
     """
+    if plan.rejected:
+        head = hanging(
+            "", Text(f"{plan.vehicle}: the campaign is rejected; no plan can be made from it.", style="bold red")
+        )
+        return Group(head, *(hanging("  - ", reason) for reason in plan.rejected))
     parts = [plan_table(plan), Text()]
     reasons = [hanging("  - ", reason) for reason in _reasons(plan)]
     if reasons:
         parts += [Text("Not determined", style="bold"), *reasons, Text()]
-    if plan.rejected:
-        head = Text("The campaign is rejected, so that these bounds do not hold:", style="bold red")
-        return Group(*parts, head, *(hanging("  - ", reason) for reason in plan.rejected))
     return Group(*parts, next_line(plan.next_step.text))
 
 
@@ -50,13 +52,13 @@ def plan_table(plan: Plan) -> RenderableType:
     named = {name: None for row in plan.rows if row.bound is not None for name in row.bound.percents}
     ranked = sorted(named, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
     above = f"> {plan.wanted:g} %"
-    headers = ("test", "worst", "%", above, *named)
-    rows = [[row.label, *_cells(plan, row, tuple(named))] for row in plan.rows]
+    headers = ("test", "worst", "%", above, *ranked)
+    rows = [[row.label, *_cells(plan, row, ranked)] for row in plan.rows]
     title = f"{plan.vehicle}: standard uncertainty to expect, %"
-    return table(title, headers, rows, headers[2:], (*reversed(ranked), above))
+    return table(title, headers, rows, headers[2:])
 
 
-def _cells(plan: Plan, row: PlanRow, names: tuple[str, ...]) -> Iterator[str]:
+def _cells(plan: Plan, row: PlanRow, names: Sequence[str]) -> Iterator[str]:
     if row.bound is None:
         yield from ("-",) * (3 + len(names))
         return

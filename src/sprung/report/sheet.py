@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from sprung.report.legend import WIDTH
 from sprung.report.palette import LIGHT
 from sprung.report.picture import Picture
 from sprung.report.style import alone_style
-from sprung.report.svg import WIDTH, drawn
+from sprung.report.svg import drawn
 from sprung.tables import escaped
 
 _GAP, _EDGE, _LINE = 24, 14, 15

@@ -18,9 +18,18 @@ def role_rules() -> Iterator[str]:
         yield f"{kinds} {{ stroke: var(--{role}); }}"
 
 
-def alone_style() -> str:
-    """Give the style of a picture that stands alone, or where that of its page does not reach: the light one."""
-    own = files("sprung.report").joinpath("templates", "picture.css").read_text(encoding="utf-8")
-    rules = "\n".join([*role_rules(), own])
+def alone_style(halo: bool = True) -> str:
+    """Give the style of a picture that stands alone, or where that of its page does not reach: the light one.
+
+    Parameters
+    ----------
+    halo
+        Whether words have a rim of the ground's colour. Where nothing knows how to paint that below them, it would hide them.
+    """
+    templates = files("sprung.report").joinpath("templates")
+    own = [templates.joinpath(name).read_text(encoding="utf-8") for name in ("picture.css", "sketch.css")]
+    rules = "\n".join([*role_rules(), *own])
+    if not halo:
+        rules = re.sub(r"paint-order: stroke;[^}]*(?=})", "", rules)
     light = re.sub(r"var\(--(\w+)\)", lambda found: LIGHT[found[1]], rules)
     return f"<style>{light}</style>"

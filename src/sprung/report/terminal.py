@@ -9,9 +9,19 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import FitReport, Result, modes_table, parameters_table, ratios_table
+from sprung.pipeline import (
+    FitReport,
+    Result,
+    characteristics_tables,
+    derived_table,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+)
 from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
+from sprung.report.words import record_of
 from sprung.tables import unit_text
 
 COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
@@ -30,10 +40,15 @@ def result_view(result: Result) -> RenderableType:
     RenderableType
         For `text_of`.
     """
+    if result.verdict.state == "reject":
+        return _rejected_view(result)
     parts: list[RenderableType] = [
-        laid_out(parameters_table(result.name, {**result.parameters, **result.derived})),
+        *_record(result),
+        laid_out(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
+    if characteristics_tables(result.name, result.derived):
+        parts += [laid_out(derived_table(result.name, result.derived)), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
@@ -52,6 +67,31 @@ def result_view(result: Result) -> RenderableType:
     return Group(*parts)
 
 
+def _rejected_view(result: Result) -> RenderableType:
+    """Show what tells why a result was rejected, and no estimate."""
+    parts: list[RenderableType] = [*_record(result), Text(result.name, style="bold")]
+    parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
+    parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
+    if result.faults:
+        parts += [fault_list(result.faults), Text()]
+    return Group(*parts, verdict_view(result))
+
+
+def _record(result: Result) -> list[RenderableType]:
+    """Show what the campaign file says of the test and the vehicle; nothing where it says nothing."""
+    lines: list[RenderableType] = [hanging(f"{name}: ", told) for name, told in record_of(result)]
+    return [*lines, Text()] if lines else []
+
+
+def residual_table(result: Result) -> RenderableType:
+    """Show how far the fitted model is from each channel, the worst first."""
+    fit = result.fit
+    worst = sorted(fit.misfit, key=lambda channel: -fit.misfit[channel])
+    rows = [[name, f"{100 * fit.misfit[name]:.1f}", f"{fit.noise[name]:.3g}"] for name in worst]
+    headers = ("channel", "model error, % of signal", "residual, m/s² rms")
+    return table("Residuals", headers, rows, headers[1:])
+
+
 def verdict_view(result: Result) -> RenderableType:
     """Show the verdict and its reasons."""
     verdict = result.verdict
@@ -64,7 +104,7 @@ def interval_table(profiles: Mapping[str, Estimate]) -> RenderableType:
     rows = [[name, *_interval_cells(found), unit_text(found.unit)] for name, found in profiles.items()]
     shown = table("95 % intervals from the whole likelihood", ("parameter", "from", "to", "unit"), rows, ("from", "to"))
     if any(found.interval95 is not None and None in found.interval95 for found in profiles.values()):
-        return Group(shown, Text("< or >: open to the other side, where the recordings set no limit."))
+        return Group(shown, hanging("", "< or >: open to the other side, where the recordings set no limit."))
     return shown
 
 
@@ -96,12 +136,15 @@ def fit_line(result: Result) -> RenderableType:
         f"Fit: {fit.method}{extras}; {_count(fit.drops, 'drop')}, {fit.samples} samples, {fit.iterations} steps, "
         f"{fit.starts_agreeing} of {fit.starts} starts agree."
     )
-    if fit.inflation > 1:
+    rejected = result.verdict.state == "reject"
+    if fit.inflation > 1 and not rejected:
         text += (
             f"\nError bars are {fit.inflation**0.5:.2f} times as wide as white noise would make them{_because(fit)}."
         )
+    if rejected:
+        return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""
-    return Text(f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
+    return hanging("", f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
 
 
 def _because(fit: FitReport) -> str:

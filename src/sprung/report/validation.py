@@ -166,7 +166,9 @@ def _said(drop: DropValidation) -> str:
     return text
 
 
-def write_validation(validation: Validation, folder: Path, drawings: Mapping[str, str]) -> tuple[Path, ...]:
+def write_validation(
+    validation: Validation, folder: Path, drawings: Mapping[str, str], *, overwrite: bool = False
+) -> tuple[Path, ...]:
     """Write numbers, series and drawings into a folder, all of them or none.
 
     Parameters
@@ -174,9 +176,11 @@ def write_validation(validation: Validation, folder: Path, drawings: Mapping[str
     validation
         From `sprung.validate`.
     folder
-        Made if it does not exist. Files of the same names in it are replaced.
+        Made if it does not exist. Files that sprung wrote there are replaced.
     drawings
         From `draw_validation`.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
 
     Returns
     -------
@@ -186,8 +190,8 @@ def write_validation(validation: Validation, folder: Path, drawings: Mapping[str
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If such files would be overwritten, or the folder cannot be written.
     """
     files = {name: text.encode() for name, text in drawings.items()} | validation.files()
-    write_whole(folder, files)
+    write_whole(folder, files, overwrite=overwrite)
     return tuple(folder / name for name in files)

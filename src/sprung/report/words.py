@@ -44,6 +44,28 @@ def verdict_words(result: Result) -> VerdictWords:
     return _WORDS[result.verdict.state]
 
 
+def record_of(result: Result) -> Iterator[tuple[str, str]]:
+    """Return what the campaign file says of the test and the vehicle, for the record: names and texts.
+
+    Parameters
+    ----------
+    result
+        The result.
+    """
+    if result.tested_vehicle.identification is not None:
+        yield "Vehicle identification", result.tested_vehicle.identification
+    if result.setup is not None:
+        test = result.setup.test
+        for name, told in (
+            ("Date", test.date),
+            ("Operator", test.operator),
+            ("Place", test.place),
+            ("Remarks", test.remarks),
+        ):
+            if told is not None:
+                yield name, str(told)
+
+
 def facts_of(result: Result) -> Iterator[tuple[str, str]]:
     """Give what one wants to know first, each with its name.
 
@@ -72,10 +94,13 @@ def facts_of(result: Result) -> Iterator[tuple[str, str]]:
         yield "Least certain", f"{least[1]}, to {percent_text(least[0])} %"
     if result.validation:
         left_over = [drop.residual for drop in result.validation.values()]
-        yield "Left unexplained", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
+        yield "Residual", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
     predicted = [drop.predicted_residual for drop in result.validation.values() if drop.predicted_residual is not None]
     if predicted:
-        yield "Left by the others' prediction", f"{min(predicted):.2f} to {max(predicted):.2f} times the noise"
+        yield (
+            "Residual as predicted by the other drops",
+            f"{min(predicted):.2f} to {max(predicted):.2f} times the noise",
+        )
 
 
 def _model(result: Result) -> str:

@@ -81,9 +81,10 @@ def simulate(
     --------
     >>> from sprung.vehicle import TABLE_1_CAR
     >>> campaign = simulate(TABLE_1_CAR, loads=[{"name": "sandbags", "added": {"mass": 140}}], seed=1)
-    >>> [drop.name for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
+    >>> [drop.label for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
     (['empty_roll_right', 'sandbags_bounce'], (8, 1800))
     """
+    file = None
     if not isinstance(vehicle, Vehicle):
         file = read_vehicle(vehicle)
         vehicle = file.vehicle
@@ -128,4 +129,5 @@ def simulate(
         motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
         accelerations = [motion.acceleration for motion in motions]
     accelerations = [np.hstack([np.zeros((len(one), before)), one]) for one in accelerations]
-    return setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))
+    campaign = setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))
+    return campaign if file is None else replace(campaign, identification=file.identification, test=file.test)

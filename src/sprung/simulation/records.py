@@ -88,7 +88,7 @@ def name_files(drops: Sequence[Drop], what: str | None = None) -> tuple[Drop, ..
     taken = {drop.file for drop in drops}
     named = []
     for drop in drops:
-        stem = re.sub(r"[^\w.-]+", "_", drop.name if what is None else f"{drop.load}_{what}")
+        stem = re.sub(r"[^\w.-]+", "_", drop.label if what is None else f"{drop.load}_{what}")
         numbered = (f"{stem}{end}.csv" for end in itertools.chain([""], map("_{}".format, itertools.count(2))))
         file = drop.file or next(name for name in numbered if name not in taken)
         taken.add(file)

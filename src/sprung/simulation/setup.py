@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
-from sprung.recording import Campaign, Drop, Given, ModelChoice, Recording, known_quantities
+from sprung.recording import Campaign, Drop, Given, ModelChoice, Recording, known_quantities, recording_names
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
 from sprung.vehicle import EMPTY, Load, Rows, Sensor, Vehicle
@@ -85,6 +85,7 @@ class Setup:
         check_unlike("sensors", "channel", [sensor.channel for sensor in chosen_sensors], problems)
         check_unlike("loads", "name", [load.name for load in given_loads], problems)
         check_unlike("drops", "file", [drop.file for drop in chosen_drops if drop.file is not None], problems)
+        check_unlike("drops", "name", [drop.name for drop in chosen_drops if drop.name is not None], problems)
         # A load that is faulty itself has been named above, and the drops with it are not at fault.
         names = {load.name for load in all_loads}
         names |= {load.name if isinstance(load, Load) else str(load.get("name")) for load in loads or ()}
@@ -120,14 +121,14 @@ class Setup:
         S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
         recordings = [
             Recording(
-                name=str(drop.file),
+                name=name,
                 channels=tuple(sensor.channel for sensor in sensors),
                 values=self.sensing.readings(S @ acceleration, random),
                 start=0.0,
                 rate=rate,
                 history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
             )
-            for drop, acceleration in zip(drops, accelerations, strict=True)
+            for drop, name, acceleration in zip(drops, recording_names(drops), accelerations, strict=True)
         ]
         return Campaign(
             name=self.vehicle.name,

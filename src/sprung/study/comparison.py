@@ -13,7 +13,7 @@ from sprung.estimate import NORMAL_95
 from sprung.pipeline import Result, load
 from sprung.study.scatter import Scatter, scatters, told_by
 from sprung.study.significance import Joint, holm, joint, two_sided
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS
 
 LIKELY, CERTAIN = 0.05, 0.001
 """Chances, corrected for the number of comparisons, below which a difference is called likely and certain."""
@@ -261,7 +261,13 @@ def _labels(given: Sequence[Result | str | Path], read: Sequence[Result]) -> tup
 
 def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> dict[str, Quantity]:
     names = [name for name in PARAMETERS if any(name in one.parameters for one in read)]
-    names += [name for name in dict.fromkeys(name for one in read for name in one.derived) if name not in names]
+    # What only follows from the parameters would be asked twice; a profile is an interval of its own.
+    names += [
+        name
+        for name in dict.fromkeys(name for one in read for name in one.derived)
+        if name not in names
+        and ((name not in CHARACTERISTICS and name not in WHEEL_LOADS) or any(_is_profiled(one, name) for one in read))
+    ]
     rows = {}
     for name in names:
         per_mass = ratios and name in PARAMETERS and PARAMETERS[name].scales
@@ -273,6 +279,10 @@ def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> 
         )
         rows[name + _PER_MASS * per_mass] = Quantity(unit, told, differences)
     return rows
+
+
+def _is_profiled(result: Result, name: str) -> bool:
+    return name in result.derived and result.derived[name].interval_from == "profile"
 
 
 def _told(result: Result, name: str, per_mass: bool) -> Told:

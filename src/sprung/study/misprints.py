@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sprung.display import shown
-from sprung.modal import Mode, modes_of
+from sprung.modal import Mode, modes_of, paper_name
 from sprung.study.printed import K_ID_FRONT_RIGHT_WHEEL, TABLE_2, TABLE_3
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Added, Load
 
@@ -254,7 +254,7 @@ def _experiment() -> Iterator[Misprint]:
 
 
 def _table_3() -> Iterator[Misprint]:
-    modes = {mode.name: mode for mode in modes_of(SCHOOL_BUS.matrices())}
+    modes = {paper_name(mode.name): mode for mode in modes_of(SCHOOL_BUS.matrices())}
     for name, damped in table_3_misfits().items():
         row, model = TABLE_3[name], modes[name]
         natural = row.damped_frequency / np.sqrt(1 - row.damping_ratio**2)
@@ -275,10 +275,10 @@ def _table_3() -> Iterator[Misprint]:
     yield Misprint(
         "Table 3, names of the wheel modes",
         "wheel bounce, pitch, roll, articulation",
-        "rear axle in phase, rear axle in opposition, front axle in phase, front axle in opposition",
+        "rear axle hop, rear axle tramp, front axle hop, front axle tramp",
         "In the model of Tables 4 and 5 each axle hops alone: "
         + "; ".join(f"{mode.frequency:.2f} Hz {_wheel_motion(mode)}" for mode in modes.values() if _is_hop(mode))
-        + ". Left and right against each other is no pitch, and together no roll.",
+        + ". Left against right is not pitch, and both together is not roll.",
         computed=True,
     )
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from sprung.display import shown
 from sprung.identification import structured_least_squares
-from sprung.modal import modes_of
+from sprung.modal import modes_of, paper_name
 from sprung.pipeline import identify
 from sprung.recording import Campaign
 from sprung.study.misprints import BUS_LOAD, Misprint, find_misprints
@@ -97,7 +97,9 @@ class ModeRow:
     Attributes
     ----------
     mode
-        Its name.
+        After what moves.
+    paper_name
+        What the paper calls it.
     paper
         What the paper prints.
     computed
@@ -105,6 +107,7 @@ class ModeRow:
     """
 
     mode: str
+    paper_name: str
     paper: ModalValues
     computed: ModalValues
 
@@ -238,9 +241,10 @@ def table_3() -> tuple[ModeRow, ...]:
     -------
     tuple of ModeRow
     """
-    modes = {mode.name: mode for mode in modes_of(SCHOOL_BUS.matrices())}
+    modes = {paper_name(mode.name): mode for mode in modes_of(SCHOOL_BUS.matrices())}
     return tuple(
         ModeRow(
+            str(modes[name].name),
             name,
             ModalValues(row.natural_frequency, row.damped_frequency, row.damping_ratio),
             ModalValues(modes[name].frequency, modes[name].damped_frequency, modes[name].damping_ratio),

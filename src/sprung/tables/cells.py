@@ -5,7 +5,7 @@ from __future__ import annotations
 from sprung.estimate import Estimate, round_by_uncertainty
 
 _FINEST = 6
-"""Decimal places beyond which a frequency in Hz or a damping ratio means nothing to anybody."""
+"""Decimal places of a frequency in Hz or a damping ratio: no test tells more, and what stands further right is rounding."""
 
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²"})
 
@@ -75,10 +75,11 @@ def with_std(value: float, std: float | None) -> tuple[str, str]:
     Returns
     -------
     value, std
-        As text; "-" for both where there is no number.
+        As text; "-" for both where there is no number. An uncertainty below 1e-6, which only records without noise give, is
+        "-" too: the rounding of the processor would decide its digits.
     """
     if std is None:
         return "-", "-"
     if std < 10.0**-_FINEST:
-        return f"{value:.{_FINEST}f}", f"{0:.{_FINEST}f}"
+        return f"{value:.{_FINEST}f}", "-"
     return round_by_uncertainty(value, std)

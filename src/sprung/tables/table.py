@@ -35,7 +35,9 @@ class Table:
     numbers
         Headers of the columns set flush right.
     spare
-        Headers of the columns that a narrow place can do without, the first to go first.
+        Headers of the columns that a narrow place sets below the others, the first to go first.
+    heads
+        How many columns at the left name the rows.
     """
 
     title: str
@@ -43,6 +45,7 @@ class Table:
     rows: tuple[tuple[str, ...], ...]
     numbers: frozenset[str] = frozenset()
     spare: tuple[str, ...] = ()
+    heads: int = 1
 
     def html(self, caption: bool = True) -> str:
         """Write it as an HTML table, the first cell of each row as its heading.

@@ -6,7 +6,7 @@ from sprung.validation.drops import DropValidation, validate_drops
 from sprung.validation.residuals import Misfit, judge_residuals
 from sprung.validation.sensors import Moments, SensorNoise, moments, sensor_noise
 from sprung.validation.sliding import Trace
-from sprung.validation.verdict import State, Verdict, doubt_of, judge
+from sprung.validation.verdict import State, Verdict, judge
 from sprung.validation.whiteness import Remainder, noise_of_sensors, remainders
 
 __all__ = [
@@ -22,7 +22,6 @@ __all__ = [
     "Trace",
     "Verdict",
     "body_motions",
-    "doubt_of",
     "judge",
     "judge_residuals",
     "mode_amplitudes",

@@ -23,8 +23,11 @@ MOTIONS = ("vertical", "pitch", "roll")
 _SEEN = 1e-6
 """Part of a motion that may go unseen by the sensors that tell it."""
 
-_MOVING = 3.0
-"""How many times its noise a motion must be for a comparison to mean anything."""
+_COMPARABLE = 3.0
+"""How many times its noise a motion must be, root-mean-square, for an error in percent of it to tell of the model."""
+
+_SIGNIFICANT = 4.0
+"""Standard deviations by which its mean square must exceed that of the noise for a motion to be there at all."""
 
 
 @shown
@@ -43,6 +46,8 @@ class BodyMotion:
         off; shape (3, time). NaN for what the sensors in use do not tell.
     noise
         What the sensors' noise makes of each at rest, m/s² and rad/s² root-mean-square, shape (3,).
+    noise_samples
+        From how many independent samples that noise is known.
     """
 
     name: str
@@ -50,16 +55,36 @@ class BodyMotion:
     measured: Real
     simulated: Real
     noise: Real
+    noise_samples: float = np.inf
 
     @cached_property
     def errors(self) -> Real:
         """Normalised errors: rms of the difference over rms of the measured, shape (3,).
 
-        NaN for what the sensors do not tell, and where the body did not move beyond their noise.
+        NaN for what the sensors do not tell, and for motions so small that the error would be one of their noise.
         """
         size = _rms(self.measured)
-        there = size > _MOVING * self.noise
+        there = size > _COMPARABLE * self.noise
         return np.where(there, _rms(self.measured - self.simulated) / np.where(there, size, 1.0), np.nan)
+
+    @cached_property
+    def over_noise(self) -> Real:
+        """Root-mean-square of each motion over that of the noise, shape (3,); NaN where no motion is significant.
+
+        Notes
+        -----
+        The mean square of N independent samples of noise alone has a relative standard deviation of √(2/N), and that of the
+        noise itself is known from a number of samples. Noise of which neighbours are correlated by ρ counts N (1 - ρ²)/(1 + ρ²)
+        samples (Bartlett 1946); ρ is that of measured minus simulated.
+        """
+        size, left = _rms(self.measured), self.measured - self.simulated
+        variance = np.maximum(np.mean(left**2, axis=-1), np.finfo(float).tiny)
+        colour = np.clip(np.mean(left[:, 1:] * left[:, :-1], axis=-1) / variance, 0.0, 0.99)
+        independent = self.measured.shape[1] * (1 - colour**2) / (1 + colour**2)
+        chance = np.sqrt(2 / independent + 2 / self.noise_samples)
+        ratio = size / np.where(self.noise > 0, self.noise, 1.0)
+        there = np.where(self.noise > 0, ratio**2 > 1 + _SIGNIFICANT * chance, size > 0)
+        return np.where(there, ratio, np.nan)
 
 
 def body_motions(fit: Fit, decays: Sequence[Decay], sensors: Sequence[Sensor]) -> tuple[BodyMotion, ...]:
@@ -80,6 +105,8 @@ def body_motions(fit: Fit, decays: Sequence[Decay], sensors: Sequence[Sensor]) -
         One for each drop.
     """
     rows, noise = body_rows(fit, sensors), noise_of_sensors(fit, decays)
+    at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
+    known_from = float(at_rest or sum(decay.samples for decay in decays))
     found = []
     for decay, fitted in zip(decays, fit.fitted, strict=True):
         inverse = of_channels(rows, np.where(decay.usable, noise, np.inf))
@@ -93,6 +120,7 @@ def body_motions(fit: Fit, decays: Sequence[Decay], sensors: Sequence[Sensor]) -
                 measured=np.where(told[:, None], inverse @ centred, np.nan),
                 simulated=np.where(told[:, None], inverse @ np.nan_to_num(fitted), np.nan),
                 noise=np.sqrt(inverse**2 @ noise**2),
+                noise_samples=known_from,
             )
         )
     return tuple(found)

@@ -33,7 +33,7 @@ class DropValidation:
     ----------
     vertical, pitch, roll
         Normalised error of the body's accelerations, dimensionless: rms of measured minus simulated over rms of measured;
-        None where the sensors do not tell it, or the body did not move that way.
+        None where the sensors do not tell it, or the body hardly moved that way.
     fitted
         The same of all channels, each in units of its noise, dimensionless.
     residual
@@ -49,6 +49,10 @@ class DropValidation:
         directions in which both say anything; one where the model is right.
     whiteness
         What is left of each channel, by name.
+    over_noise
+        Root-mean-square of the body's vertical, pitch and roll acceleration over that of the sensors' noise, dimensionless, by
+        name; None where the sensors do not tell it, or no motion beyond their noise is significant. Empty where an older sprung
+        wrote it.
     """
 
     vertical: float | None
@@ -61,6 +65,7 @@ class DropValidation:
     unexpected: float
     apart: float | None
     whiteness: Mapping[str, Remainder] = field(default_factory=dict)
+    over_noise: Mapping[str, float | None] = field(default_factory=dict)
 
 
 def validate_drops(
@@ -110,6 +115,10 @@ def validate_drops(
             unexpected=0.0 if foretold is None else _unexpected(foretold, energy, coloured),
             apart=None if foretold is None else foretold.distance[0] / max(foretold.distance[1], 1),
             whiteness={channels[channel]: one for channel, one in left.items()},
+            over_noise={
+                name: None if np.isnan(ratio) else ratio
+                for name, ratio in zip(MOTIONS, motion.over_noise.tolist(), strict=True)
+            },
         )
     return found
 

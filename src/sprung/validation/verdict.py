@@ -26,9 +26,6 @@ EXPLAINED = 0.01
 UNUSABLE = 0.04
 """Model error above which the numbers must not be used: parameters then err by ten times as much and more."""
 
-ERRS_BY = 10.0
-"""How many times the model error parameters may err by where it is above `UNUSABLE`."""
-
 COARSE = 0.25
 """Relative standard uncertainty above which a parameter is hardly determined."""
 
@@ -115,24 +112,6 @@ def judge(
         return Verdict("doubtful", tuple(doubt))
     explained = f"the model explains the records: its error is {_below(size)} of the signal in every channel"
     return Verdict("accept", (explained, *_predicted(drops), "every parameter is determined"))
-
-
-def doubt_of(verdict: Verdict, fit: Fit, misfit: Misfit) -> float:
-    """Give the uncertainty, as a part, that numbers have beyond what the records' noise leaves them.
-
-    Parameters
-    ----------
-    verdict, fit, misfit
-        What was judged.
-
-    Returns
-    -------
-    float
-        0 unless they are rejected: of those nothing is known to better than the model error allows, which is hardly anything.
-    """
-    if verdict.state != "reject":
-        return 0.0
-    return ERRS_BY * (float(misfit.relative.max()) if fit.converged else 1.0)
 
 
 def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:

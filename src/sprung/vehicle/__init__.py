@@ -1,5 +1,12 @@
 """The only room that knows the equations of motion: parameters, elements, matrices, loads, sensors, exact response."""
 
+from sprung.vehicle.characteristics import (
+    CHARACTERISTICS,
+    WHEEL_LOADS,
+    Characteristic,
+    characteristic,
+    wheel_loads,
+)
 from sprung.vehicle.derived import DERIVED, quantity
 from sprung.vehicle.drop import Event, Fall, Piece, drop_from_blocks
 from sprung.vehicle.elements import (
@@ -40,6 +47,7 @@ from sprung.vehicle.stepping import Changes, Path, Stepper
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
+    "CHARACTERISTICS",
     "COORDINATES",
     "DERIVED",
     "EMPTY",
@@ -56,10 +64,12 @@ __all__ = [
     "UNKNOWN_KEY",
     "WHEELS",
     "WHEELS_AT",
+    "WHEEL_LOADS",
     "Added",
     "Block",
     "CarriedAt",
     "Changes",
+    "Characteristic",
     "Element",
     "Event",
     "Fall",
@@ -88,6 +98,7 @@ __all__ = [
     "Wheel",
     "affine_response",
     "brought_by",
+    "characteristic",
     "coordinates",
     "decays_with_forces",
     "drop_from_blocks",
@@ -107,4 +118,5 @@ __all__ = [
     "seven_degrees_of_freedom",
     "static_wheel_loads",
     "tyre_rates",
+    "wheel_loads",
 ]

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from sprung.errors import InputError, Problem
 from sprung.estimate import Known
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
@@ -152,9 +153,12 @@ class Load:
             raise ValueError("give either items or added totals, not both")
         if self.name == "empty" and (self.items or self.added is not None):
             raise ValueError("the load named 'empty' is the vehicle as it is; give this load another name")
-        if self.name != "empty" and not self.items and self.added is None:
-            raise ValueError("a load needs items = [...] or added = {...}")
         return self
+
+    @property
+    def described(self) -> bool:
+        """Whether it is known what the load adds; without that nothing can be identified from its drops."""
+        return self.name == "empty" or bool(self.items) or self.added is not None
 
     @property
     def mass(self) -> float:
@@ -186,7 +190,15 @@ class Load:
             carries the body, a load tips it the more the higher it stands.
         unknown
             Names of parameters; masses of `uncertain_masses` among them are parameters, and not numbers.
+
+        Raises
+        ------
+        InputError
+            If it is not known what the load adds.
         """
+        if not self.described:
+            expected, do = "items = [...] or added = {...}", "Write what the load consists of."
+            raise InputError([Problem(f"load '{self.name}'", "neither items nor added", expected, do)])
         if self.added is not None:
             name = self._name_of(0, several=False)
             return tuple(self.added.elements(name if name in unknown else None))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
+from sprung.errors import InputError, Problem
 from sprung.vehicle import rows
 from sprung.vehicle.load import Finite, Positive
 from sprung.vehicle.record import record
@@ -16,9 +17,11 @@ from sprung.vehicle.rows import Row
 class Sensor:
     """One accelerometer, as a campaign file describes it."""
 
+    # Where they are not known yet, `on` is None for a wheel station, and a body sensor has no position.
+
     channel: Annotated[str, Field(min_length=1)]
     """Column or channel name in the recordings."""
-    on: Literal["body", "fl", "fr", "rl", "rr"]
+    on: Literal["body", "fl", "fr", "rl", "rr"] | None
     """The body, or a wheel station."""
     position: tuple[Finite, Finite, Finite] | None = None
     """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""
@@ -35,16 +38,18 @@ class Sensor:
     logger: str | None = None
     """Name of the logger that recorded it, where several did."""
 
-    @model_validator(mode="after")
-    def _placed(self) -> Sensor:
-        if self.on == "body" and self.position is None:
-            raise ValueError("a body sensor needs its position = [x, y, z]")
-        return self
-
     @property
     def row(self) -> Row:
-        """The displacement whose second derivative it feels, positive up."""
-        if self.on == "body":
-            assert self.position is not None  # noqa: S101 (checked on construction; for the type checker)
-            return rows.body_point(self.position[0], self.position[1])
-        return rows.wheel(self.on)
+        """The displacement whose second derivative it feels, positive up.
+
+        Raises
+        ------
+        InputError
+            If its place is not known.
+        """
+        if self.on is not None and self.on != "body":
+            return rows.wheel(self.on)
+        if self.on is None or self.position is None:
+            found, expected = ("no position", "[x, y, z], m") if self.on else ("no wheel station", "fl, fr, rl or rr")
+            raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "Write where the sensor sits.")])
+        return rows.body_point(self.position[0], self.position[1])

@@ -88,8 +88,9 @@ class Corners:
     def gain(self) -> float:
         """What it would gain if it knew that drops differ: standard errors by which all corners are otherwise, squared."""
         step, worth = 2 * np.pi * self.step, self.worth
-        apart = float(step @ self._apart @ step) / max(worth, np.finfo(float).tiny)
-        return worth / max(apart, float(self._inflation.min()))
+        if worth == 0:  # the records determine no corner at all
+            return 0.0
+        return worth / max(float(step @ self._apart @ step) / worth, float(self._inflation.min()))
 
     @property
     def matter(self) -> bool:
@@ -175,15 +176,41 @@ def corners(decays: Sequence[Decay], summit: Summit, sensors: Sequence[Sensor]) 
     inverse = np.linalg.inv(told.T @ system @ told)
     carried = inverse @ (seen.T @ across)
     spreads = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", told, inverse, told), np.finfo(float).tiny))
-    known = alone.sum(axis=0) - (seen.T @ across).T @ carried
+    score, information = determined(
+        scores.sum(axis=0) + carried.T @ (told.T @ own), alone.sum(axis=0) - (seen.T @ across).T @ carried
+    )
     return Corners(
         tuple(sensors[channel].channel for channel in open_),
         scores,
         alone,
-        scores.sum(axis=0) + carried.T @ (told.T @ own),
-        (known + known.T) / 2,
+        score,
+        information,
         told @ carried / spreads[:, None],
     )
+
+
+def determined(score: Real, information: Real) -> tuple[Real, Real]:
+    """Restrict score and information to the directions that the records determine beside the parameters.
+
+    The information that is left beside the parameters is a difference of two matrices. In a direction that the parameters
+    imitate, as all corners together may be, it is rounding of either sign: no variance follows from that.
+
+    Parameters
+    ----------
+    score
+        s, shape (corner,).
+    information
+        s², shape (corner, corner).
+
+    Returns
+    -------
+    score, information
+        Of the same shapes; the information is symmetric and has no negative eigenvalue.
+    """
+    values, vectors = np.linalg.eigh((information + information.T) / 2)
+    kept = values > 1 / _HIGHEST**2  # less than this is known without any record
+    vectors = vectors[:, kept]
+    return vectors @ (vectors.T @ score), (vectors * values[kept]) @ vectors.T
 
 
 def _changed(decay: Decay, change: Real, channel: int) -> Decay:

@@ -253,7 +253,7 @@ def _unknown(heard: Heard, code: str, what: str, fitted: Real, free: int = 0) ->
 
 def _stated(heard: Heard) -> str:
     if heard.sensor.position is None:
-        return heard.sensor.on
+        return heard.sensor.on or "a wheel"
     x, y, _ = heard.sensor.position
     return f"x = {x:.2f} m, y = {y:.2f} m"
 

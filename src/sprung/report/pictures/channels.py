@@ -1,4 +1,4 @@
-"""Channels of one drop as they were fitted: measured against fitted, what is left below."""
+"""Channels of one drop as they were fitted: measured against fitted, the residual below."""
 
 from __future__ import annotations
 
@@ -33,6 +33,6 @@ def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Pict
     for channel in channels:
         i = series.channels.index(channel)
         note = "left out" if np.isnan(series.measured[i]).all() else ""
-        panels += compared(f"{channel}, m/s²", series.time, series.measured[i], series.fitted[i], note)
+        panels += compared(channel, "m/s²", series.time, series.measured[i], series.fitted[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
     return Picture(f"{name}: measured and fitted", x, tuple(panels))

@@ -1,4 +1,4 @@
-"""One drop in the coordinates of the body: measured against simulated as in figures 7 to 9 of the paper, what is left below."""
+"""One drop in the coordinates of the body: measured against simulated as in figures 7 to 9 of the paper, the residual below."""
 
 from __future__ import annotations
 
@@ -37,23 +37,35 @@ def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Pi
     measured, simulated = series.body_measured.astype(float), series.body_simulated.astype(float)
     panels: list[Panel] = []
     for i, motion in enumerate(MOTIONS):
-        error = None if drop is None else getattr(drop, motion)
-        note = "" if drop is None else "no motion beyond the noise" if error is None else f"error {100 * error:.1f} %"
-        if np.isnan(measured[i]).all():
-            note = "not told by the sensors in use"
-        panels += compared(f"{motion}, {_UNITS[i]}", series.time, measured[i], simulated[i], note)
+        note = "not measured by the sensors in use" if np.isnan(measured[i]).all() else _note(motion, drop)
+        panels += compared(motion, _UNITS[i], series.time, measured[i], simulated[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
-    told = "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each what is left."
-    return Picture(name, x, tuple(panels), told)
+    told = "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each the residual."
+    return Picture(name, x, tuple(panels), told, zoomable=True)
 
 
-def compared(label: str, time: Real, measured: Real, simulated: Real, note: str) -> tuple[Panel, Panel]:
-    """Show two curves, and what one has more than the other below them.
+def _note(motion: str, drop: DropValidation | None) -> str:
+    """Say how far the fitted vehicle is from a motion, or why no error is given."""
+    if drop is None:
+        return ""
+    error: float | None = getattr(drop, motion)
+    if error is not None:
+        return f"error {100 * error:.1f} %"
+    if not drop.over_noise:
+        return ""
+    ratio = drop.over_noise.get(motion)
+    return (
+        "no motion beyond the noise" if ratio is None else f"{ratio:.1f} times the noise, too small for an error in %"
+    )
+
+
+def compared(channel: str, unit: str, time: Real, measured: Real, simulated: Real, note: str) -> tuple[Panel, Panel]:
+    """Show two curves, and their difference, the residual, below them.
 
     Parameters
     ----------
-    label
-        Of the upper axis.
+    channel, unit
+        What is shown, for the axes.
     time
         s, shape (time,).
     measured, simulated
@@ -63,19 +75,21 @@ def compared(label: str, time: Real, measured: Real, simulated: Real, note: str)
     """
     left = measured - simulated
     above = Panel(
-        Axis(label, *room(measured, simulated)),
+        Axis(f"{channel}, {unit}", *room(measured, simulated)),
         (
             Rule(0.0, "quiet", lying=True),
             Curve(time, measured, "measured", "measured", 2.4),
             Curve(time, simulated, "simulated", "simulated"),
         ),
         note=note,
+        channel=channel,
     )
     low, high = room(left, np.zeros(1))
     ticks = ((0.0, "0"), (float(f"{0.8 * high:.1g}"), f"{0.8 * high:.1g}")) if high > 0 else ()
     below = Panel(
-        Axis("left", low, high, ticks=ticks),
-        (Rule(0.0, "quiet", lying=True), Curve(time, left, "left", "measured less simulated", 0.8)),
-        height=0.36,
+        Axis(f"residual, {unit}", low, high, ticks=ticks),
+        (Rule(0.0, "quiet", lying=True), Curve(time, left, "left", "residual", 0.8)),
+        height=0.48,
+        channel=channel,
     )
     return above, below

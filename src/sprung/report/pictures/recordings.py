@@ -71,16 +71,16 @@ def _picture(title: str, drop: DropReport, recorded: Recorded, limits: tuple[flo
         if (of := lane.marked[inside[lane.marked]]).size:
             marks.append(Points(time[of], lane.values[of], "fault", size=0.7))
         note, wrong = ("", "") if near else (", ".join(lane.notes), ", ".join(lane.wrong))
-        panels.append(Panel(_axis(lane), tuple(marks), _LANE, note, wrong, lane.name))
+        panels.append(Panel(_axis(lane), tuple(marks), _LANE, note, wrong, lane.name, lane.name))
     said = "" if near else f" {drop.why_start and f'The decay begins where it does as {drop.why_start}.'}"
     told = f"Accelerations of {len(panels)} channels in m/s², the decay shaded.{said}"
-    return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), told)
+    return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), told, zoomable=True)
 
 
 def _axis(lane: Lane) -> Axis:
     ticks = tuple(lane.ticks)
     spread = lane.span / 0.86
-    return Axis("", lane.middle - spread / 2, lane.middle + spread / 2, ticks=_few(ticks))
+    return Axis("m/s²", lane.middle - spread / 2, lane.middle + spread / 2, ticks=_few(ticks))
 
 
 def _few(ticks: tuple[tuple[float, str], ...]) -> tuple[tuple[float, str], ...]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import Any
 
 from sprung.errors import Fault
 from sprung.pipeline import DropReport, Result
@@ -17,34 +16,39 @@ from sprung.report.sections.context import Context
 from sprung.report.validation import COLUMNS, validation_table
 
 
-def recordings(result: Result, few: bool, unfolded: bool) -> Context:
+def recordings(result: Result, unfolded: bool) -> Context:
     """Show every recording, with what happened in it and what was wrong."""
-    drawn, opened = [], False
+    drawn, shown = [], _shown(result)
     for drop in result.drops:
         recorded = result.recordings.get(drop.name)
         if recorded is None or not drop.channels:
             continue
         pictures = [whole_picture(drop, recorded), near_picture(drop, recorded)]
-        # Of many that are alike one is shown as an example; whatever is wrong is shown.
-        show = unfolded or not opened or (few and bool(drop.faults))
-        opened = opened or show
         drawn.append(
             {
-                "file": drop.file,
+                "file": drop.label,
                 "said": f"{drop.kind}, {drop.load}",
                 "wrong": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
                 "limits": _limits(drop),
-                "open": show,
+                "open": unfolded or drop.name in shown,
                 "pictures": [picture for picture in pictures if picture is not None],
             }
         )
     return {"overview": drops_table(result.drops), "faults": _joined(result.faults), "drawn": drawn}
 
 
+def _shown(result: Result) -> set[str]:
+    """Return the names of the drops to look at first: the one that is explained worst, and those with faults."""
+    residuals = {name: one.residual for name, one in result.validation.items()}
+    worst = max(residuals, key=residuals.__getitem__) if residuals else next((drop.name for drop in result.drops), "")
+    return {worst, *(drop.name for drop in result.drops if drop.faults)}
+
+
 def _limits(drop: DropReport) -> str:
     if drop.start is None or drop.end is None or not drop.why_start:
         return ""
-    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}."
+    fit = "" if drop.fit_start is None else f" The fit uses it from {drop.fit_start:.3f} s on: {drop.why_fit}."
+    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}.{fit}"
 
 
 def _joined(faults: tuple[Fault, ...]) -> list[Fault]:
@@ -55,21 +59,25 @@ def _joined(faults: tuple[Fault, ...]) -> list[Fault]:
     return [Fault(code, ", ".join(where), what, do) for (code, what, do), where in places.items()]
 
 
-def motions(result: Result, few: bool) -> Context | None:
+def motions(result: Result, unfolded: bool) -> Context | None:
     """Hold what the body did against what the fitted vehicle does, drop by drop."""
-    groups: dict[str, list[Any]] = {}
+    groups: dict[str, list[Context]] = {}
+    shown = _shown(result)
     for drop in result.drops:
-        series = result.series.get(drop.name)
-        picture = None if series is None else motion_picture(drop.name, series, result.validation.get(drop.name))
+        series, said = result.series.get(drop.name), result.validation.get(drop.name)
+        picture = None if series is None else motion_picture(drop.name, series, said)
         if picture is not None:
-            groups.setdefault(drop.load, []).append(picture)
+            residual = "" if said is None else f"residual {said.residual:.2f} times the noise"
+            groups.setdefault(drop.load, []).append(
+                {"picture": picture, "said": residual, "open": unfolded or drop.name in shown}
+            )
     if not result.validation and not groups:
         return None
     return {
         "overview": validation_table(result.name, result.validation),
         "columns": COLUMNS,
         "groups": [
-            {"title": f"{load}: {len(pictures)} drop{'s' * (len(pictures) > 1)}", "pictures": pictures, "open": few}
-            for load, pictures in groups.items()
+            {"title": f"{load}: {len(drops)} drop{'s' * (len(drops) > 1)}", "drops": drops}
+            for load, drops in groups.items()
         ],
     }

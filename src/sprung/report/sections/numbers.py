@@ -8,7 +8,7 @@ import numpy as np
 from markupsafe import Markup
 
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import Result, Setup, meaning_of, ratios_table
+from sprung.pipeline import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
 from sprung.report.pictures import (
     half_width,
     limits_percent,
@@ -30,13 +30,19 @@ def symbol(name: str) -> Markup:
     return Markup("{}<sub>{}</sub>").format(letter, below) if below else Markup("{}").format(letter)
 
 
+def characteristics(result: Result) -> Context | None:
+    """Show masses, loads, centre of gravity, ride and wheel hop."""
+    tables = characteristics_tables(result.name, result.derived)
+    return {"tables": tables} if tables else None
+
+
 def parameters(result: Result) -> Context:
-    """Show every parameter with its interval."""
-    found = {**result.parameters, **result.derived}
+    """Show every parameter with its interval; of a rejected result none."""
+    found = {} if result.verdict.state == "reject" else {**result.parameters, **other_quantities(result.derived)}
     half = half_width(found)
     rows = [_parameter(name, one, half) for name, one in found.items()]
     profiled = [name for name, one in found.items() if one.interval_from == "profile"]
-    left = not result.scale.known and bool(result.scale.per_total_mass) and result.verdict.state != "reject"
+    left = not result.scale.known and bool(result.scale.per_total_mass)
     return {
         "rows": rows,
         "half": f"{half:g}",
@@ -86,8 +92,8 @@ def known(result: Result) -> Context | None:
     rows = []
     for name, one in result.setup.known.items():
         value, std = round_by_uncertainty(one.value, one.std)
-        found, found_std, *_ = value_cells(one.found) if one.std else ("taken as it is", "")
-        says = "" if one.missed is None else f"would have it {one.missed:.1f} standard uncertainties off"
+        found, found_std, *_ = value_cells(one.found) if one.std else ("held", "")
+        says = "" if one.missed is None else f"differ by {one.missed:.1f} standard uncertainties"
         rows.append((name, value, std or "exact", found, found_std, unit_text(one.unit), says))
     table = Table("What was known", headers, tuple(rows), frozenset(headers[1:5]))
     heights = ", ".join(f"{key.replace('_', ' ')} {value:g} m" for key, value in result.setup.heights.items())
@@ -119,7 +125,7 @@ def _sensors(setup: Setup) -> Table:
     rows = tuple(
         (
             sensor.channel,
-            sensor.on,
+            sensor.on or "",
             "" if sensor.position is None else _place(sensor.position).removesuffix(" m"),
             sensor.direction,
             sensor.unit or "",

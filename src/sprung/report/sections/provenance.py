@@ -16,7 +16,7 @@ def next_step(result: Result) -> Context:
         return {"said": f"{result.next_step[0].upper()}{result.next_step[1:]}".rstrip(".") + "."}
     if result.verdict.state == "reject":
         return {
-            "said": "First the reasons of the verdict: what does not fit the model tells nothing of what to measure next."
+            "said": "Remove the reasons of the verdict first: a model that does not describe the recordings plans nothing."
         }
     return {"said": _NOT_KEPT}
 
@@ -79,6 +79,8 @@ def settings(result: Result) -> Context:
 
 def _bars(result: Result) -> str:
     fit = result.fit
+    if result.verdict.state == "reject":
+        return ""
     if fit.inflation <= 1:
         return "as white noise makes them"
     because = f", because of {fit.inflated_by}" if fit.inflated_by not in {None, "nothing"} else ""

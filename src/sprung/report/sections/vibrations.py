@@ -21,10 +21,8 @@ from sprung.tables import Table
 def spectra(result: Result) -> Context | None:
     """Show the spectra of every load, with the identified modes."""
     pictures = [spectra_picture(one, result.modes[one.load]) for one in decays_by_load(result)]
-    said = (
-        "Spectra of the decays, in the mean over drops and sensors, beside those of the fitted vehicle. Lines: the damped "
-        "frequencies of the identified modes."
-    )
+    lines = "" if result.verdict.state == "reject" else " Lines: the damped frequencies of the identified modes."
+    said = f"Spectra of the decays, in the mean over drops and sensors, beside those of the fitted vehicle.{lines}"
     return {"said": said, "pictures": pictures} if pictures else None
 
 
@@ -49,7 +47,7 @@ def modes(result: Result) -> Context:
     load, first = next(iter(result.modes.items()), ("", ()))
     car = wire_car(result)
     if result.verdict.state == "reject":
-        return {"why_not": "the numbers of a vehicle that was rejected are worth nothing, and so are its modes"}
+        return {"why_not": "the verdict is reject; `sprung modal` finds modes without a vehicle model"}
     if not any(mode.motion for mode in first):
         return {"why_not": "an older sprung wrote this result, without the shapes", "tables": _mode_tables(result)}
     shaped = [mode for mode in first if mode.frequency_std is not None]

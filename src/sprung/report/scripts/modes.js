@@ -1,8 +1,6 @@
-(() => {
-  "use strict";
-  // Recordings that are folded away are printed too.
-  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((one) => { one.open = true; }));
+// The modes of the vehicle, moving.
 
+function moveModes() {
   const held = document.getElementById("wire-car");
   if (!held) return;
   const { places, edges, struts, circles } = JSON.parse(held.textContent);
@@ -15,11 +13,11 @@
   }));
   const lines = (pairs, y) => pairs.map(([i, j]) => `M${places[i][0]} ${y[i]}L${places[j][0]} ${y[j]}`).join("");
 
-  // Each node rises by the real part of its complex displacement turned by the phase; what does not vibrate creeps back.
+  // Each node rises by the real part of its complex displacement turned by the phase; an overdamped mode decays without swinging.
   function draw(phase) {
     for (const car of cars) {
-      const fading = Math.exp(-phase / 2);
-      const turn = car.creeps ? [fading, 0] : [Math.cos(phase), Math.sin(phase)];
+      const decay = Math.exp(-phase / 2);
+      const turn = car.creeps ? [decay, 0] : [Math.cos(phase), Math.sin(phase)];
       const y = places.map((place, i) => (place[1] - car.swing[i][0] * turn[0] + car.swing[i][1] * turn[1]).toFixed(1));
       car.edges.setAttribute("d", lines(edges, y));
       car.struts.setAttribute("d", lines(struts, y));
@@ -29,10 +27,10 @@
 
   const button = document.getElementById("play");
   const cycle = 1700; // ms
-  let playing = false, began = 0, phase = 0;
+  let playing = false, start = 0, phase = 0;
   function step(now) {
     if (!playing) return;
-    phase = ((now - began) / cycle * 2 * Math.PI) % (2 * Math.PI);
+    phase = ((now - start) / cycle * 2 * Math.PI) % (2 * Math.PI);
     draw(phase);
     requestAnimationFrame(step);
   }
@@ -40,7 +38,7 @@
     playing = on;
     button.textContent = on ? "Pause" : "Play";
     if (on) {
-      began = performance.now() - phase / (2 * Math.PI) * cycle;
+      start = performance.now() - phase / (2 * Math.PI) * cycle;
       requestAnimationFrame(step);
     }
   }
@@ -48,4 +46,4 @@
   button.addEventListener("click", () => set(!playing));
   addEventListener("beforeprint", () => { set(false); phase = 0; draw(0); });
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) set(true);
-})();
+}

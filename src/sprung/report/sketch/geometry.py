@@ -1,0 +1,174 @@
+"""Dimensions of the vehicle as far as a campaign or a result has them: what the sketch is drawn from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from sprung.estimate import round_by_uncertainty
+from sprung.pipeline import Result
+from sprung.recording import Campaign
+from sprung.vehicle import EMPTY, Load, Sensor
+
+_FINEST = 0.01
+"""m: a standard uncertainty below this one adds no more figures, as the second figure of this one is 1 mm."""
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    """A length that the sketch shows.
+
+    Attributes
+    ----------
+    value
+        m; None where it is not known.
+    std
+        Standard uncertainty, m; 0 for an exact value.
+    """
+
+    value: float | None = None
+    std: float = 0.0
+
+    @property
+    def text(self) -> str:
+        """The value as the sketch shows it: rounded by its uncertainty, to 1 mm at most; ``?`` where it is not known."""
+        if self.value is None:
+            return "?"
+        written = round_by_uncertainty(self.value, max(self.std, _FINEST))[0] if self.std else f"{self.value:.4g}"
+        return f"{written} m"
+
+    def __sub__(self, other: Length) -> Length:
+        if self.value is None or other.value is None:
+            return UNKNOWN
+        return Length(self.value - other.value, (self.std**2 + other.std**2) ** 0.5)
+
+    def __add__(self, other: Length) -> Length:
+        if self.value is None or other.value is None:
+            return UNKNOWN
+        return Length(self.value + other.value, (self.std**2 + other.std**2) ** 0.5)
+
+
+UNKNOWN = Length()
+"""A length that nobody has measured or identified."""
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """Dimensions, sensors and loads of one vehicle.
+
+    Attributes
+    ----------
+    name
+        The vehicle's.
+    wheelbase, a, b
+        Front to rear axle; front axle to the centre of gravity of the sprung mass; centre of gravity to rear axle.
+    springs, dampers
+        Half-distances of the front and the rear axle: t_f2, t_r2 and t_f1, t_r1, or t_f, t_r for both.
+    separate
+        Whether springs and dampers have half-distances of their own.
+    cg_height, wheel_height, roll_axis_height
+        Above the ground.
+    sensors
+        All of them; a body sensor whose position is not known has none.
+    loads
+        Without the load ``empty``.
+    identified
+        Whether a, b and the half-distances come from an identification.
+    """
+
+    name: str
+    wheelbase: Length = UNKNOWN
+    a: Length = UNKNOWN
+    b: Length = UNKNOWN
+    springs: tuple[Length, Length] = (UNKNOWN, UNKNOWN)
+    dampers: tuple[Length, Length] = (UNKNOWN, UNKNOWN)
+    separate: bool = False
+    cg_height: Length = UNKNOWN
+    wheel_height: Length = UNKNOWN
+    roll_axis_height: Length = UNKNOWN
+    sensors: tuple[Sensor, ...] = ()
+    loads: tuple[Load, ...] = ()
+    identified: bool = False
+
+
+def geometry_of(source: Campaign | Result) -> Geometry:
+    """Collect the dimensions that a campaign or a result has.
+
+    Parameters
+    ----------
+    source
+        A campaign holds what was measured beforehand; a result also what was identified. Estimates of a rejected result
+        are not used.
+
+    Returns
+    -------
+    Geometry
+    """
+    if isinstance(source, Result):
+        return _of_result(source)
+    lengths = {name: Length(known.value, known.std) for name, known in source.known.items()}
+    if source.wheelbase is not None:
+        lengths["wheelbase"] = Length(source.wheelbase.value, source.wheelbase.std)
+    heights = {name: value for name, value in source.heights.by_key.items() if value is not None}
+    separate = source.model.tracks == "separate"
+    return _geometry(source.name, lengths, heights, source.sensors, source.loads, separate, identified=False)
+
+
+def _of_result(result: Result) -> Geometry:
+    usable = ("known",) if result.verdict.state == "reject" else ("known", "estimated")
+    lengths = {
+        name: Length(found.value, found.std or 0.0)
+        for name, found in {**result.parameters, **result.derived}.items()
+        if found.status in usable
+    }
+    setup = result.setup
+    if setup is None:
+        return _geometry(result.name, lengths, {}, (), (), result.fit.tracks == "separate", identified=True)
+    lengths = {name: Length(one.value, one.std) for name, one in setup.known.items()} | lengths
+    return _geometry(
+        result.name,
+        lengths,
+        setup.heights,
+        setup.sensors,
+        setup.loads,
+        result.fit.tracks == "separate",
+        identified="estimated" in usable,
+    )
+
+
+def _geometry(
+    name: str,
+    lengths: Mapping[str, Length],
+    heights: Mapping[str, float],
+    sensors: tuple[Sensor, ...],
+    loads: tuple[Load, ...],
+    separate: bool,
+    *,
+    identified: bool,
+) -> Geometry:
+    def length(*names: str) -> Length:
+        return next((lengths[name] for name in names if name in lengths), UNKNOWN)
+
+    wheelbase, a, b = length("wheelbase"), length("a"), length("b")
+    if wheelbase.value is None:
+        wheelbase = a + b
+    a = wheelbase - b if a.value is None else a
+    b = wheelbase - a if b.value is None else b
+    apart = separate or any(name in lengths for name in ("t_f1", "t_f2", "t_r1", "t_r2"))
+    springs = (length("t_f2", "t_f"), length("t_r2", "t_r"))
+    dampers = (length("t_f1", "t_f"), length("t_r1", "t_r"))
+    return Geometry(
+        name=name,
+        wheelbase=wheelbase,
+        a=a,
+        b=b,
+        springs=springs,
+        dampers=dampers,
+        separate=apart,
+        cg_height=Length(heights.get("cg_height")),
+        wheel_height=Length(heights.get("wheel_height")),
+        roll_axis_height=Length(heights.get("roll_axis_height")),
+        sensors=sensors,
+        loads=tuple(load for load in loads if load.name != EMPTY.name),
+        identified=identified,
+    )

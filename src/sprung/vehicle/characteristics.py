@@ -1,0 +1,205 @@
+"""What a vehicle is first asked for: masses, loads, centre of gravity, ride and wheel-hop frequencies, damping ratios.
+
+Every quantity follows from the parameters of the empty vehicle. Those of an axle are of the quarter car of that axle: one
+wheel, its spring and damper at their mean of left and right, and half the sprung mass that the axle carries (Gillespie,
+Fundamentals of Vehicle Dynamics, chapter 5). They are of the linear vehicle: springs that slide, a damper at the mean of its
+rates in compression and rebound.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle.derived import DERIVED, quantity
+from sprung.vehicle.model import LinearModel
+from sprung.vehicle.rows import HEAVE, WHEELS_AT
+
+Real = NDArray[np.float64]
+Values = Mapping[str, complex]
+"""Parameters by name, SI; complex, for differentiation by complex steps."""
+
+_STEP = 1e-30
+"""Imaginary step relative to a parameter: no difference is taken, so it may be as small as the numbers allow."""
+
+
+class Characteristic(NamedTuple):
+    """A quantity that follows from the parameters of the empty vehicle.
+
+    Attributes
+    ----------
+    unit
+        SI.
+    meaning
+        In words.
+    value
+        Analytic function of the parameters by name, those that a model lacks left out.
+    needs
+        Parameters without which it says nothing new.
+    signed
+        Whether it may be negative.
+    """
+
+    unit: str
+    meaning: str
+    value: Callable[[Values], complex]
+    needs: frozenset[str] = frozenset()
+    signed: bool = False
+
+
+def _corner_mass(p: Values, axle: str) -> complex:
+    """Sprung mass on one wheel, kg: half of what the axle carries."""
+    other = p["b"] if axle == "f" else p["a"]
+    return p["m_s"] * other / (p["a"] + p["b"]) / 2
+
+
+def _damper(p: Values, axle: str) -> complex:
+    """Damper rate, N s/m: the mean of compression and rebound, where these differ."""
+    return p[f"c_s{axle}"] * (1 + p.get(f"r_{axle}", 1.0)) / 2
+
+
+def _ride_frequency(p: Values, axle: str) -> complex:
+    spring, tyre = p[f"k_s{axle}"], p[f"k_t{axle}"]
+    return (spring * tyre / (spring + tyre) / _corner_mass(p, axle)) ** 0.5 / (2 * np.pi)
+
+
+def _ride_damping(p: Values, axle: str) -> complex:
+    return _damper(p, axle) / (2 * (p[f"k_s{axle}"] * _corner_mass(p, axle)) ** 0.5)
+
+
+def _hop_frequency(p: Values, axle: str) -> complex:
+    return ((p[f"k_s{axle}"] + p[f"k_t{axle}"]) / p[f"m_u{axle}"]) ** 0.5 / (2 * np.pi)
+
+
+def _hop_damping(p: Values, axle: str) -> complex:
+    stiffness = p[f"k_s{axle}"] + p[f"k_t{axle}"]
+    return (_damper(p, axle) + p.get(f"c_t{axle}", 0.0)) / (2 * (stiffness * p[f"m_u{axle}"]) ** 0.5)
+
+
+def _total_mass(p: Values) -> complex:
+    return p["m_s"] + 2 * (p["m_uf"] + p["m_ur"])
+
+
+def _axle_mass(p: Values, axle: str) -> complex:
+    return 2 * (_corner_mass(p, axle) + p[f"m_u{axle}"])
+
+
+def _cg_from_front_axle(p: Values) -> complex:
+    return _axle_mass(p, "r") / _total_mass(p) * (p["a"] + p["b"])
+
+
+def _cg_left(p: Values) -> complex:
+    return p["m_s"] * p["y_s"] / _total_mass(p)
+
+
+def _of_axle(function: Callable[[Values, str], complex], axle: str) -> Callable[[Values], complex]:
+    return lambda p: function(p, axle)
+
+
+_AXLES = {"front": "f", "rear": "r"}
+
+_AXLE_QUANTITIES: Mapping[str, tuple[str, str, Callable[[Values, str], complex]]] = {
+    "ride_frequency": ("Hz", "natural frequency of the body on spring and tyre, {} quarter car", _ride_frequency),
+    "ride_damping": ("1", "damping ratio of the body on its springs, {} quarter car", _ride_damping),
+    "hop_frequency": ("Hz", "natural frequency of the wheel between spring and tyre, {} quarter car", _hop_frequency),
+    "hop_damping": ("1", "damping ratio of the wheel, {} quarter car", _hop_damping),
+}
+
+CHARACTERISTICS: Mapping[str, Characteristic] = {
+    "total_mass": Characteristic("kg", "mass of the empty vehicle", _total_mass),
+    "front_axle_mass": Characteristic("kg", "on the front wheels of the empty vehicle", _of_axle(_axle_mass, "f")),
+    "rear_axle_mass": Characteristic("kg", "on the rear wheels of the empty vehicle", _of_axle(_axle_mass, "r")),
+    "front_axle_share": Characteristic(
+        "1", "part of the empty vehicle's mass on its front wheels", lambda p: _axle_mass(p, "f") / _total_mass(p)
+    ),
+    "cg_from_front_axle": Characteristic(
+        "m", "centre of gravity of the empty vehicle, behind the front axle", _cg_from_front_axle
+    ),
+    "cg_left": Characteristic(
+        "m",
+        "centre of gravity of the empty vehicle, left of the centreline",
+        _cg_left,
+        frozenset({"y_s"}),
+        signed=True,
+    ),
+    **{
+        f"{name}_{of}": Characteristic(unit, meaning.format(name), _of_axle(function, axle))
+        for of, (unit, meaning, function) in _AXLE_QUANTITIES.items()
+        for name, axle in _AXLES.items()
+    },
+}
+"""By name, in the order in which tables show them. Static wheel loads, which matrices tell, are `wheel_loads`."""
+
+WHEEL_LOADS: Mapping[str, str] = {
+    "front_wheel_load": "static load of each front wheel of the empty vehicle",
+    "rear_wheel_load": "static load of each rear wheel of the empty vehicle",
+    "front_left_wheel_load": "static load of the left front wheel of the empty vehicle",
+    "front_right_wheel_load": "static load of the right front wheel of the empty vehicle",
+    "rear_left_wheel_load": "static load of the left rear wheel of the empty vehicle",
+    "rear_right_wheel_load": "static load of the right rear wheel of the empty vehicle",
+}
+"""Meaning of the static wheel loads, N, by name: one for each axle where left and right are alike."""
+
+
+def characteristic(name: str, names: Sequence[str], values: Real) -> tuple[float, Real]:
+    """Return a characteristic and its gradient.
+
+    Parameters
+    ----------
+    name
+        One of `CHARACTERISTICS`.
+    names, values
+        Parameters of a vehicle, SI; values of shape (parameter,).
+
+    Returns
+    -------
+    value
+        SI.
+    gradient
+        By each parameter, SI, shape (parameter,); exact to rounding.
+    """
+    if name in DERIVED:
+        return quantity(name, names, values)
+    function = CHARACTERISTICS[name].value
+    told = dict(zip(names, values.tolist(), strict=True))
+    # f(p + ih) = f(p) + ih f'(p) + O(h²): the derivative is read off the imaginary part, without any cancellation.
+    slopes = [complex(function(told | {one: complex(value, _STEP)})).imag / _STEP for one, value in told.items()]
+    return complex(function(told)).real, np.array(slopes)
+
+
+def wheel_loads(model: LinearModel, values: Real, gravity: float = STANDARD_GRAVITY) -> tuple[Real, Real]:
+    """Return the static force of level ground on each wheel, and its gradient.
+
+    The four forces of a vehicle whose left and right differ depend on how the springs were seated, which no recording shows:
+    these are those of springs that would all be unloaded at one height.
+
+    Parameters
+    ----------
+    model
+        Equations of motion of the vehicle with its load.
+    values
+        Parameters, SI, shape (parameter,).
+    gravity
+        m/s².
+
+    Returns
+    -------
+    loads
+        N, shape (4,), in the order of `WHEELS`.
+    gradient
+        By each parameter, SI, shape (4, parameter).
+    """
+    M, _, K = model.matrices(values)
+    dM, _, dK = model.slopes(values)
+    heave = HEAVE[: len(M)]
+    # Lifting everything alike strains nothing but the tyres: what K makes of it is their rates.
+    tyres, tyre_slopes = (K @ heave)[WHEELS_AT], (dK @ heave)[:, WHEELS_AT]
+    sag = np.linalg.solve(K, gravity * M @ heave)
+    sag_slopes = np.linalg.solve(K, (gravity * dM @ heave - dK @ sag).T).T
+    loads = tyres * sag[WHEELS_AT]
+    gradient = tyre_slopes * sag[WHEELS_AT] + tyres * sag_slopes[:, WHEELS_AT]
+    return loads, gradient.T
