@@ -193,7 +193,7 @@ def test_records_name_what_is_wrong_with_their_keys() -> None:
     with pytest.raises(InputError, match="Did you mean 'channel'"):
         sprung.Sensor(**wrong)
     wrong = {"channel": "a", "on": "rear"}
-    with pytest.raises(InputError, match="Sensor a.on: found 'rear'; expected 'body', 'fl'"):
+    with pytest.raises(InputError, match=r"Sensor a\.on: found 'rear'; expected 'body', 'fl'"):
         sprung.Sensor(**wrong)
     wrong = {"name": "bags"}
     with pytest.raises(InputError, match="items"):
