@@ -16,6 +16,38 @@ def tests(session: nox.Session) -> None:
 
 
 @nox.session
+def long(session: nox.Session) -> None:
+    """Run the tests that take minutes: statistics, searches, studies."""
+    session.install(".[dev,all]")
+    session.run("pytest", "-m", "long", *session.posargs)
+
+
+@nox.session(python="3.11")
+def lowest(session: nox.Session) -> None:
+    """Run the tests with the oldest NumPy, SciPy and pandas that pyproject.toml admits."""
+    project = nox.project.load_toml("pyproject.toml")["project"]
+    bounds = {one.partition(">=")[0]: one for one in project["dependencies"]}
+    session.install(".[dev,all]")
+    session.install(*(bounds[name].replace(">=", "==") for name in ("numpy", "scipy", "pandas")))
+    session.run("pytest", *session.posargs)
+
+
+KERNELS = ("Haswell", "Zen", "SkylakeX", "Nehalem")
+"""Of OpenBLAS: each rounds in its own way, as do different numbers of threads."""
+
+
+@nox.session
+@nox.parametrize("threads", ["1", "2"])
+@nox.parametrize("kernel", KERNELS)
+def rounding(session: nox.Session, kernel: str, threads: str) -> None:
+    """Run what is compared word by word as another processor would round it."""
+    session.install(".[dev,all]")
+    environment = {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": threads}
+    compared = ("tests/report", "tests/test_examples.py", "tests/docs", "tests/modal", "tests/identification")
+    session.run("pytest", *(session.posargs or compared), env=environment)
+
+
+@nox.session
 def coverage(session: nox.Session) -> None:
     """Run the tests and show which branches they miss."""
     session.install("-e", ".[dev,all]")

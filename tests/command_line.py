@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from sprung.cli import main
+from sprung.recording.ownership import MANIFEST
 
 SEDAN = Path(__file__).resolve().parent / "data" / "sedan"
 LEAFBUS = SEDAN.with_name("leafbus")
@@ -83,21 +84,27 @@ class Folder:
         return self.lines(changed, file)
 
     def listing(self) -> list[str]:
-        """Everything in the folder."""
-        return sorted(str(path.relative_to(self.path)) for path in self.path.rglob("*"))
+        """Everything in the folder but sprung's lists of its own files."""
+        return sorted(str(path.relative_to(self.path)) for path in self.path.rglob("*") if path.name != MANIFEST)
 
 
 def linear_leafbus(folder: Path) -> Path:
     """Copy some recordings of the bus with leaf springs, with the plain linear model asked for."""
-    drops = tuple(f"{load}_{kind}" for load in ("empty", "loaded") for kind in ("bounce", "pitch_front", "roll_left"))
-    file = _copied(LEAFBUS, folder, drops) / "campaign.toml"
-    file.write_text(file.read_text().replace("[known]", "[model]\nextras = []\n\n[known]"))
-    return folder
+    return _linear(_copied(LEAFBUS, folder, DROPS[:3]))
 
 
 def copy_sedan(folder: Path, drops: tuple[str, ...] = DROPS) -> Folder:
-    """Copy some drops of the sedan into a folder of their own."""
-    return Folder(_copied(SEDAN, folder, drops))
+    """Copy some drops of the sedan into a folder of their own, with the plain linear model asked for: no search for others."""
+    return Folder(_linear(_copied(SEDAN, folder, drops)))
+
+
+def _linear(campaign: Path) -> Path:
+    file = campaign / "campaign.toml"
+    model = '[model]\ntracks = "shared"\nextras = []\nfall = false\n\n[known]'
+    text = file.read_text(encoding="utf-8")
+    assert "[known]" in text
+    file.write_text(text.replace("[known]", model), encoding="utf-8")
+    return campaign
 
 
 def _copied(campaign: Path, folder: Path, drops: tuple[str, ...]) -> Path:

@@ -15,7 +15,9 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from sprung import pipeline as pipeline
     from sprung import plot as plot
+    from sprung import recording as recording
     from sprung import report as report
     from sprung import study as study
     from sprung.pipeline import (
@@ -83,7 +85,7 @@ _HOME = {
     "validate": "pipeline",
     "write": "recording",
 }
-_ROOMS = ("plot", "report", "study")
+_ROOMS = ("pipeline", "plot", "recording", "report", "study")
 
 
 def __getattr__(name: str) -> Any:

@@ -147,6 +147,46 @@ class Problems:
             raise InputError(self._found)
 
 
+class Omissions:
+    """Collects what only decorates a result and could not be made; the result is worth as much without it.
+
+    Examples
+    --------
+    >>> omissions = Omissions()
+    >>> with omissions.noting("The stabilisation diagram"):
+    ...     raise ValueError("no poles")
+    >>> omissions.sentences
+    ('The stabilisation diagram could not be drawn: no poles (ValueError).',)
+    """
+
+    def __init__(self, sentences: Iterable[str] = ()) -> None:
+        self._found = dict.fromkeys(sentences)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """One for each thing that is missing, with the reason."""
+        return tuple(self._found)
+
+    def add(self, sentences: Iterable[str]) -> None:
+        """Take up what is missing elsewhere too, each sentence once."""
+        self._found |= dict.fromkeys(sentences)
+
+    @contextmanager
+    def noting(self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()) -> Iterator[None]:
+        """Note that something could not be drawn, where the block fails, and go on after it; some errors pass."""
+        try:
+            yield
+        except unless:
+            raise
+        except InputError as error:
+            reasons = "; ".join(f"{one.found}. {one.do}" for one in error.problems)
+            self._found[f"{what} could not be {done}: {reasons}"] = None
+        except Exception as error:  # noqa: BLE001 (whatever it is, it must not cost the result)
+            reason = " ".join(str(error).split())
+            kind = type(error).__name__
+            self._found[f"{what} could not be {done}: {f'{reason} ({kind})' if reason else kind}."] = None
+
+
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:
     """Say which allowed word was probably meant.
 

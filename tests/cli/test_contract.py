@@ -11,6 +11,7 @@ import pytest
 
 import sprung
 from command_line import SEDAN, Folder, Identified, Run, run
+from sprung.recording.ownership import MANIFEST
 
 COMMANDS = (
     "demo",
@@ -229,10 +230,15 @@ def test_without_a_report_none_is_left(folder: Folder) -> None:
     """One of an earlier result would be read as this one's."""
     results = folder.path / "results"
     assert run("identify", folder.path).status == 0
-    (results / "report.pdf").write_bytes(b"of that result")
+    (results / "report.pdf").write_bytes(b"the user's own")
     said = run("identify", folder.path, "--no-report")
     assert "report.html" not in said.out
-    assert sorted(path.name for path in results.iterdir()) == ["results.json", "series.npz"]
+    assert sorted(path.name for path in results.iterdir() if path.name != MANIFEST) == [
+        "report.pdf",
+        "results.json",
+        "series.npz",
+    ]
+    assert (results / "report.pdf").read_bytes() == b"the user's own"
     document = json.loads((results / "results.json").read_text(encoding="utf-8"))
     assert document["amplitude"] == {}  # nothing is spent on figures
     assert run("report", results).status == 0
@@ -254,8 +260,8 @@ def test_check(folder: Folder) -> None:
     assert [drop["file"] for drop in said.json["drops"]][-1] == "loaded_bounce.csv"
     text = run("check", folder.path)
     assert all(drop["file"] in text.out for drop in said.json["drops"])
-    drawings = [f"check/{Path(drop['file']).stem}.svg" for drop in said.json["drops"]]
-    assert folder.listing() == sorted([*before, "check", *drawings])
+    assert said.json["page"] == str(folder.path / "check" / "check.html")
+    assert folder.listing() == sorted([*before, "check", "check/.sprung-files.json", "check/check.html"])
 
 
 @pytest.mark.parametrize("method", ["ml", "era", "svm"])
@@ -279,9 +285,9 @@ def test_simulate_and_back(vehicle_file: Path, tmp_path: Path) -> None:
     assert said.status == 0
     assert len(said.json["drops"]) == 5
     assert sorted(path.name for path in (tmp_path / "new" / "campaign").iterdir()) == sorted(
-        [*said.json["drops"], "campaign.toml", "campaign.schema.json"]
+        [*said.json["drops"], "campaign.toml", "campaign.schema.json", MANIFEST]
     )
-    found = run("identify", said.json["campaign"], "--json")
+    found = run("identify", said.json["campaign"], "--json", "--no-report")
     assert found.status == 0
     # Without load or weighing only ratios are left: the front springs, 17000 N/m on 1551.8 kg.
     assert found.json["scale"]["per_total_mass"]["k_sf"]["value"] == pytest.approx(17000 / 1551.8, rel=0.02)
@@ -308,7 +314,8 @@ def test_paper(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_the_same_campaign_gives_the_same_document(folder: Folder) -> None:
-    assert run("identify", folder.path, "--json").out == run("identify", folder.path, "--json").out
+    quick = ("identify", folder.path, "--json", "--no-report")
+    assert run(*quick).out == run(*quick).out
 
 
 def test_recordings_are_left_as_they_are(sedan: Identified) -> None:

@@ -60,7 +60,7 @@ def test_a_campaign(folder: Folder) -> None:
     assert (said.status, said.err) == (0, "")
     assert "as it is" in said.out
     assert folder.listing() == before
-    identified = run("identify", folder.path)
+    identified = run("identify", folder.path, "--no-report")
     next_line = said.out.partition("Next: ")[2]
     assert next_line
     assert next_line in identified.out
@@ -78,12 +78,16 @@ def test_a_rejected_campaign_is_no_ground_for_a_plan(leafbus: Identified, tmp_pa
     said = run("plan", campaign, "--json")
     assert said.status == 3
     assert "does not explain the records" in said.json["rejected"][0]
-    text = run("plan", campaign).out
     assert (said.json["alternatives"], said.json["next_step"]["percent"]) == ([], {})
-    assert "no plan can be made from it" in " ".join(text.split())
-    assert "Next:" not in text
     assert leafbus.json.json["next_step"] is None
     assert "Next:" not in leafbus.text.out
+
+
+@pytest.mark.long
+def test_in_words_too(tmp_path: Path) -> None:
+    text = run("plan", linear_leafbus(tmp_path / "campaign")).out
+    assert "no plan can be made from it" in " ".join(text.split())
+    assert "Next:" not in text
 
 
 @pytest.mark.parametrize(

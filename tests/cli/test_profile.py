@@ -6,14 +6,14 @@ from command_line import Folder, run
 
 
 def test_intervals_are_shown_where_they_are_asked_for(folder: Folder) -> None:
-    plain = run("identify", folder.path)
-    said = run("identify", folder.path, "--profile", "c_sf", "--profile", "total_mass")
+    plain = run("identify", folder.path, "--no-report")
+    said = run("identify", folder.path, "--profile", "c_sf", "--profile", "total_mass", "--no-report")
     assert said.status == plain.status == 0
     assert "95 % intervals" not in plain.out
     _, _, rest = said.out.partition("95 % intervals from the whole likelihood\n")
     rows = rest.split("\n\n", maxsplit=1)[0].splitlines()
     assert [row.split()[0] for row in rows] == ["parameter", "c_sf", "total_mass"]
-    document = run("identify", folder.path, "--json", "--profile", "all").json
+    document = run("identify", folder.path, "--json", "--profile", "all", "--no-report").json
     assert {found["interval_from"] for found in document["parameters"].values()} == {"profile"}
     low, high = document["parameters"]["c_sf"]["interval95"]
     assert float(rows[1].split()[1]) < document["parameters"]["c_sf"]["value"] < float(rows[1].split()[2])

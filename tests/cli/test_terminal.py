@@ -75,10 +75,11 @@ def test_long_reasons_hang_below_their_dash(leafbus: Identified) -> None:
 
 
 def test_colours_only_where_they_are_wanted(folder: Folder) -> None:
-    assert ESCAPE not in run("identify", folder.path).out
-    coloured = run("identify", folder.path, FORCE_COLOR="1", TERM="xterm-256color")
+    quick = ("identify", folder.path, "--no-report")
+    assert ESCAPE not in run(*quick).out
+    coloured = run(*quick, FORCE_COLOR="1", TERM="xterm-256color")
     assert f"{ESCAPE}1;32maccept" in coloured.out
-    plain = run("identify", folder.path, FORCE_COLOR="1", TERM="xterm-256color", NO_COLOR="1")
+    plain = run(*quick, FORCE_COLOR="1", TERM="xterm-256color", NO_COLOR="1")
     assert "32m" not in plain.out
 
 
@@ -87,8 +88,8 @@ def test_json_is_json_even_where_colours_are_forced(folder: Folder) -> None:
 
 
 def test_progress_stays_off_captured_streams(folder: Folder) -> None:
-    for command in ("identify", "check", "modal"):
-        assert run(command, folder.path).err == ""
+    for command in (("identify", "--no-report"), ("check", "--no-drawings"), ("modal",)):
+        assert run(*command, folder.path).err == ""
 
 
 @pytest.mark.parametrize("name", ["with spaces", "Prüfstand Ölwanne 試験", "percent%d {brace} [bold]"])
@@ -98,7 +99,7 @@ def test_names_of_every_kind(tmp_path: Path, name: str) -> None:
     (folder.path / "empty_bounce.csv").rename(folder.path / f"{name}.csv")
     assert run("check", "--no-drawings", folder.path, "--json").json["drops"][0]["file"] == f"{name}.csv"
     assert f"{name}.csv" in run("check", "--no-drawings", folder.path, columns=120).out
-    assert f"{name}: parameters" in run("identify", folder.path, columns=120).out
+    assert f"{name}: parameters" in run("identify", folder.path, "--no-report", columns=120).out
     assert json.loads((folder.path / "results" / "results.json").read_text("utf-8"))["vehicle"]["name"] == name
 
 
@@ -106,27 +107,27 @@ def test_names_of_every_kind(tmp_path: Path, name: str) -> None:
 def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
     folder = copy_sedan(tmp_path / os.fsdecode(b"caf\xe9"), DROPS[:1])
     folder.edit('name = "sedan"\n', "")
-    done = process("identify", folder.path, "--json")
+    done = process("identify", folder.path, "--json", "--no-report")
     assert done.returncode == 0
     assert json.loads(done.stdout)["vehicle"]["name"] == "caf?"
 
 
 def test_relative_paths_from_anywhere(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
-    absolute = run("check", folder.path / "campaign.toml", "--json")
+    absolute = run("check", folder.path / "campaign.toml", "--json", "--no-drawings")
     monkeypatch.chdir(folder.path)
     for path in ("campaign.toml", ".", "./campaign.toml", "../campaign"):
-        assert run("check", path, "--json") == absolute
-    assert run("identify", "campaign.toml").status == 0
+        assert run("check", path, "--json", "--no-drawings") == absolute
+    assert run("identify", "campaign.toml", "--no-report").status == 0
     assert (folder.path / "results" / "results.json").exists()
     monkeypatch.chdir(folder.path.parent)
-    assert run("identify", "campaign", "-o", "elsewhere").status == 0
+    assert run("identify", "campaign", "-o", "elsewhere", "--no-report").status == 0
     assert (folder.path.parent / "elsewhere" / "series.npz").exists()
 
 
 def test_the_name_of_the_folder_names_the_vehicle(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     folder.edit('name = "sedan"\n', "")
     monkeypatch.chdir(folder.path)
-    assert run("identify", ".", "--json").json["vehicle"]["name"] == "campaign"
+    assert run("identify", ".", "--json", "--no-report").json["vehicle"]["name"] == "campaign"
 
 
 def raising(error: BaseException) -> object:
@@ -139,7 +140,7 @@ def raising(error: BaseException) -> object:
 @pytest.mark.parametrize("options", [(), ("--json",)])
 def test_ctrl_c(folder: Folder, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...]) -> None:
     before = folder.listing()
-    monkeypatch.setattr(sprung, "identify", raising(KeyboardInterrupt()))
+    monkeypatch.setattr(sprung.pipeline, "identify_campaign", raising(KeyboardInterrupt()))
     said = run("identify", folder.path, *options)
     assert (said.status, said.out, said.err) == (130, "", "sprung was interrupted.\n")
     assert folder.listing() == before
@@ -148,7 +149,7 @@ def test_ctrl_c(folder: Folder, monkeypatch: pytest.MonkeyPatch, options: tuple[
 @pytest.mark.parametrize("error", [RuntimeError("boom"), IndexError(), OSError(5, "disk on fire"), MemoryError()])
 def test_a_defect_of_ours_asks_for_a_report(folder: Folder, monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
     before = folder.listing()
-    monkeypatch.setattr(sprung, "identify", raising(error))
+    monkeypatch.setattr(sprung.pipeline, "identify_campaign", raising(error))
     said = run("identify", folder.path, "--json")
     assert (said.status, said.out) == (1, "")
     assert "defect of sprung, not of your input" in said.err
@@ -159,7 +160,7 @@ def test_a_defect_of_ours_asks_for_a_report(folder: Folder, monkeypatch: pytest.
 
 
 def test_a_pipe_that_closes(folder: Folder) -> None:
-    command = [sys.executable, "-m", "sprung", "identify", str(folder.path)]
+    command = [sys.executable, "-m", "sprung", "identify", "--no-report", str(folder.path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:  # noqa: S603
         assert running.stdout is not None
         assert running.stderr is not None
@@ -170,7 +171,7 @@ def test_a_pipe_that_closes(folder: Folder) -> None:
 
 
 def test_a_terminal_that_knows_only_ascii(folder: Folder) -> None:
-    text = process("identify", folder.path, PYTHONIOENCODING="ascii", PYTHONUTF8="0")
+    text = process("identify", folder.path, "--no-report", PYTHONIOENCODING="ascii", PYTHONUTF8="0")
     assert (text.returncode, text.stderr) == (0, b"")
     assert b"kg m?" in text.stdout
     folder.edit('"empty_bounce.csv"', '"Käfer.csv"')

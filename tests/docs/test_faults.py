@@ -258,6 +258,7 @@ def test_what_came_of_it() -> None:
     assert np.isnan(refused.worst)
 
 
+@pytest.mark.long
 def test_the_study(tmp_path: Path) -> None:
     told = ("--faults", "flat", "copy", "sign, AC", "--vehicles", "2", "--seeds", "1", "--campaigns", "2")
     command = [sys.executable, str(STUDIES / "faults.py"), *told, "--to", str(tmp_path)]

@@ -82,6 +82,7 @@ def test_the_bound_is_that_of_the_plan(campaigns: Any) -> None:
     np.testing.assert_allclose(case.bound(range(5)), expected, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_at_the_bound(tmp_path: Path) -> None:
     page, numbers = study("at_the_bound.py", tmp_path, "--campaigns", "1", "--each", "1", "--noise", "0.1")
     assert "| five drops, axles weighed | 0.02 |" in page
@@ -100,6 +101,7 @@ def test_at_the_bound(tmp_path: Path) -> None:
     assert (tmp_path / "at-the-bound.svg").exists() == drawn == ("at-the-bound.svg" in page)
 
 
+@pytest.mark.long
 def test_coloured(tmp_path: Path) -> None:
     page, numbers = study("coloured.py", tmp_path, "--campaigns", "1", "--tests", "1")
     assert "row has 1 campaigns" in page

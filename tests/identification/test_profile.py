@@ -149,6 +149,7 @@ def test_inflation_widens_the_profile_as_it_widens_the_curvature() -> None:
         np.testing.assert_allclose(np.array(ends, float), [low, high], rtol=0, atol=0.03 * (high - low))
 
 
+@pytest.mark.long
 def test_asymmetric_intervals_hold_the_truth_as_often_as_they_say() -> None:
     """The centre of gravity at 2 m/s² of noise, 40 seeds: of 95 % there may be 3 standard errors less, and not all."""
     estimates = [both(drops(seed=seed, noise=2.0), "a") for seed in range(120, 160)]

@@ -86,6 +86,7 @@ def test_at_the_truth_a_flight_leaves_noise_and_no_slope() -> None:
     assert left / samples == pytest.approx(1.0, abs=0.12)  # noise is known from 0.3 s of rest
 
 
+@pytest.mark.long
 def test_what_is_missed_near_by_is_what_another_vehicle_misses() -> None:
     stiffer = {**TABLE_1_CAR.parameters, "k_sf": 17000 * 1.01, "c_sr": 1500 * 0.99}
     vehicle = Vehicle.from_parameters(stiffer, name="stiffer")

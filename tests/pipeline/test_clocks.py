@@ -34,7 +34,11 @@ def off(found: Wireless, result: Result) -> tuple[list[float], list[float]]:
 
 
 @pytest.mark.parametrize(
-    "rates", [(500.0,) * 8, (200.0, 400.0, 500.0, 512.0, 1000.0, 800.0, 600.0, 500.0)], ids=["one rate", "many rates"]
+    "rates",
+    [
+        pytest.param((500.0,) * 8, marks=pytest.mark.long, id="one rate"),
+        pytest.param((200.0, 400.0, 500.0, 512.0, 1000.0, 800.0, 600.0, 500.0), id="many rates"),
+    ],
 )
 def test_eight_loggers_give_the_vehicle_and_their_clocks(rates: tuple[float, ...]) -> None:
     simulated = wireless(rates=rates, seed=2)
@@ -67,6 +71,7 @@ def jolted(simulated: Wireless, size: float) -> Campaign:
     return replace(simulated.campaign, recordings=tuple(recordings))
 
 
+@pytest.mark.long
 def test_a_flight_that_no_vehicle_has_tells_nothing_of_it() -> None:
     simulated = wireless(seed=5, drift=0.0)
     plain, shaken = (fit_campaign(one, extras=()) for one in (simulated.campaign, jolted(simulated, 0.3)))

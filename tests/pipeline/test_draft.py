@@ -16,11 +16,13 @@ from sessions import NEUTRAL, fill_in, write_session, write_table
 from sprung.errors import InputError
 from sprung.pipeline import Draft
 from sprung.pipeline.drafting.names import axis_named, load_named, part_named, station_named, wheels_named
+from sprung.pipeline.drafting.text import campaign_text
+from sprung.progress import Step
 from sprung.recording import Campaign
 from sprung.report import draft_view
 from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import TABLE_1_CAR, WHEELS, Wheel
+from sprung.vehicle import TABLE_1_CAR, WHEELS, Load, Wheel
 
 LOAD = {
     "name": "ballast",
@@ -272,6 +274,17 @@ def test_recordings_that_cannot_be_read_are_named_with_the_reason(tmp_path: Path
     assert "# Not read: broken.csv: an empty file." in draft.text
 
 
+def test_every_draft_explains_how_a_load_is_described() -> None:
+    text = campaign_text(Draft(folder=Path(), name="car", sensors=(), drops=(), files=(), unreadable={}))
+    assert "load" not in tomllib.loads(text)
+    head, name, first, second, _, added = (
+        line.removeprefix("# ") for line in text[text.index("# [[load]]") :].splitlines()[:6]
+    )
+    for lines, mass in (((head, name, first, second), 255), ((head, name, added), 470)):
+        (load,) = tomllib.loads("\n".join(lines))["load"]
+        assert Load(**load).mass == mass
+
+
 def test_subfolders_tell_the_load(tmp_path: Path, campaign: Campaign) -> None:
     for drop, recording in zip(campaign.drops, campaign.recordings, strict=True):
         folder = "leer" if drop.load == "empty" else "Sandsäcke 200 kg"
@@ -305,10 +318,14 @@ def test_without_a_drop_everything_is_refused_with_the_reasons(tmp_path: Path) -
 
 def test_progress_runs_from_nothing_to_everything(tmp_path: Path, campaign: Campaign) -> None:
     write_session(tmp_path, campaign)
-    seen: list[float] = []
-    sprung.draft(tmp_path, progress=seen.append)
+    steps: list[Step] = []
+    sprung.draft(tmp_path, progress=steps.append)
+    seen = [step.done for step in steps if step.done is not None]
+    assert len(seen) == len(steps)
     assert seen == sorted(seen)
+    assert seen[0] == 0.0
     assert seen[-1] == pytest.approx(1.0)
+    assert {step.step for step in steps} == set(range(1, len(campaign.recordings) + 1))
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,7 @@ def test_the_blocks_need_not_have_been_measured(campaign: sprung.Campaign, falle
         assert found.parameters[name].value == pytest.approx(one.value, rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_fall_that_the_model_does_not_explain_is_not_used(campaign: sprung.Campaign, landed: sprung.Result) -> None:
     """Somebody holds on to the body after the release: the decays are used as before, and it is said."""
     held = []

@@ -72,6 +72,7 @@ def test_leaf_springs_come_out(leafbus: sprung.Result, name: str) -> None:
     assert error < 0.005 or abs(found.value - LEAFBUS[name]) < 4 * found.std
 
 
+@pytest.mark.long
 def test_without_friction_nothing_is_said_of_leaf_springs() -> None:
     """Leaf springs, 1000 and 1500 N of dry friction: the linear model must not pass, and no number of it be printed."""
     result = sprung.identify(sprung.read(DATA / "leafbus"), extras=[])

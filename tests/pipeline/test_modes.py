@@ -31,7 +31,7 @@ def test_one_drop_cannot_tell_the_wheel_hops_apart_and_says_so() -> None:
     found = sprung.modes(one)["empty"]
     wheels = [mode for mode in found if mode.frequency > 5]
     assert 1 <= len(wheels) < 4
-    assert any("4 wheels hop in 4 modes, of which 1 drop" in said for said in found.unresolved)
+    assert any("4 wheels have 4 modes of hop and tramp, of which 1 drop" in said for said in found.unresolved)
     # Asked for all fourteen poles, it does not invent those that it cannot tell.
     forced = sprung.modes(one, order=14)["empty"]
     assert len(forced) == len(found)

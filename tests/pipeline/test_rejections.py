@@ -101,6 +101,7 @@ def test_a_mass_on_a_spring_is_an_engine_on_its_mounts() -> None:
         assert abs(found.value - value) < 4 * found.std, name
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["loose mass", "hard stops"])
 def test_what_no_element_explains_is_not_accepted(kind: str) -> None:
     """Rejected; or, where stops are found to be what it is, accepted with every number within four standard errors."""

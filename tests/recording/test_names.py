@@ -39,7 +39,7 @@ def test_the_name_is_written_and_read_back(folder: Folder, tmp_path: Path) -> No
     campaign = sprung.read(folder.path)
     again = sprung.read(sprung.write(campaign, tmp_path / "again"))
     assert again.drops == campaign.drops
-    assert 'name = "bounce, 2nd try"' in (tmp_path / "again" / "campaign.toml").read_text(encoding="utf-8")
+    assert 'name   = "bounce, 2nd try"' in (tmp_path / "again" / "campaign.toml").read_text(encoding="utf-8")
 
 
 def test_a_drop_with_a_name_is_fitted_like_any_other(folder: Folder) -> None:

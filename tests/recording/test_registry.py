@@ -38,7 +38,7 @@ def installed(monkeypatch: pytest.MonkeyPatch, *entries: object) -> None:
 
 def test_text_tables_are_known_without_package_metadata(monkeypatch: pytest.MonkeyPatch) -> None:
     installed(monkeypatch)
-    own = ["csv", "hdf5", "iso_mme", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
+    own = ["csv", "excel", "hdf5", "iso_mme", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
     assert list(formats()) == own
 
 

@@ -101,6 +101,7 @@ def test_the_same_parameters_from_memory(tmp_path: Path, campaign: sprung.Campai
     check(sprung.identify(sprung.read(path, signals=signals)), truth, 0.0)
 
 
+@pytest.mark.long
 def test_the_same_parameters_from_24_bits(tmp_path: Path) -> None:
     # A WAV file of integers holds parts of a full scale, here 1 g: wheels that fall 2 mm, and sensors without gravity.
     sensors = [replace(sensor, high_pass=0.2) for sensor in default_sensors(TABLE_1_CAR)]

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from sprung.errors import InputError
 from sprung.estimate import Known
 from sprung.recording import Campaign, Drop, ModelChoice, Recording, read, write, write_whole
+from sprung.recording.comments import SECTIONS, meaning
 from sprung.recording.formats import split_unit
 from sprung.recording.ownership import MANIFEST
 from sprung.vehicle import EMPTY, Added, Item, Load, Sensor
@@ -145,36 +146,62 @@ def one_drop(**changes: Any) -> Campaign:
 
 def test_only_what_differs_from_the_defaults_is_written(tmp_path: Path) -> None:
     assert write(one_drop(), tmp_path / "a" / "b") == tmp_path / "a" / "b" / "campaign.toml"
-    assert (tmp_path / "a" / "b" / "campaign.toml").read_text().splitlines() == [
-        "#:schema ./campaign.schema.json",
+    lines = (tmp_path / "a" / "b" / "campaign.toml").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "#:schema ./campaign.schema.json"
+    assert [" ".join(line.partition("#")[0].split()) for line in lines if line and not line.startswith("#")] == [
         "schema = 1",
-        "",
         "[vehicle]",
         'name = "car"',
-        "",
         "[[sensor]]",
         'channel = "body_0"',
         'on = "body"',
         "position = [0.0, 1.0, 0.5]",
-        "",
         "[[sensor]]",
         'channel = "body_1"',
         'on = "body"',
         "position = [0.0, -1.0, 0.5]",
-        "",
         "[[sensor]]",
         'channel = "body_2"',
         'on = "body"',
         "position = [-3.0, 0.0, 0.5]",
-        "",
         "[[drop]]",
         'file = "empty_bounce.csv"',
+        'load = "empty"',
+        'wheels = ["fl", "fr", "rl", "rr"]',
     ]
     assert (tmp_path / "a" / "b" / "empty_bounce.csv").read_text().splitlines()[:3] == [
         "time,body_0,body_1,body_2",
         "0,1,1,1",
         "0.002,1,1,1",
     ]
+
+
+def test_comments_say_what_every_section_and_key_is_for(tmp_path: Path) -> None:
+    campaign = replace(
+        one_drop(),
+        loads=(
+            EMPTY,
+            Load(name="bags # of sand", items=(Item(mass=50.0, position=(-1.0, 0.0, 0.5)), Item(mass=5.0, on="fl"))),
+            Load(name="totals", added=Added(mass=100.0, I_yy=20.0)),
+        ),
+        known={"total_mass": Known(1500.0, 2.0), "a": Known(1.2)},
+    )
+    path = write(campaign, tmp_path)
+    text = path.read_text(encoding="utf-8")
+    assert max(map(len, text.splitlines())) <= 128
+    for said in (*SECTIONS["load"].splitlines(), SECTIONS["sensor"], SECTIONS["drop"], SECTIONS["known"]):
+        assert text.count(f"# {said}\n") == 1
+    for section, key in (
+        ("vehicle", "name"),
+        ("known", "a"),
+        ("sensor", "position"),
+        ("load", "items"),
+        ("drop", "wheels"),
+    ):
+        assert meaning(section, key)
+        assert text.count(f"# {meaning(section, key)}\n") == 1
+    assert {load.name: load for load in read(path).loads} == {load.name: load for load in campaign.loads}
+    assert read(path).known == campaign.known
 
 
 def test_names_stay_in_the_folder_and_apart(tmp_path: Path) -> None:

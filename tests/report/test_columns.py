@@ -82,7 +82,7 @@ def test_columns_that_do_not_fit_make_a_block_of_their_own() -> None:
 
 def test_rows_become_lists_where_no_column_fits_beside_the_name() -> None:
     table = Table("t", ("file", "reading"), (("a_long_name.csv", "1.2345678"),), frozenset(("reading",)))
-    assert texts(arrange(table, 20)) == ["a_long_name.csv", "  reading: 1.2345678"]
+    assert texts(arrange(table, 20)) == ["file", "a_long_name.csv", "  reading: 1.2345678"]
 
 
 @pytest.mark.parametrize("width", [1, 5, 11, 40])

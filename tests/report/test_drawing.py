@@ -185,7 +185,7 @@ def test_names_of_every_kind(check: Check, tmp_path: Path) -> None:
     drops = tuple(replace(check.drops[0], file=name, load="<&>$x$") for name in NAMES)
     count = len(NAMES)
     many = Check(drops, (), check.recorded * count)
-    written = write_check(many, tmp_path / "check")
+    written = write_check(many, tmp_path / "check", page=False, drawings=True)
     assert len({path.name.lower() for path in written}) == len(NAMES)
     assert all(path.parent == tmp_path / "check" for path in written)
     for path, name in zip(written, NAMES, strict=True):

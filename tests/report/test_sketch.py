@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import combinations
@@ -13,10 +14,10 @@ import pytest
 import sprung
 from sprung.estimate import Known
 from sprung.recording import Campaign, ModelChoice
-from sprung.report import vehicle_sketch
+from sprung.report import blank_sketch, sketch_sheet, vehicle_sketch
 from sprung.report.sketch import Disc, Drawing, Stroke, Words, drawing_svg
 from sprung.report.sketch.labels import Box, text_box
-from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Item, Load, Sensor, Vehicle
+from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle
 
 KNOWN = {"a": Known(1.25), "b": Known(1.51), "t_f": Known(0.74), "t_r": Known(0.70, 0.01)}
 CORNERS = [("fl", 0.1, 0.7), ("fr", 0.1, -0.7), ("rl", -2.9, 0.7), ("rr", -2.9, -0.7)]
@@ -44,6 +45,11 @@ def boxes(drawing: Drawing) -> Iterator[tuple[str, Box]]:
 
 def dots(drawing: Drawing) -> list[tuple[float, float]]:
     return [shape.centre for shape in drawing.shapes if isinstance(shape, Disc) and shape.kind == "sensor"]
+
+
+def written(svg: str) -> list[str]:
+    """The texts of an SVG file."""
+    return [re.sub(r"<[^>]*>", "", text) for text in re.findall(r"<text[^>]*>(.*?)</text>", svg)]
 
 
 def assert_legible(drawing: Drawing) -> None:
@@ -132,6 +138,40 @@ def test_usual_vehicles_are_legible(vehicle: Vehicle) -> None:
     simulated = sprung.simulate(vehicle, drops=[{"wheels": ["fl"]}], noise=0.02, seed=1)
     for drawing in vehicle_sketch(simulated).drawings:
         assert_legible(drawing)
+
+
+def test_short_half_distances_apart_are_legible() -> None:
+    """Those of the paper's bus: 0.4 m beside a wheelbase of 3.95 m; the dampers' are not known."""
+    known = {"t_f2": Known(0.4), "t_r2": Known(0.5), "a": Known(2.22)}
+    for drawing in vehicle_sketch(campaign(wheelbase=Known(3.95), known=known)).drawings:
+        assert_legible(drawing)
+
+
+def test_a_position_that_is_not_known_is_named_and_not_drawn() -> None:
+    """Of body sensors, of a wheel sensor whose station is open, and of a load of which only totals are known."""
+    unplaced = [Sensor(channel="on_the_body", on="body"), Sensor(channel="on_a_wheel", on=None)]
+    total = Load(name="totals", added=Added(mass=470))
+    sketch = vehicle_sketch(campaign(sensors=(*SENSORS[:2], *unplaced), loads=(EMPTY, total, Load(name="open"))))
+    assert "position of on_the_body" in sketch.unknown
+    assert "wheel station of on_a_wheel" in sketch.unknown
+    assert "where load totals lies (470 kg in all)" in sketch.unknown
+    assert "where load open lies" in sketch.unknown
+    for drawing in sketch.drawings:
+        assert not {"on_the_body", "on_a_wheel"} & set(words(drawing))
+        assert len(dots(drawing)) == 2
+
+
+def test_a_blank_one_to_print_has_no_numbers() -> None:
+    said = written(blank_sketch())
+    assert {"wheelbase ________ m", "a ________ m", "b ________ m", "sensor (channel)", "not to scale"} <= set(said)
+    assert not any(letter.isdigit() for text in said for letter in text)
+
+
+def test_a_sketch_of_its_own_is_a_file() -> None:
+    sheet = sketch_sheet(vehicle_sketch(campaign()))
+    assert sheet.startswith("<?xml")
+    assert "var(" not in sheet  # it needs no page's colours
+    assert {"Plan view", "Side view", "body_fl", "wheelbase 2.76 m"} <= set(written(sheet))
 
 
 def test_names_are_escaped_and_shortened() -> None:

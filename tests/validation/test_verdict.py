@@ -59,7 +59,12 @@ def spoil_friction(clean: Campaign) -> Campaign:
 
 @pytest.mark.parametrize(
     ("spoil", "code"),
-    [(spoil_sign, "sign"), (spoil_exchange, "exchanged"), (spoil_unit, "unit"), (spoil_place, "position")],
+    [
+        (spoil_sign, "sign"),
+        (spoil_unit, "unit"),
+        pytest.param(spoil_exchange, "exchanged", marks=pytest.mark.long),
+        pytest.param(spoil_place, "position", marks=pytest.mark.long),
+    ],
 )
 def test_what_can_be_put_right_is_accepted_by_name_only(spoil: object, code: str) -> None:
     assert callable(spoil)
@@ -68,6 +73,7 @@ def test_what_can_be_put_right_is_accepted_by_name_only(spoil: object, code: str
     assert [fault.code for fault in result.faults] == [code]
 
 
+@pytest.mark.long
 def test_what_the_model_does_not_explain_is_not_accepted() -> None:
     spoilt = spoil_friction(campaign())
     drops, recordings = (spoilt.drops[::2], spoilt.recordings[::2])

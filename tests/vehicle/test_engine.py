@@ -100,6 +100,7 @@ def test_wanted() -> None:
     assert sprung.identify(campaign, extras=["engine"]).fit.model == ("engine",)
 
 
+@pytest.mark.long
 def test_beside_friction() -> None:
     rubbing = replace(WITH_ENGINE, F_f=80.0, F_r=80.0, s_f=4e5, s_r=4e5)
     drops = [

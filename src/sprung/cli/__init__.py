@@ -10,7 +10,8 @@ from sprung.cli import identifying as identifying
 from sprung.cli import measuring as measuring
 from sprung.cli.app import app
 from sprung.cli.helping import readable
-from sprung.cli.output import BAD_INPUT, DEFECT, complain
+from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, complain
+from sprung.cli.stopping import stopped_before, stopping_like_ctrl_c, was_stopped
 from sprung.errors import SprungError
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -18,14 +19,25 @@ _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def main() -> None:
-    """Run the command line; exit status 0, 1, 2 or 3 as the contract has it, 130 when it is interrupted."""
+    """Run the command line; exit status 0, 1, 2 or 3 as the contract has it, 130 on Ctrl-C, 143 on SIGTERM."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that knows no ² must still get the numbers
+    with stopping_like_ctrl_c():
+        _run()
+
+
+def _run() -> None:
     for variable in _THREADS:  # every matrix is small: threads would only wait for each other
         os.environ.setdefault(variable, "1")
     try:
         app(prog_name="sprung")
+    except SystemExit as leaving:
+        if leaving.code == INTERRUPTED and (stopped := stopped_before(leaving)) is not None:
+            raise SystemExit(was_stopped(stopped)) from None
+        raise
+    except KeyboardInterrupt as stopped:
+        raise SystemExit(was_stopped(stopped)) from None
     except SprungError as error:
         complain(readable(f"{_headline(error)}\n{error}"))
         raise SystemExit(BAD_INPUT) from None

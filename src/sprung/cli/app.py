@@ -12,7 +12,8 @@ from typer.core import TyperGroup
 import sprung
 from sprung.cli.completing import campaigns
 from sprung.cli.helping import Command, group_help
-from sprung.cli.output import INTERRUPTED, complain, say
+from sprung.cli.output import say
+from sprung.cli.stopping import was_stopped
 
 ORDER = (
     "demo",
@@ -32,7 +33,7 @@ ORDER = (
 
 
 class Commands(TyperGroup):
-    """The commands; Ctrl-C ends any of them with the shell's own status and without a traceback."""
+    """The commands; Ctrl-C and SIGTERM end any of them with the shell's own status and without a traceback."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """List the commands in the order of work."""
@@ -50,9 +51,8 @@ class Commands(TyperGroup):
         """Run the command that was asked for."""
         try:
             return super().invoke(ctx)
-        except KeyboardInterrupt:
-            complain("sprung was interrupted.")
-            raise SystemExit(INTERRUPTED) from None
+        except KeyboardInterrupt as stopped:
+            raise SystemExit(was_stopped(stopped)) from None
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -77,6 +77,12 @@ app = Program(
 
 CampaignFile = Annotated[
     Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.", autocompletion=campaigns)
+]
+Force = Annotated[
+    bool,
+    typer.Option(
+        "--force", help="Overwrite files that sprung did not write, or that were changed since it wrote them."
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
 

@@ -10,9 +10,11 @@ from typing import Annotated, Any, Optional
 import typer
 
 import sprung
-from sprung.cli.app import CampaignFile, Json, app
+from sprung.cli.app import CampaignFile, Force, Json, app
 from sprung.cli.completing import parameters, results
-from sprung.cli.output import REJECTED, say, say_json, working
+from sprung.cli.output import DEFECT, REJECTED, complain, say, say_json, working
+from sprung.errors import InputError, Omissions
+from sprung.progress import Progress, Step
 
 
 @app.command(epilog="Example: [bold]sprung identify campaign.toml -o results[/bold]")
@@ -42,20 +44,57 @@ def identify(
     report: Annotated[
         bool, typer.Option("--report/--no-report", help="Write report.html, for people to look at.")
     ] = True,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Identify every parameter and write the results folder (default: results/ beside the campaign)."""
+    folder = output or (campaign if campaign.is_dir() else campaign.parent) / "results"
+    if not force:
+        _refuse_overwriting(folder, sprung.report.REPORT_FILES if report else sprung.report.RESULT_FILES)
     with working("reading the recordings") as progress:
-        read = sprung.read(campaign)
-        folder = output or (read.path or campaign).parent / "results"
-        result = sprung.identify(read, profile=profile or (), fall=fall, amplitude=report, progress=progress)
-        progress("writing the results")
-        written = sprung.report.write_results(result, folder, report)
-    conclude(result, written, as_json)
+        read = sprung.read(campaign, progress=progress)
+        saved = identify_and_save(read, folder, report, force, progress, profile=profile or (), fall=fall)
+    conclude(saved.result, saved.files, as_json)
+
+
+def _refuse_overwriting(*folders_and_files: Any) -> None:
+    """Refuse files that sprung did not write or that were changed since, in folder after folder, before the work is done."""
+    each = zip(folders_and_files[::2], folders_and_files[1::2], strict=True)
+    if problems := [
+        problem for folder, files in each for problem in sprung.recording.overwriting_problems(folder, files)
+    ]:
+        raise InputError(problems)
+
+
+def identify_and_save(
+    campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, **options: Any
+) -> Any:
+    """Identify a campaign and save the result at once; what decorates it comes after that and may fail, or be interrupted."""
+    found = sprung.pipeline.identify_campaign(campaign, progress=progress, **options)
+    progress(Step("writing results.json and series.npz"))
+    try:
+        saved = sprung.report.save_result(found.result, folder, overwrite=force)
+    except InputError:
+        say(sprung.report.text_of(sprung.report.result_view(found.result)))  # better seen than lost
+        raise
+    if not report:
+        return saved
+    try:
+        result = sprung.pipeline.with_amplitudes(found, progress)
+        progress(Step("drawing the report"))
+        return sprung.report.add_report(result, folder, overwrite=force)
+    except KeyboardInterrupt:
+        complain(
+            f"The results are complete: {', '.join(map(str, saved.files))}\n"
+            f"Only the report is missing; write it with: sprung report {shlex.quote(str(folder))}"
+        )
+        raise
 
 
 def conclude(result: Any, written: Sequence[Path], as_json: bool) -> None:
     """Print a result and leave with the status that belongs to its verdict."""
+    for omission in result.omissions:
+        complain(omission)
     if as_json:
         say_json(result.to_json())
     else:
@@ -74,15 +113,20 @@ def report(
         ),
     ],
     pdf: Annotated[bool, typer.Option("--pdf", help="Write report.pdf too.")] = False,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Write the report of a result again, from its folder alone."""
     with working("writing the report"):
-        written = sprung.report.write_report(folder, pdf)
+        saved = sprung.report.write_report(folder, pdf, overwrite=force)
+    for omission in saved.result.omissions:
+        complain(omission)
     if as_json:
-        say_json({"written": [str(path) for path in written]})
+        say_json({"written": [str(path) for path in saved.files]})
     else:
-        say(f"Written: {', '.join(map(str, written))}\n")
+        say(f"Written: {', '.join(map(str, saved.files))}\n")
+    if pdf and len(saved.files) < 2:
+        raise typer.Exit(DEFECT)
 
 
 @app.command(epilog="Example: [bold]sprung validate campaign.toml -o validation[/bold]")
@@ -94,16 +138,25 @@ def validate(
             "-o", "--output", metavar="DIR", help="Where to write numbers, series and drawings (default: nowhere)."
         ),
     ] = None,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Hold the identified vehicle against each drop: fitted, predicted by the other drops, and against amplitude."""
+    if output is not None and not force:
+        _refuse_overwriting(output, ("validation.npz", "validation.json"))
     with working("reading the recordings") as progress:
-        found = sprung.validate(sprung.read(campaign), progress=progress)
-    written: tuple[Path, ...] = ()
-    if output is not None:
-        with working("drawing"):
-            drawings = sprung.report.draw_validation(found)
-            written = sprung.report.write_validation(found, output.resolve(), drawings)
+        found = sprung.validate(sprung.read(campaign, progress=progress), progress=progress)
+        omissions = Omissions(found.result.omissions)
+        written: tuple[Path, ...] = ()
+        if output is not None:
+            folder = output.resolve()
+            written = sprung.report.write_validation(found, folder, {}, overwrite=force)
+            progress(Step("drawing"))
+            with omissions.noting("The validation"):
+                drawings = sprung.report.draw_validation(found)
+                written = sprung.report.write_validation(found, folder, drawings, overwrite=force)
+    for omission in omissions.sentences:
+        complain(omission)
     if as_json:
         say_json(found.document())
     else:
@@ -117,15 +170,23 @@ def validate(
 @app.command(epilog="Example: [bold]sprung demo[/bold]")
 def demo(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write an example campaign, the paper's school bus, and identify it."""
-    with working("dropping the school bus") as progress:
-        written = sprung.write(sprung.study.demo_campaign(), folder)
-        result = sprung.identify(sprung.read(written), amplitude=True, progress=progress)
-        files = sprung.report.write_results(result, folder / "results")
-    conclude(result, files, as_json)
+    """Write an example campaign, the paper's school bus, identify it, and show the true values beside the estimates."""
+    with working("simulating the drops of the school bus") as progress:
+        campaign = sprung.study.demo_campaign()
+        if not force:
+            _refuse_overwriting(
+                folder, sprung.recording.campaign_files(campaign), folder / "results", sprung.report.REPORT_FILES
+            )
+        written = sprung.write(campaign, folder, overwrite=force)
+        read = sprung.read(written, progress=progress)
+        saved = identify_and_save(read, folder / "results", True, force, progress)
+    conclude(saved.result, saved.files, as_json)
     if not as_json:
+        truth = sprung.study.true_values(saved.result, sprung.study.DEMO_VEHICLE)
+        say(f"\n{sprung.report.text_of(sprung.report.truth_view(truth))}")
         say(
             f"\nThe recordings and what was known beforehand:     {written}\n"
             f"Everything that was found, to look at:            {folder / 'results' / 'report.html'}\n"

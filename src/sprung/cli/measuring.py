@@ -11,9 +11,10 @@ import typer
 
 import sprung
 from sprung.cli import completing
-from sprung.cli.app import Json, app
-from sprung.cli.output import REJECTED, advancing, complain, say, say_json, working
-from sprung.errors import Fault, InputError, Problem
+from sprung.cli.app import Force, Json, app
+from sprung.cli.output import REJECTED, complain, say, say_json, working
+from sprung.errors import Fault, InputError, Omissions, Problem
+from sprung.progress import Step
 
 
 @app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
@@ -33,11 +34,12 @@ def check(
     drawings: Annotated[
         bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file too.")
     ] = False,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Judge the recordings, identify nothing: what is usable, what is wrong, what is missing. Needs no geometry."""
-    with working("reading the recordings"):
-        found = sprung.check(campaign)
+    with working("reading the recordings") as progress:
+        found = sprung.check(campaign, progress=progress)
     if not found.usable:
         raise InputError(
             Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
@@ -45,12 +47,12 @@ def check(
     beside = campaign if campaign.is_dir() else campaign.parent
     folder = (output or beside / "check").resolve()
     written: tuple[Path, ...] = ()
+    omissions = Omissions()
     if page or drawings:
-        try:
-            with working("drawing"):
-                written = sprung.report.write_check(found, folder, page=page, drawings=drawings)
-        except InputError as error:
-            complain(f"Nothing was written: {error}")
+        with working("drawing"), omissions.noting("The page of the check", "written"):
+            written = sprung.report.write_check(found, folder, page=page, drawings=drawings, overwrite=force)
+    for omission in omissions.sentences:
+        complain(omission)
     pages = [path for path in written if path.name == sprung.report.CHECK_FILE]
     drawn = [str(path) for path in written if path not in pages]
     if as_json:
@@ -114,23 +116,32 @@ def modal(
     start: Annotated[
         Optional[float],  # noqa: UP045 (typer reads it)
         typer.Option(
-            help="Of recordings alone: where the free decay begins, s on their clock (default: at the largest reading)."
+            help="Of recordings alone: where the free decay begins, s on their clock "
+            "(default: after the landing of each drop that is found, else at the largest reading)."
         ),
     ] = None,
     diagram: Annotated[bool, typer.Option("--diagram", help="Draw a stabilisation diagram beside it.")] = False,
     as_json: Json = False,
 ) -> None:
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
-    with working("reading the recordings"):
+    with working("reading the recordings") as progress:
         if sprung.is_recordings(campaign):
             found = sprung.modes(
-                campaign, method=method, order=order, start=start, amplitude=amplitude, diagram=diagram
+                campaign,
+                method=method,
+                order=order,
+                start=start,
+                amplitude=amplitude,
+                diagram=diagram,
+                progress=progress,
             )
             faults: tuple[Fault, ...] = ()
         else:
-            read = sprung.read(campaign)
-            found = sprung.modes(read, method=method, order=order, amplitude=amplitude, diagram=diagram)
-            faults = sprung.check(read).faults
+            read = sprung.read(campaign, progress=progress)
+            found = sprung.modes(
+                read, method=method, order=order, amplitude=amplitude, diagram=diagram, progress=progress
+            )
+            faults = sprung.check(read, progress=progress).faults
     if as_json:
         say_json(
             {
@@ -156,12 +167,14 @@ def simulate(
     rate: Annotated[float, typer.Option(max=1e5, help="Samples per second.")] = 500.0,
     noise: Annotated[float, typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square.")] = 0.02,
     seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 1,
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
-    with working("simulating"):
-        campaign = sprung.simulate(vehicle, rate=rate, noise=noise, seed=seed)
-        written = sprung.write(campaign, output)
+    with working("reading the vehicle") as progress:
+        campaign = sprung.simulate(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
+        progress(Step("writing the campaign"))
+        written = sprung.write(campaign, output, overwrite=force)
     if as_json:
         say_json({"campaign": str(written), "drops": [drop.file for drop in campaign.drops]})
     else:
@@ -204,12 +217,13 @@ def plan(
 @app.command(epilog="Example: [bold]sprung new measurements[/bold]")
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="The folder with the recordings.")],
+    force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Draft campaign.toml from recordings: find the drops in them, tell the sensors, mark what is missing."""
-    with advancing("looking for drops") as progress:
-        drafted = sprung.draft(folder, progress=progress)
-        written = drafted.write()
+    with working("looking for drops") as progress:
+        drafted = sprung.draft(folder, progress=progress, overwrite=force)
+        written = drafted.write(overwrite=force)
     if as_json:
         say_json(drafted.document())
     else:

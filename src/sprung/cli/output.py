@@ -6,36 +6,86 @@ import io
 import json
 import os
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+from rich.live import Live
+from rich.spinner import Spinner
+from rich.text import Text
+
+from sprung.progress import Progress, Step
 
 DEFECT = 1
 BAD_INPUT = 2
 REJECTED = 3
 INTERRUPTED = 130
-"""Exit statuses; the last is the shell's own for Ctrl-C."""
+TERMINATED = 143
+"""Exit statuses; the last two are the shell's own for Ctrl-C and SIGTERM."""
+
+_SOON = 2.0
+"""Seconds of a stage after which the rest of it is estimated."""
 
 
 @contextmanager
-def working(first: str) -> Iterator[Callable[[str], None]]:
-    """Show what is being done while somebody watches; standard output stays clean."""
+def working(first: str) -> Iterator[Progress]:
+    """Show in one line of a terminal what is being done and for how long; into a pipe or a file nothing is written.
+
+    Parameters
+    ----------
+    first
+        What is done first.
+
+    Yields
+    ------
+    Progress
+        To be called with each step that begins.
+    """
     console = Console(stderr=True)
-    with console.status(first) as status:
-        yield status.update
+    line = StatusLine(Step(first))
+    if not console.is_terminal:
+        yield line.begin
+        return
+    with Live(
+        line, console=console, transient=True, refresh_per_second=4, redirect_stdout=False, redirect_stderr=False
+    ):
+        yield line.begin
 
 
-@contextmanager
-def advancing(what: str) -> Iterator[Callable[[float], None]]:
-    """Show how far something long has come, while somebody watches; takes the part that is done, 0 to 1."""
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task(what, total=1.0)
-        yield lambda fraction: bar.update(task, completed=fraction)
+class StatusLine:
+    """One line: time since the command began, the step it is at, and how long this stage will probably take still."""
+
+    def __init__(self, first: Step, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self._began = self._stage_began = clock()
+        self._step = first
+        self._spinner = Spinner("dots")
+
+    def begin(self, step: Step) -> None:
+        """Go on to a step."""
+        if step.stage != self._step.stage:
+            self._stage_began = self._clock()
+        self._step = step
+
+    def text(self) -> str:
+        """Return the line without its turning sign."""
+        now = self._clock()
+        elapsed, in_stage, done = _minutes(now - self._began), now - self._stage_began, self._step.done
+        if done is None or not 0 < done < 1 or in_stage < _SOON:
+            return f"{elapsed} {self._step}"
+        return f"{elapsed} (about {_minutes(in_stage * (1 - done) / done)} more) {self._step}"
+
+    def __rich__(self) -> Text:
+        frames = self._spinner.frames
+        turning = frames[int(8 * self._clock()) % len(frames)]
+        return Text(f"{turning} {self.text()}", no_wrap=True, overflow="ellipsis")
+
+
+def _minutes(seconds: float) -> str:
+    whole = round(seconds)
+    return f"{whole // 60}:{whole % 60:02d}"
 
 
 def say(text: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,6 +14,7 @@ from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.stepped import SteppedLikelihood, SteppedPlace
 from sprung.identification.summit import NEAR, Summit
 from sprung.prepare import Decay
+from sprung.progress import Progress, Step, silent
 from sprung.vehicle import NonlinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
@@ -47,7 +48,7 @@ def ascend_stepped(
     begun: bool = False,
     most: int = _MOST,
     tilting: bool = False,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Summit:
     """Maximise the likelihood of all decays under a vehicle with nonlinear forces.
 
@@ -77,13 +78,14 @@ def ascend_stepped(
     tilting
         Whether the sensors turn with the body, and feel the less of gravity.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
 
     Returns
     -------
     Summit
     """
-    progress("stepping all drops with " + ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws))
+    laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
+    progress(Step(f"fitting with {laws}, step by step through all drops"))
     steps, values = 0, dict(start)
     near_it = max(enough, NEAR)
     stages = [([_begun(decay) for decay in decays], near_it, _COARSE)] if begun or not near else []

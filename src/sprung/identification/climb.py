@@ -142,9 +142,15 @@ class Climb:
             (m/s²)², shape (channel,).
         """
         freedom = np.maximum(self._observations - self._constants - leverage, 1.0)
-        variance = residual.sum(axis=0) / freedom + NOISE_FLOOR**2 * self._energy / self._observations
+        variance = residual.sum(axis=0) / freedom + self.least_variance
         # A channel that no drop has weighs nothing, whatever its noise.
         return np.where(self._constants > 0, variance, 1.0)
+
+    @property
+    def least_variance(self) -> Real:
+        """What every noise variance is above, so that rounding is not taken for information; (m/s²)², shape (channel,)."""
+        least: Real = NOISE_FLOOR**2 * self._energy / self._observations
+        return least
 
     def cost(self, point: Point) -> float:
         """Give minus twice the log-likelihood, up to a constant."""

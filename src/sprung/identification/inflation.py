@@ -23,7 +23,11 @@ _SEEN = 1e-9
 
 
 def of_colour(
-    residuals: Iterable[Real], rates: Sequence[float], span: float = _SPAN, counted: Real | float = 1.0
+    residuals: Iterable[Real],
+    rates: Sequence[float],
+    span: float = _SPAN,
+    counted: Real | float = 1.0,
+    least: Real | float = 0.0,
 ) -> Real:
     """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
 
@@ -38,6 +42,9 @@ def of_colour(
     counted
         Part of the samples that the fit counts, shape (channel,) or one for all; fewer than there are where some were
         interpolated.
+    least
+        Variance below which residuals are rounding, of whose colour nothing follows, (m/s²)²; shape (channel,) or one for
+        all.
 
     Returns
     -------
@@ -57,7 +64,7 @@ def of_colour(
             [np.where(used, energy, 0.0), np.where(used, length * mean, 0.0), used * count * length, used * count]
         )
     total, means, samples, batches = np.sum(sums, axis=0)
-    variance = np.maximum(total / np.maximum(samples, 1.0), np.finfo(float).tiny)
+    variance = np.maximum(total / np.maximum(samples, 1.0), np.maximum(least, np.finfo(float).tiny))
     ratio = counted * means / np.maximum(batches, 1.0) / variance
     return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
 

@@ -249,7 +249,8 @@ def _colours(summit: Summit, fitted: Sequence[Real], decays: Sequence[Decay]) ->
     # Samples that were interpolated are coloured, but counted for no more than those that were taken.
     there = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
     counted = summit.climb.likelihood.observations.sum(axis=0) / np.maximum(there, 1)
-    return of_colour(residual_records(fitted, decays), [decay.rate for decay in decays], counted=counted)
+    rates = [decay.rate for decay in decays]
+    return of_colour(residual_records(fitted, decays), rates, counted=counted, least=summit.climb.least_variance)
 
 
 def residual_records(fitted: Sequence[Real], decays: Sequence[Decay]) -> Iterator[Real]:

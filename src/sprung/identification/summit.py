@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -26,6 +26,7 @@ from sprung.identification.knowledge import Coordinates, Knowledge
 from sprung.identification.likelihood import Likelihood
 from sprung.identification.start import Outline, catalogue
 from sprung.prepare import Decay
+from sprung.progress import Progress, Step, silent
 from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_names
 
 Real = NDArray[np.float64]
@@ -144,7 +145,7 @@ def ascend(
     guess: Mapping[str, float] = MappingProxyType({}),
     starts: int = STARTS,
     enough: float = CONVERGED,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Summit:
     """Maximise the likelihood of all decays.
 
@@ -168,7 +169,7 @@ def ascend(
     enough
         Expected gain in log-likelihood at which to stop.
     progress
-        Told what is being done.
+        Called with each step that begins.
 
     Returns
     -------
@@ -178,7 +179,7 @@ def ascend(
         # As far as the release has told, all clocks are one: near enough for a start.
         together = [replace(decay, clocks=()) for decay in decays]
         first = ascend(together, models, sensors, known, guess=guess, starts=starts, enough=NEAR, progress=progress)
-        progress("setting the loggers' clocks")
+        progress(Step("setting the loggers' clocks"))
         apart = ascend(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
     outline = Outline.of(known, sensors)
@@ -198,12 +199,12 @@ def ascend(
     if guess:
         places.insert(0, at(_completed(guess, {**usual[0], **(direct or {})})))
     if len(tried) < starts:
-        progress(f"trying {len(usual)} usual vehicles")
+        progress(Step(f"rating {len(usual)} usual vehicles as starts"))
         order = np.argsort(climb.first_costs(likelihood, places), kind="stable")
         tried += [(places[i], FAR) for i in order[: starts - len(tried)]]
     ends: list[Point] = []
     for number, (u, damping) in enumerate(tried, start=1):
-        progress(f"fitting from start {number} of {len(tried)}")
+        progress(Step("fitting from a start", number, len(tried)))
         summit = min(ends, key=climb.cost, default=None)
         ends.append(climb.to_the_top(climb.knowledge.bind(u), summit, enough, damping))
     return _best(climb, ends, enough)

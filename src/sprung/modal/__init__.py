@@ -1,6 +1,7 @@
 """Modes from decays: poles, shapes and names, without a vehicle model."""
 
 from sprung.modal.amplitude import ModeTrace, follow_modes
+from sprung.modal.confirmation import confirmed
 from sprung.modal.criteria import complexity
 from sprung.modal.era import eigensystem_realisation
 from sprung.modal.identified import Modes, Rejected
@@ -30,6 +31,7 @@ __all__ = [
     "StateVariables",
     "blocks",
     "complexity",
+    "confirmed",
     "correlate",
     "cramer_rao_bound",
     "eigensystem_realisation",

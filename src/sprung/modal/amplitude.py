@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
+from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
 from sprung.modal.likelihood import Poles
 from sprung.modal.modes import Mode
@@ -121,7 +122,8 @@ def _windows(record: Real, rate: float, poles: Poles, which: int) -> list[tuple[
         spread = bound_alone(stand.weighted(1 / (stand.variance * lost)), which)
         own = Mode(complex(stand.poles.exponent[which] * rate), stand.poles.shapes[:, which], spread=spread)
         frequency_std, ratio_std = own.frequency_std or 0.0, own.damping_ratio_std or 0.0
-        if frequency_std * length / rate > _SURE or not _LEAST < own.damping_ratio < _MOST:
+        aliased = own.damped_frequency > NEAR_NYQUIST * rate / 2
+        if aliased or frequency_std * length / rate > _SURE or not _LEAST < own.damping_ratio < _MOST:
             if rows:
                 break  # the motion has died
             continue

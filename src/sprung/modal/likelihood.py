@@ -203,9 +203,13 @@ class Stand:
     @cached_property
     def variance(self) -> Real:
         """σ² of each channel that makes the records likeliest, shape (channel,)."""
-        energy, count = self.decays.energy.sum(axis=0), self.decays.numbers
-        floor = np.where(energy > 0, LEAST_NOISE**2 * energy, 1.0)
-        return np.asarray(np.maximum(self.residual.sum(axis=0), floor) / count)
+        return np.asarray(np.maximum(self.residual.sum(axis=0) / self.decays.numbers, self.least_variance))
+
+    @property
+    def least_variance(self) -> Real:
+        """What no σ² is below, as it would be rounding: shape (channel,)."""
+        energy = self.decays.energy.sum(axis=0)
+        return np.asarray(np.where(energy > 0, LEAST_NOISE**2 * energy, 1.0) / self.decays.numbers)
 
     @property
     def cost(self) -> float:

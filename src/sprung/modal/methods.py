@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import Problems, did_you_mean
 from sprung.modal.arma import autoregression
+from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
 from sprung.modal.emd import empirical_modes
 from sprung.modal.era import eigensystem_realisation
@@ -160,8 +161,17 @@ def identify_modes(records: Sequence[ArrayLike], rate: float, method: str = DEFA
         problems.add(f"{method}: records", "no motion in any channel", "a free decay", "Look at the recordings.")
     problems.raise_if_any()
     found = METHODS[method](arrays, rate, order)
-    kept, slow = _split(found.modes, arrays, rate, refusing=method not in _CREDULOUS)
-    return Modes(kept, (*found.rejected, *slow), method)
+    below, fast = _below_nyquist(found.modes, rate)
+    kept, slow = _split(below, arrays, rate, refusing=method not in _CREDULOUS)
+    return Modes(kept, (*found.rejected, *fast, *slow), method)
+
+
+def _below_nyquist(modes: tuple[Mode, ...], rate: float) -> tuple[tuple[Mode, ...], tuple[Rejected, ...]]:
+    """Leave out what changes its sign from sample to sample, or nearly so: noise, aliases and the edge of a filter do that."""
+    limit = NEAR_NYQUIST * rate / 2
+    fast = [mode for mode in modes if mode.damped_frequency > limit]
+    said = f"its frequency is above {limit:.4g} Hz, {NEAR_NYQUIST:.0%} of half the sampling rate"
+    return tuple(mode for mode in modes if mode not in fast), tuple(Rejected(mode.pole, said) for mode in fast)
 
 
 def _split(

@@ -103,7 +103,7 @@ def colour(stand: Stand) -> Real:
     """Give by how much the residuals' spectrum exceeds its mean where the motion is; at least 1, shape (channel,)."""
     power, motion = stand.left_spectrum.power.mean(axis=0), stand.decays.spectrum.power.mean(axis=0)
     weight = motion / np.maximum(motion.sum(axis=1, keepdims=True), 1e-300)
-    mean = np.maximum(power[:, 1:].mean(axis=1), 1e-300)
+    mean = np.maximum(power[:, 1:].mean(axis=1), stand.least_variance)
     return np.asarray(np.maximum((weight * power).sum(axis=1) / mean, 1.0))
 
 

@@ -106,7 +106,8 @@ def _colour_of_modes(stand: Stand) -> Real:
     """
     spectrum = stand.left_spectrum
     power = spectrum.power.mean(axis=0)
-    relative = power / np.maximum(power[:, 1:].mean(axis=1, keepdims=True), 1e-300)
+    # The spectrum of what is only rounding is no noise's: nothing follows from its colour.
+    relative = power / np.maximum(power[:, 1:].mean(axis=1), stand.least_variance)[:, None]
     poles = stand.poles.exponent * stand.decays.rate / (2 * np.pi)
     shares = np.abs(stand.poles.shapes) ** 2 * stand.weights[:, None]
     shares /= shares.sum(axis=0)

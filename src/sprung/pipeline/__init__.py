@@ -12,7 +12,7 @@ from sprung.pipeline.displays import (
 )
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.found import FoundMode, LoadModes
-from sprung.pipeline.identify import identify
+from sprung.pipeline.identify import Identification, identify, identify_campaign, with_amplitudes
 from sprung.pipeline.modes import ModesByLoad, modes
 from sprung.pipeline.plan import plan
 from sprung.pipeline.recordings import is_recordings
@@ -30,6 +30,7 @@ __all__ = [
     "DropReport",
     "FitReport",
     "FoundMode",
+    "Identification",
     "LoadModes",
     "ModesByLoad",
     "Recorded",
@@ -42,6 +43,7 @@ __all__ = [
     "derived_table",
     "draft",
     "identify",
+    "identify_campaign",
     "is_recordings",
     "load",
     "meaning_of",
@@ -52,4 +54,5 @@ __all__ = [
     "plan",
     "ratios_table",
     "validate",
+    "with_amplitudes",
 ]

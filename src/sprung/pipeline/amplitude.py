@@ -9,36 +9,35 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer, SkipValidation
 
-from sprung.identification import Fit
-from sprung.pipeline.choice import Choice
-from sprung.prepare import Decay
+from sprung.pipeline.stand import Fitted
+from sprung.progress import Progress, silent
 from sprung.validation import BodyMotion, ModeAmplitude, Trace, mode_amplitudes
-from sprung.vehicle import EMPTY, Sensor
+from sprung.vehicle import EMPTY
 
 
 def amplitudes_of(
-    fit: Fit, choice: Choice, decays: Sequence[Decay], sensors: Sequence[Sensor], motions: Sequence[BodyMotion]
+    fitted: Fitted, motions: Sequence[BodyMotion], progress: Progress = silent
 ) -> tuple[ModeAmplitude, ...]:
     """Follow the modes of the body through the decays of one load: the empty vehicle's, where there are any.
 
     Parameters
     ----------
-    fit, choice
-        The fitted vehicle, and which model it is.
-    decays
-        What was fitted.
-    sensors
-        The sensors.
+    fitted
+        The campaign and its fit.
     motions
         Of the body, one for each decay.
+    progress
+        Called with each step that begins.
     """
-    loads = [decay.load for decay in decays]
+    choice = fitted.choice
+    loads = [decay.load for decay in fitted.prepared.decays]
     load = EMPTY.name if EMPTY.name in loads else loads[0]
     # Modes belong to a vehicle on the ground.
     grounded = replace(choice, airborne=False)
     model = grounded.stepped[load] if choice.nonlinear else choice.models[load]
     own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
-    return tuple(replace(one, load=load) for one in mode_amplitudes(fit, model, sensors, own))
+    found = mode_amplitudes(fitted.fit, model, fitted.campaign.sensors, own, progress)
+    return tuple(replace(one, load=load) for one in found)
 
 
 def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sprung.identification import USUAL_ENGINE, Summit, ascend, ascend_stepped, lost_without, mountings_of
 from sprung.pipeline.choice import Choice
 from sprung.prepare import Decay
+from sprung.progress import Progress
 from sprung.vehicle import (
     EXTRA_PARAMETERS,
     NEUTRAL,
@@ -67,7 +68,7 @@ def fit_from(
     decays: Sequence[Decay],
     before: Summit,
     enough: float,
-    progress: Callable[[str], None],
+    progress: Progress,
     states: Real | None = None,
     begun: bool = False,
     most: int = 100,
@@ -85,7 +86,7 @@ def fit_from(
     enough
         Expected gain in log-likelihood at which to stop.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
     states
         {X, Ẋ} of each drop at its first sample, shape (drop, state), where these decays begin elsewhere than those.
     begun

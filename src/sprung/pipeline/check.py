@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,6 +17,7 @@ from sprung.pipeline.clocks import ClockReport
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.series import Recorded
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
+from sprung.progress import Progress, silent
 from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
@@ -205,7 +206,7 @@ def _is_within(place: str, file: str) -> bool:
     return place.startswith(f"{file}: ")
 
 
-def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[float], None] | None = None) -> Check:
+def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = silent) -> Check:
     """Judge the recordings of a campaign; no geometry is needed for that.
 
     Parameters
@@ -214,7 +215,7 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[fl
         From `sprung.read`; or a campaign file, which need not be complete, or its folder; or a folder with nothing but
         recordings, for which a campaign is drafted as `sprung.draft` does.
     progress
-        Called while drafting with the part that is done, 0 to 1.
+        Called with each step that begins.
 
     Returns
     -------
@@ -227,15 +228,15 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Callable[[fl
     """
     if not isinstance(campaign, Campaign):
         campaign = _campaign_at(Path(campaign), progress)
-    return check_prepared(campaign, prepare(campaign))
+    return check_prepared(campaign, prepare(campaign, progress))
 
 
-def _campaign_at(path: Path, progress: Callable[[float], None] | None) -> Campaign:
+def _campaign_at(path: Path, progress: Progress) -> Campaign:
     """Read a campaign as far as it is written down, or draft one from recordings alone."""
     if not path.is_dir() or any(path.glob("*.toml")):
-        return read(path, complete=False)
+        return read(path, complete=False, progress=progress)
     drafted = draft(path, progress=progress)
-    campaign = read_document(tomllib.loads(drafted.text), path / FILE, complete=False)
+    campaign = read_document(tomllib.loads(drafted.text), path / FILE, complete=False, progress=progress)
     return replace(campaign, faults=(*campaign.faults, *_without_drop(drafted)))
 
 
@@ -272,9 +273,8 @@ def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
     file = drop.recording or drop.label
     codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
-    return DropReport(
-        file, drop.load, None, None, codes, kind=kind_of(drop.wheels), wheels=drop.wheels, name=drop.label
-    )
+    kind, title = kind_of(drop.wheels), drop.name or ""
+    return DropReport(file, drop.load, None, None, codes, kind=kind, wheels=drop.wheels, name=drop.label, title=title)
 
 
 def _report(

@@ -103,10 +103,10 @@ def derived_table(vehicle: str, derived: Mapping[str, Estimate]) -> Table:
     rows = []
     for name in (name for _, *names in _CHARACTERISTICS for name in names if name in derived):
         value, std, _, unit, _ = value_cells(derived[name])
-        rows.append((name, value, std, unit, meaning_of(name)))
-    headers = ("empty vehicle", "value", "±", "unit", "meaning")
+        rows.append((name, value, std, unit))
+    headers = ("empty vehicle", "value", "±", "unit")
     title = f"{vehicle}: masses, ride and wheel hop, one standard uncertainty"
-    return Table(title, headers, tuple(rows), frozenset(("value", "±")), ("meaning",))
+    return Table(title, headers, tuple(rows), frozenset(("value", "±")))
 
 
 def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tuple[Table, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -21,6 +21,7 @@ from sprung.pipeline.diagnosis import (
 from sprung.pipeline.flight import fly, is_needed
 from sprung.pipeline.stand import Fitted, Stand, begun
 from sprung.prepare import Decay
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign
 from sprung.vehicle import Tracks
 
@@ -38,7 +39,7 @@ def fit_campaign(
     extras: Sequence[str] | None = None,
     fall: bool | None = None,
     start: Mapping[str, float] = MappingProxyType({}),
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
 
@@ -77,7 +78,7 @@ def _is_sound(fitted: Fitted) -> bool:
     return fitted.fit.converged and not fitted.accused and fitted.fit.inflation < _SOUND
 
 
-def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
+def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
     """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
     if not _is_sound(fitted) or fitted.choice.followed:
         return fitted
@@ -98,7 +99,7 @@ def _with_flights(fitted: Fitted, progress: Callable[[str], None]) -> Fitted:
     )
 
 
-def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Callable[[str], None]) -> Fitted:
+def _with_the_fall(fitted: Fitted, wanted: bool | None, progress: Progress) -> Fitted:
     """Use the drops from their releases on, where that is wanted or needed, and where it says more."""
     if wanted is False or (wanted is None and not (_is_sound(fitted) and is_needed(fitted.fit))):
         return fitted
@@ -129,17 +130,18 @@ def _looked_at(stand: Stand) -> tuple[Hypothesis, ...]:
     suspicion, choice = stand.suspicion, stand.way.choice
     if suspicion == "none":
         return ()
-    stand.way.progress("looking for what is wrong")
+    progress = stand.way.progress
+    progress(Step("looking for what is wrong"))
     tracks: Tracks = "separate" if choice.open else choice.tracks
 
     def bench(decays: Sequence[Decay]) -> Bench:
         return Bench.of(stand.campaign, decays, tracks, choice.linear_extras)
 
     if suspicion == "contradicted":
-        return diagnose(bench(stand.way.decays))
+        return diagnose(bench(stand.way.decays), progress)
     # A sensor that tells something wrong may have told the landing wrong. Without any, what is left may be too little.
     safe = bench(without_looking_at_wheels(stand.campaign, stand.prepared.decays))
-    taken = diagnose(safe)
+    taken = diagnose(safe, progress)
     if safe.base.explained or any(not one.specific and one.fault.code != "drift" for one in taken):
-        return diagnose(bench(stand.prepared.decays)) or taken
+        return diagnose(bench(stand.prepared.decays), progress) or taken
     return taken

@@ -7,7 +7,7 @@ takes a few times longer than the decays alone. So it is done where it is asked 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,6 +19,7 @@ from sprung.pipeline.choice import Choice
 from sprung.pipeline.forces import tilted
 from sprung.pipeline.way import Way
 from sprung.prepare import Decay, Flight, Prepared, flights
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign
 from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
 
@@ -85,7 +86,7 @@ def fly(
     prepared: Prepared,
     summit: Summit,
     fit: Fit,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Flown | None:
     """Fit the drops from their releases on.
 
@@ -98,7 +99,7 @@ def fly(
     prepared
         The decays that were fitted, and what the recordings show.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
 
     Returns
     -------
@@ -108,7 +109,7 @@ def fly(
     found = flights(prepared.decays, campaign.drops, prepared.seen)
     if not any(found):
         return None
-    progress("using the fall")
+    progress(Step("using the fall"))
     begun = _begun(campaign, choice, summit, found)
     decays = tuple(one.decay if one else decay for one, decay in zip(found, prepared.decays, strict=True))
     airborne = replace(choice, airborne=True)

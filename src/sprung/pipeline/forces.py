@@ -27,6 +27,7 @@ from sprung.pipeline.candidates import (
 from sprung.pipeline.choice import Choice
 from sprung.pipeline.linear import trying
 from sprung.pipeline.way import ERRS, Way
+from sprung.progress import Step
 from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, separate_names
 
 STOPS = "bump-stop"
@@ -70,7 +71,7 @@ def nonlinear(way: Way, plain: Choice) -> Way:
     nonlinear = [extra for extra in way.choice.free if extra not in LINEAR_EXTRAS]
     if not nonlinear or any(decay.clocks for decay in way.decays):
         return way
-    way.progress("scoring " + ", ".join(nonlinear))
+    way.progress(Step(f"scoring {', '.join(nonlinear)}"))
     start, hopeful = _hopeful(way, nonlinear)
     if not hopeful:
         return start

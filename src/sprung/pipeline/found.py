@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.identification import UNNAMED, ModeEstimate
 from sprung.modal import (
+    APPROXIMATE,
     Diagram,
     Mode,
     Modes,
     ModeTrace,
     complexity,
+    confirmed,
     fft_frequencies,
     follow_modes,
     identify_modes,
@@ -25,6 +27,7 @@ from sprung.modal import (
     stabilisation_diagram,
 )
 from sprung.pipeline.displays import found_modes_table
+from sprung.progress import Progress, Step, silent
 from sprung.tables import Table, escaped
 from sprung.vehicle import Sensor
 
@@ -154,6 +157,8 @@ def examined(
     a: float | None = None,
     amplitude: bool = False,
     diagram: bool = False,
+    load: str = "",
+    progress: Progress = silent,
 ) -> LoadModes:
     """Identify the modes of some records and everything that is said of them.
 
@@ -171,17 +176,31 @@ def examined(
         Where the channels are, by which modes are named; without any they are numbered.
     a
         Front axle to the body's centre of gravity, m, if known.
+    load
+        On the vehicle, for what is told of the steps.
+    progress
+        Called with each step that begins.
     """
+    of_load = f" of load {load}" if load else ""
+    progress(Step(f"identifying the modes{of_load}"))
     found = identify_modes(records, rate, method, order)
+    drawn = stabilisation_diagram(records, rate) if diagram else None
+    # Of recordings alone nothing else is known by which an invented mode would stand out.
+    if not sensors and order is None and method not in APPROXIMATE:
+        found = confirmed(found, records, rate, drawn)
     names = (
         _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
     )
     peaks = fft_frequencies(records, rate, found)
+    if amplitude:
+        progress(Step(f"following the modes{of_load} through the decays"))
     traces = {id(trace.mode): trace for trace in follow_modes(records, rate, found)} if amplitude else {}
     estimates = tuple(
         _followed(_estimate(mode, name, peak), traces.get(id(mode)))
         for mode, name, peak in zip(found, names, peaks, strict=True)
     )
+    if diagram:
+        progress(Step(f"computing the stabilisation diagram{of_load}"))
     return LoadModes(
         estimates,
         method,
@@ -189,7 +208,7 @@ def examined(
         drops,
         tuple((one.pole, one.reason) for one in found.rejected),
         _unresolved(estimates, sensors, len(drops)),
-        stabilisation_diagram(records, rate) if diagram else None,
+        drawn,
     )
 
 
@@ -235,10 +254,10 @@ def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: in
     wheels = len({sensor.on for sensor in sensors} - {"body"})
     told = [mode for mode in modes if not mode.name.startswith("body")]
     if len(told) < wheels:
-        these = "1 drop of this load tells" if drops == 1 else f"{drops} drops of this load tell"
+        these = "1 drop of this load shows" if drops == 1 else f"{drops} drops of this load show"
         said.append(
-            f"{wheels} wheels hop in {wheels} modes, of which {these} {len(told)}: each may stand for several that are "
-            "close, and its name for one of them. Drops of other wheels would tell them apart."
+            f"{wheels} wheels have {wheels} modes of hop and tramp, of which {these} {len(told)}: each may stand for several "
+            "close ones, and its name for one of them. Drops of other wheels would separate them."
         )
     return tuple(said)
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from types import MappingProxyType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.errors import Omissions
 from sprung.identification import Fit, Summit, characteristics_of, conclude, estimate_of, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
@@ -29,7 +31,16 @@ from sprung.pipeline.way import Attempt
 from sprung.pipeline.withholding import withhold_estimates
 from sprung.planning import next_step
 from sprung.prepare import Decay
-from sprung.validation import BodyMotion, Misfit, body_motions, judge, judge_residuals, validate_drops
+from sprung.progress import Progress, Step, silent
+from sprung.validation import (
+    BodyMotion,
+    Misfit,
+    ModeAmplitude,
+    body_motions,
+    judge,
+    judge_residuals,
+    validate_drops,
+)
 from sprung.vehicle import EMPTY, LOAD_MASS, Tracks, Vehicle
 
 METHOD = "joint maximum likelihood"
@@ -44,7 +55,7 @@ def identify(
     start: Result | Vehicle | Mapping[str, float] | None = None,
     profile: str | Sequence[str] = (),
     amplitude: bool = False,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Result:
     """Identify every parameter of a vehicle from its drop tests.
 
@@ -68,9 +79,10 @@ def identify(
         maximum: for those that are weakly determined, whose interval is not symmetric. Also derived quantities
         (``total_mass``, ``front_axle_mass``, ``rear_axle_mass``, ``wheelbase``), or ``all`` for every parameter.
     amplitude
-        Whether to follow the body's modes through the decays, for frequency and damping against amplitude.
+        Whether to follow the body's modes through the decays, for frequency and damping against amplitude. Where that
+        fails, the result says so under ``omissions``.
     progress
-        Told in words what is being done.
+        Called with each step that begins, a `sprung.progress.Step`: a sentence, with its number where steps are counted.
 
     Returns
     -------
@@ -92,27 +104,86 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
+    found = identify_campaign(
+        campaign, tracks=tracks, extras=extras, fall=fall, start=start, profile=profile, progress=progress
+    )
+    return with_amplitudes(found, progress) if amplitude else found.result
+
+
+class Identification(NamedTuple):
+    """A result, and the fit that it was made from.
+
+    Attributes
+    ----------
+    fitted
+        The campaign and its fit.
+    result
+        Everything but what decorates it.
+    """
+
+    fitted: Fitted
+    result: Result
+
+
+def identify_campaign(
+    campaign: CampaignSource,
+    *,
+    tracks: Tracks | None = None,
+    extras: str | Sequence[str] | None = None,
+    fall: bool | None = None,
+    start: Result | Vehicle | Mapping[str, float] | None = None,
+    profile: str | Sequence[str] = (),
+    progress: Progress = silent,
+) -> Identification:
+    """Identify a vehicle, without anything that only decorates the result, so that it can be saved first.
+
+    Parameters
+    ----------
+    campaign, tracks, extras, fall, start, profile, progress
+        As for `identify`.
+    """
     tracks, extras = model_options(tracks, extras)
     begin = start_values(start)
-    campaign = campaign_from(campaign)
+    campaign = campaign_from(campaign, progress)
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
     options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
     if begin:
         options["start"] = [f"{name} = {value:g}" for name, value in begin.items()]
-    return result_of(fitted, asked, progress, amplitude=amplitude, options=options)
+    return Identification(fitted, result_of(fitted, asked, progress, options=options))
+
+
+def with_amplitudes(found: Identification, progress: Progress = silent) -> Result:
+    """Return a result with the amplitude curves of the body's modes, or with the reason why there are none.
+
+    Parameters
+    ----------
+    found
+        From `identify_campaign`.
+    progress
+        As for `identify`.
+    """
+    fitted, result = found
+    if result.verdict.state == "reject":
+        return result  # what does not describe the recordings has no modes to follow
+    omissions = Omissions(result.omissions)
+    amplitudes: tuple[ModeAmplitude, ...] = ()
+    with omissions.noting("The amplitude curves"):
+        motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+        amplitudes = amplitudes_of(fitted, motions, progress)
+    return replace(result, amplitude=amplitudes, omissions=omissions.sentences)
 
 
 def result_of(
     fitted: Fitted,
     profile: Sequence[str] = (),
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
     *,
-    amplitude: bool = False,
     options: Mapping[str, object] = MappingProxyType({}),
 ) -> Result:
     """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
     campaign, choice, why, prepared, summit, fit, path, accused = fitted
+    progress(Step("judging the fit: each drop predicted by the others"))
     decays = prepared.decays
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, prepared)
@@ -124,9 +195,6 @@ def result_of(
     verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(profile, summit, fit, choice.known, progress)
-    amplitude = amplitude and not rejected
-    if amplitude:
-        progress("following the modes of the body through the decays")
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     result = Result(
         version=version("sprung"),
@@ -149,7 +217,6 @@ def result_of(
         faults=(*looked_at.faults, *accused),
         validation=validated,
         setup=setup_of(campaign, fit, choice.known, options),
-        amplitude=amplitudes_of(fit, choice, decays, campaign.sensors, motions) if amplitude else (),
         series={
             decay.name: _series(decay, fitted, motion, channels)
             for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)

@@ -13,6 +13,7 @@ from sprung.identification import NEAR, ascend, expected_gain
 from sprung.pipeline.candidates import ENGINE, SEPARATE, has_masses, neutral_start, variants
 from sprung.pipeline.choice import Choice
 from sprung.pipeline.way import Way
+from sprung.progress import Step
 from sprung.vehicle import LINEAR_EXTRAS
 
 _WHOLLY = frozenset({"asymmetry", "rigid-axle", "engine"})
@@ -85,7 +86,7 @@ def trying(way: Way, extra: str) -> Way:
 
 def _fitted(way: Way, larger: Choice, extra: str) -> Way:
     """Fit a model with one more extra; with an engine, without which all may be wrong, from nothing as well."""
-    way.progress(f"with {extra}")
+    way.progress(Step(f"fitting with {extra}"))
     begins = extra != ENGINE or has_masses(larger, way.summit.parameters)
     ends = [way.fitting(larger)] if begins else []
     if extra == ENGINE:

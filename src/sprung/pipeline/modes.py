@@ -17,6 +17,7 @@ from sprung.pipeline.found import LoadModes, examined
 from sprung.pipeline.options import CampaignSource, campaign_from
 from sprung.pipeline.recordings import RECORDINGS, is_recordings, modes_of_arrays, modes_of_recordings
 from sprung.prepare import Decay, prepare
+from sprung.progress import Progress, silent
 from sprung.recording import Campaign
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ def modes(
     start: float | None = None,
     amplitude: bool = False,
     diagram: bool = False,
+    progress: Progress = silent,
 ) -> ModesByLoad:
     """Find modes from free decays; no vehicle model is needed.
 
@@ -84,6 +86,8 @@ def modes(
         Whether to follow each mode through the decays, for frequency and damping against amplitude.
     diagram
         Whether to draw up a stabilisation diagram beside it.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -114,11 +118,13 @@ def modes(
         return ModesByLoad({RECORDINGS: in_memory})
     _refuse("arrays", rate=rate, channels=channels)
     if not isinstance(source, Campaign) and is_recordings(source):
-        found = modes_of_recordings(source, method, order, start=start, amplitude=amplitude, diagram=diagram)
+        found = modes_of_recordings(
+            source, method, order, start=start, amplitude=amplitude, diagram=diagram, progress=progress
+        )
         return ModesByLoad({RECORDINGS: found})
     _refuse("arrays and recordings", start=start)
-    campaign = campaign_from(source)
-    decays = prepare(campaign).decays
+    campaign = campaign_from(source, progress)
+    decays = prepare(campaign, progress).decays
     if not decays:
         problems = Problems()
         problems.add(campaign.name, "no drop that can be used", "at least one", "Run `sprung check` on the campaign.")
@@ -127,7 +133,7 @@ def modes(
     for load in campaign.loads:
         of_load = [decay for decay in decays if decay.load == load.name]
         if of_load:
-            by_load[load.name] = _modes_of(of_load, campaign, method, order, amplitude, diagram)
+            by_load[load.name] = _modes_of(of_load, campaign, method, order, amplitude, diagram, progress)
     return by_load
 
 
@@ -141,7 +147,13 @@ def _refuse(only: str, **given: object) -> None:
 
 
 def _modes_of(
-    decays: list[Decay], campaign: Campaign, method: str, order: int | None, amplitude: bool, diagram: bool
+    decays: list[Decay],
+    campaign: Campaign,
+    method: str,
+    order: int | None,
+    amplitude: bool,
+    diagram: bool,
+    progress: Progress,
 ) -> LoadModes:
     # Records of another rate, or channels that one drop lacks, cannot stand in the same matrix.
     rate = Counter(decay.rate for decay in decays).most_common(1)[0][0]
@@ -161,6 +173,8 @@ def _modes_of(
         a=a.value if a is not None else None,
         amplitude=amplitude,
         diagram=diagram,
+        load=decays[0].load,
+        progress=progress,
     )
 
 

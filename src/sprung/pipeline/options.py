@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TypeAlias, get_args
 
 from sprung.errors import Problems, did_you_mean
+from sprung.progress import Progress, silent
 from sprung.recording import Campaign, read
 from sprung.vehicle import EXTRAS, Tracks
 
@@ -14,13 +15,15 @@ CampaignSource: TypeAlias = Campaign | str | os.PathLike[str]
 """A campaign, or the path of a campaign file or of its folder."""
 
 
-def campaign_from(source: CampaignSource) -> Campaign:
+def campaign_from(source: CampaignSource, progress: Progress = silent) -> Campaign:
     """Return the campaign itself, or the one read from a path.
 
     Parameters
     ----------
     source
         A campaign, its file, or its folder.
+    progress
+        Called with each step of reading that begins.
 
     Returns
     -------
@@ -37,7 +40,7 @@ def campaign_from(source: CampaignSource) -> Campaign:
         source.require_complete()
         return source
     if isinstance(source, str | os.PathLike):
-        return read(source)
+        return read(source, progress=progress)
     raise TypeError(f"a campaign, or the path of one, is needed, not {type(source).__name__}")
 
 

@@ -6,7 +6,7 @@ import math
 import os
 import re
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from sprung.pipeline.identify import result_of
 from sprung.pipeline.options import CampaignSource, campaign_from
 from sprung.pipeline.planned import as_test
 from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.simulation import DEFAULT_HEIGHT, Setup
 from sprung.units import STANDARD_GRAVITY
@@ -41,7 +42,7 @@ def plan(
     duration: float | None = None,
     known: Mapping[str, Given] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Plan:
     """Say what a test would tell, what its alternatives would, and which of them is enough.
 
@@ -84,7 +85,7 @@ def plan(
                 do = f"Leave {name} out, or plan from a vehicle."
                 problems.add(f"plan: {name}", found, "nothing: a campaign brings its own along", do)
         problems.raise_if_any()
-        return _plan_further(campaign_from(source), wanted, progress)
+        return _plan_further(campaign_from(source, progress), wanted, progress)
     if isinstance(source, Vehicle):
         vehicle = source
     else:
@@ -149,14 +150,14 @@ def plan(
     return draw_up(PlannedTest(subject, planned), wanted)
 
 
-def _plan_further(campaign: Campaign, wanted: float, progress: Callable[[str], None]) -> Plan:
+def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
     """Identify a vehicle, and say what to measure next."""
     fitted = fit_campaign(campaign, progress=progress)
-    result = result_of(fitted)
+    result = result_of(fitted, progress=progress)
     if result.verdict.state == "reject":
         rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
         return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
-    progress("weighing the alternatives")
+    progress(Step("computing the bounds of the alternatives"))
     return draw_up(as_test(fitted), wanted)
 
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, Summit, estimate_of, profiled
 from sprung.pipeline.choice import choose_model
+from sprung.progress import Progress, counted
 from sprung.recording import Campaign
 from sprung.vehicle import DERIVED, Tracks, parameter_names
 
@@ -58,7 +59,7 @@ def check_asked(
 
 
 def profiles_of(
-    asked: Sequence[str], summit: Summit, fit: Fit, known: Mapping[str, Known], progress: Callable[[str], None]
+    asked: Sequence[str], summit: Summit, fit: Fit, known: Mapping[str, Known], progress: Progress
 ) -> dict[str, Estimate]:
     """Estimate what was asked for, with intervals from profiles.
 
@@ -69,7 +70,7 @@ def profiles_of(
     summit, fit, known
         Where the fit ended, how sure it is, and what was known beforehand.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
 
     Returns
     -------
@@ -77,8 +78,7 @@ def profiles_of(
         By name, parameters first.
     """
     found = {}
-    for name in _named(asked, fit.names):
-        progress(f"interval of {name}")
+    for name in counted(progress, "following the likelihood for an interval", _named(asked, fit.names)):
         found[name] = profiled(summit, fit, name, estimate_of(fit, known, name))
     return found
 

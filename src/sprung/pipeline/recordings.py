@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problems
 from sprung.pipeline.found import LoadModes, examined
+from sprung.prepare import find_drops
+from sprung.progress import Progress, counted, silent
 from sprung.recording import FILE, Table, read_table
-from sprung.units import acceleration_factor
+from sprung.units import STANDARD_GRAVITY, acceleration_factor
 
 Real = NDArray[np.float64]
 
@@ -21,6 +23,10 @@ RECORDINGS = "recordings"
 """What stands where a campaign has the name of a load."""
 
 _OTHER_FILES = frozenset({".toml", ".json", ".md", ".html", ".svg", ".png", ".npz", ".py"})
+
+_MAY_HOP = 0.125
+"""s after the landing in which a tyre may leave the ground once more: a period of the slowest usual wheel hop, 8 Hz. Nothing
+says which channel is on a wheel."""
 
 _STEADY = 0.01
 """Part of the sampling interval by which it may vary: a clock that does so more is none for a fit."""
@@ -60,6 +66,7 @@ def modes_of_recordings(
     start: float | None,
     amplitude: bool,
     diagram: bool,
+    progress: Progress = silent,
 ) -> LoadModes:
     """Find the modes common to free decays that nothing is known of but their recordings.
 
@@ -70,7 +77,10 @@ def modes_of_recordings(
     method, order, amplitude, diagram
         As for `modes`.
     start
-        Where the free decay begins, s on the files' own clock; unless given, at each recording's largest reading.
+        Where the free decay begins, s on the files' own clock. Unless given, after the landing of each drop that is found in a
+        recording, as `check` finds it; in a recording without a drop at its largest reading.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -84,7 +94,8 @@ def modes_of_recordings(
     """
     problems = Problems()
     tables: list[tuple[Path, Table]] = []
-    for file in recordings_in(Path(path)):
+    files = recordings_in(Path(path))
+    for file in counted(progress, "reading the recordings", files):
         with problems.collecting():
             tables.append((file, read_table(file)))
     problems.raise_if_any()
@@ -103,20 +114,36 @@ def modes_of_recordings(
         found = ", ".join(f"{file.name} {rate:g} Hz" for (file, _), rate in zip(tables, rates, strict=True))
         problems.add(str(path), found, "one rate", "Give files of one rate together.")
     problems.raise_if_any()
-    records = []
+    records, names = [], list[str]()
     for file, table in tables:
         values = table.take([table.channels.index(name) for name in channels])
         factors = [_factor(table.units[table.channels.index(name)]) for name in channels]
         values = np.array(factors)[:, None] * values
-        begin = _begin(values) if start is None else int(np.searchsorted(table.time, start))
-        values = values[:, begin:]
-        if not np.isfinite(values).all():
-            bad = int((~np.isfinite(values)).sum())
-            problems.add(file.name, f"{bad} cells that are not numbers", "numbers", "Leave them out, or mend the file.")
-        records.append(values)
+        spans = (
+            _decays(values, rates[0], table.time)
+            if start is None
+            else [(int(np.searchsorted(table.time, start)), None)]
+        )
+        for begin, end in spans:
+            decay = values[:, begin:end]
+            if not np.isfinite(decay).all():
+                bad = int((~np.isfinite(decay)).sum())
+                do = "Leave them out, or mend the file."
+                problems.add(file.name, f"{bad} cells that are not numbers", "numbers", do)
+            records.append(decay)
+            names.append(file.stem if len(spans) == 1 else f"{file.stem} from {table.time[begin]:.3f} s")
     problems.raise_if_any()
-    names = tuple(file.stem for file, _ in tables)
-    return examined(records, rates[0], method, order, tuple(channels), names, amplitude=amplitude, diagram=diagram)
+    return examined(
+        records,
+        rates[0],
+        method,
+        order,
+        tuple(channels),
+        tuple(names),
+        amplitude=amplitude,
+        diagram=diagram,
+        progress=progress,
+    )
 
 
 def modes_of_arrays(
@@ -201,6 +228,18 @@ def _factor(unit: str | None) -> float:
         return 1.0 if unit is None else acceleration_factor(unit)
     except ValueError:
         return 1.0
+
+
+def _decays(values: Real, rate: float, time: Real) -> list[tuple[int, int | None]]:
+    """Give first and last sample of each free decay: after each drop's landing, or without a drop from the largest reading."""
+    # Files that name no unit are as often in g as in m/s².
+    for factor in (1.0, STANDARD_GRAVITY):
+        if found := find_drops([(0, factor * values)], rate, start=float(time[0])).drops:
+            break
+    else:
+        return [(_begin(values), None)]
+    spans = [np.searchsorted(time, (drop.landing + _MAY_HOP, drop.end)).tolist() for drop in found]
+    return [(begin, end + 1) for begin, end in spans]
 
 
 def _begin(values: Real) -> int:

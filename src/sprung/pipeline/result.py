@@ -175,6 +175,8 @@ class Result:
         What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
     amplitude
         Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
+    omissions
+        What decorates a result and could not be made, a sentence each, such as the amplitude curves.
     series
         By drop name: what was fitted.
     recordings
@@ -200,6 +202,7 @@ class Result:
     next_step: str | None = None
     setup: Setup | None = None
     amplitude: Amplitudes = ()
+    omissions: tuple[str, ...] = ()
     series: Mapping[str, Series] = field(default_factory=dict, repr=False)
     recordings: Mapping[str, Recorded] = field(default_factory=dict, repr=False)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import NamedTuple
@@ -26,6 +26,7 @@ from sprung.pipeline.forces import nonlinear, with_forces
 from sprung.pipeline.linear import carried, linear, wanting
 from sprung.pipeline.way import Attempt, Way
 from sprung.prepare import Decay, Prepared, prepare
+from sprung.progress import Progress, Step
 from sprung.recording import Campaign
 from sprung.vehicle import LINEAR_EXTRAS, Tracks
 
@@ -99,7 +100,7 @@ class Stand(NamedTuple):
     def judged(self) -> Fitted:
         """Say how sure the fit is."""
         way = self.way
-        way.progress("judging the fit")
+        way.progress(Step("computing the uncertainties"))
         summit, decays = look_around(way.summit), tuple(way.decays)
         prepared = self.prepared._replace(decays=decays)
         return Fitted(self.campaign, way.choice, way.why, prepared, summit, describe(summit, decays), way.path)
@@ -110,7 +111,7 @@ def begun(
     tracks: Tracks | None,
     extras: Sequence[str] | None,
     mended: Sequence[Hypothesis],
-    progress: Callable[[str], None],
+    progress: Progress,
     guess: Mapping[str, float] = MappingProxyType({}),
 ) -> Stand:
     """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle."""
@@ -122,13 +123,12 @@ def begun(
     wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
     # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
     choice = wanted.having(tuple(extra for extra in wanted.linear_extras if extra != ENGINE))
-    progress("finding the decays")
-    prepared = _without(campaign, prepare(campaign), left_out)
+    prepared = _without(campaign, prepare(campaign, progress), left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
         campaign,
         prepared,
-        lambda known: _without(campaign, prepare(known), left_out),
+        lambda known: _without(campaign, prepare(known, progress), left_out),
         lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, guess),
     )
     start = None if first is None else first.parameters
@@ -166,7 +166,7 @@ def _ascend(
     decays: Sequence[Decay],
     start: Mapping[str, float] | None,
     enough: float,
-    progress: Callable[[str], None],
+    progress: Progress,
     guess: Mapping[str, float],
 ) -> Summit:
     models, sensors, known = choice.models, campaign.sensors, choice.known

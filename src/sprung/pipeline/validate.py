@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.pipeline.amplitude import amplitude_document, amplitudes_of, plain_trace
-from sprung.pipeline.fitted import fit_campaign
-from sprung.pipeline.identify import result_of
-from sprung.pipeline.options import CampaignSource, campaign_from, model_options
+from sprung.pipeline.amplitude import amplitude_document, plain_trace
+from sprung.pipeline.identify import identify_campaign, with_amplitudes
+from sprung.pipeline.options import CampaignSource
 from sprung.pipeline.result import Result
 from sprung.pipeline.series import packed
+from sprung.progress import Progress, silent
 from sprung.recording import write_whole
 from sprung.validation import BodyMotion, ModeAmplitude, body_motions
 from sprung.vehicle import EMPTY, Tracks
@@ -48,7 +48,7 @@ class Validation:
     def document(self) -> dict[str, Any]:
         """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
         result = self.result.document()
-        kept = ("sprung", "vehicle", "verdict", "validation", "faults")
+        kept = ("sprung", "vehicle", "verdict", "validation", "faults", "omissions")
         return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 
     def files(self) -> dict[str, bytes]:
@@ -96,7 +96,7 @@ def validate(
     *,
     tracks: Tracks | None = None,
     extras: str | Sequence[str] | None = None,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
 ) -> Validation:
     """Identify a vehicle, and hold what it does against what was measured.
 
@@ -107,7 +107,7 @@ def validate(
     tracks, extras
         As for `identify`.
     progress
-        Told in words what is being done.
+        Called with each step that begins, as for `identify`.
 
     Returns
     -------
@@ -129,13 +129,8 @@ def validate(
     >>> max(drop.predicted_residual for drop in validation.result.validation.values()) < 1.05
     True
     """
-    tracks, extras = model_options(tracks, extras)
-    fitted = fit_campaign(campaign_from(campaign), tracks=tracks, extras=extras, progress=progress)
-    asked = {"tracks": tracks, "extras": extras, "fall": None, "profile": ()}
-    result = result_of(fitted, progress=progress, options=asked)
+    found = identify_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
+    fitted, result = found.fitted, with_amplitudes(found, progress)
     motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
-    if result.verdict.state == "reject":
-        return Validation(result, motions, EMPTY.name, ())
-    progress("following the modes of the body through the decays")
-    amplitudes = amplitudes_of(fitted.fit, fitted.choice, fitted.prepared.decays, fitted.campaign.sensors, motions)
+    amplitudes = result.amplitude
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -14,6 +14,7 @@ from sprung.identification import NEAR, Summit, inflation_of
 from sprung.pipeline.candidates import SEPARATE, brought, decided, fit_from, possible, size_of
 from sprung.pipeline.choice import Choice
 from sprung.prepare import Decay
+from sprung.progress import Progress, silent
 
 Real = NDArray[np.float64]
 
@@ -58,9 +59,8 @@ class Attempt:
     @property
     def text(self) -> str:
         """The attempt in words."""
-        verb = "gains" if self.fitted else "would gain"
         but = f", but {self.against}" if self.against else ""
-        return f"{self.extra} ({verb} {max(self.gain, 0.0):.0f} of {self.asked:.0f} asked{but})"
+        return f"{self.extra} (Δ2lnL = {max(self.gain, 0.0):.0f}, required {self.asked:.0f}{but})"
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,14 +76,14 @@ class Way:
     path
         What was tried.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
     """
 
     choice: Choice
     summit: Summit
     decays: Sequence[Decay]
     path: tuple[Attempt, ...] = ()
-    progress: Callable[[str], None] = lambda _: None
+    progress: Progress = silent
 
     def asked(self, extra: str) -> float:
         """Give what is asked of an extra."""
@@ -141,9 +141,9 @@ class Way:
     def against(self, extra: str, inflation: float) -> str:
         """Say what speaks against an extra, whatever it gains; nothing where nothing does."""
         if not possible(extra, self.summit):
-            return "it would have to be less than nothing"
+            return "the estimate is negative, which is not physical"
         if inflation > ERRS and size_of(extra, self.summit.parameters) < _MATTERS:
-            return "it is so small that it may be another error of the model"
+            return "it is so small that it may stand for another error of the model"
         return ""
 
     def explains_little(self, begun: Summit, part: float) -> bool:
@@ -161,4 +161,7 @@ class Way:
         last = {one.extra: one for one in self.path}
         taken = ", ".join(one.text for one in last.values() if one.taken and one.extra in decided(choice))
         refused = ", ".join(one.text for one in last.values() if one.extra not in decided(choice))
-        return f"the records ask for {taken or 'nothing more'}" + (f"; not for {refused}" if refused else "")
+        said = (
+            f"model terms supported by the data: {taken}" if taken else "no further model term is supported by the data"
+        )
+        return said + (f"; not supported: {refused}" if refused else "")

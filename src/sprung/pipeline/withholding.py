@@ -34,13 +34,12 @@ def withhold_estimates(result: Result) -> Result:
         return result
     parameters = {name: without_value(found) for name, found in result.parameters.items()}
     names = tuple(name for name, found in parameters.items() if found.status == "unidentifiable")
-    text = ": ".join((NO_ESTIMATES, *result.verdict.reasons[:1]))
     return replace(
         result,
         parameters=parameters,
         derived={name: without_value(found) for name, found in result.derived.items()},
         scale=Scale(result.scale.known, {}),
-        unidentifiable=(Unidentifiable(names, text),) if names else (),
+        unidentifiable=(Unidentifiable(names, NO_ESTIMATES),) if names else (),
         correlation=Correlation((), ()),
         modes=dict.fromkeys(result.modes, ()),
         amplitude=(),

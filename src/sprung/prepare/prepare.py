@@ -22,6 +22,7 @@ from sprung.prepare.landing import Landing, find_decay, suspension_jump
 from sprung.prepare.release import Release, Rest, find_release, no_rest
 from sprung.prepare.spikes import without_spikes
 from sprung.prepare.stated import as_seen, contradicted, other_wheels, wheels_that_fell
+from sprung.progress import Progress, Step, counted, silent
 from sprung.recording import Campaign, Drop, Recording, drop_names
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Wheel
@@ -72,21 +73,26 @@ class Prepared(NamedTuple):
     seen: tuple[Seen, ...] = ()
 
 
-def prepare(campaign: Campaign) -> Prepared:
+def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     """Find the usable part of every drop.
 
     Parameters
     ----------
     campaign
         The campaign.
+    progress
+        Called with each recording that is begun, in three rounds.
 
     Returns
     -------
     Prepared
     """
-    smooth = [without_spikes(recording) for recording in campaign.recordings]
+    smooth = [
+        without_spikes(one) for one in counted(progress, "looking for spikes in the recordings", campaign.recordings)
+    ]
     spiked = [filled_in(*pair) for pair in zip(campaign.recordings, smooth, strict=True)]
     whole = _alive([align(recording) for recording in smooth], campaign.drops)
+    progress(Step("looking for wrong signs, units and saturation in the recordings"))
     scaled = [with_full_scale(recording, campaign.sensors) for recording in whole]
     righted = put_right(scaled, [_release(recording) for recording in scaled], campaign.sensors)
     releases, sensors = righted.releases, righted.sensors
@@ -95,7 +101,9 @@ def prepare(campaign: Campaign) -> Prepared:
     clipped = [clipped_samples(recording) for recording in righted.recordings]
     recordings = [
         recording if release is None else direct_coupled(steady(recording, release, sensors), release, sensors)
-        for recording, release in zip(righted.recordings, releases, strict=True)
+        for recording, release in zip(
+            counted(progress, "removing drift from the recordings", righted.recordings), releases, strict=True
+        )
     ]
     fell = [wheels_that_fell(one, release, sensors) for one, release in zip(recordings, releases, strict=True)]
     drops = list(campaign.drops)
@@ -110,7 +118,8 @@ def prepare(campaign: Campaign) -> Prepared:
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
     names = drop_names(campaign.drops)
-    of_drops = zip(campaign.drops, names, campaign.recordings, releases, clipped, strict=True)
+    counted_names = counted(progress, "finding the decays", names)
+    of_drops = zip(campaign.drops, counted_names, campaign.recordings, releases, clipped, strict=True)
     for drop, name, recording, release, over in of_drops:
         decay = _decay(campaign, drop, name, recording, release, suspension, over)
         if isinstance(decay, Decay):

@@ -24,7 +24,7 @@ from sprung.recording.reading import FILE, VehicleFile, read, read_document, rea
 from sprung.recording.recording import ROUGHLY, LoggerClock, Recording
 from sprung.recording.sources import SourceFile
 from sprung.recording.whole import write_whole
-from sprung.recording.writing import write
+from sprung.recording.writing import campaign_files, write
 
 __all__ = [
     "FILE",
@@ -45,6 +45,7 @@ __all__ = [
     "Table",
     "TestRecord",
     "VehicleFile",
+    "campaign_files",
     "drop_names",
     "files_named_after",
     "filled",

@@ -56,7 +56,7 @@ class Drop:
     """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
     files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
     """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
-    name: str | None = Field(default=None, min_length=1)
+    name: Annotated[str, Field(min_length=1)] | None = None
     """What to call it everywhere, unlike every other drop's; its recording's name where it is left out."""
     window: tuple[Finite, Finite] | None = None
     """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
+from sprung.progress import Progress, counted, silent
 from sprung.recording.campaign import Campaign, Drop, ModelChoice, TestRecord, recording_names
 from sprung.recording.checks import check, refused_unit
 from sprung.recording.completeness import missing_in_file
@@ -69,7 +70,13 @@ class VehicleFile:
         return dict(self.known) if self.wheelbase is None else {**self.known, "wheelbase": self.wheelbase}
 
 
-def read(path: str | os.PathLike[str], *, signals: Signals | None = None, complete: bool = True) -> Campaign:
+def read(
+    path: str | os.PathLike[str],
+    *,
+    signals: Signals | None = None,
+    complete: bool = True,
+    progress: Progress = silent,
+) -> Campaign:
     """Read a campaign and its recordings.
 
     Parameters
@@ -85,6 +92,8 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None, comple
         Whether the file must say everything that an identification needs. Otherwise what it does not say is in
         `Campaign.missing`, recordings that cannot be read are left out and named in its faults, and `sprung.check` can judge
         the others.
+    progress
+        Called with each recording that is begun.
 
     Returns
     -------
@@ -103,11 +112,16 @@ def read(path: str | os.PathLike[str], *, signals: Signals | None = None, comple
     >>> campaign = sprung.read("campaign.toml", signals={"empty_bounce": signals})          # doctest: +SKIP
     """
     path = Path(path) / FILE if Path(path).is_dir() else Path(path)
-    return read_document(toml_document(path), path, signals=signals, complete=complete)
+    return read_document(toml_document(path), path, signals=signals, complete=complete, progress=progress)
 
 
 def read_document(
-    document: Mapping[str, Any], path: Path, *, signals: Signals | None = None, complete: bool = True
+    document: Mapping[str, Any],
+    path: Path,
+    *,
+    signals: Signals | None = None,
+    complete: bool = True,
+    progress: Progress = silent,
 ) -> Campaign:
     """Read the recordings of a campaign file that has been read already, or is not written yet.
 
@@ -117,7 +131,7 @@ def read_document(
         What the campaign file holds, as TOML gives it.
     path
         Of the campaign file; the recordings are beside it.
-    signals, complete
+    signals, complete, progress
         As for `read`.
 
     Returns
@@ -139,12 +153,12 @@ def read_document(
                 problems.add(*astuple(one.problem))
     check(draft, problems)
     files = _files(draft, problems)
-    tables = _tables(files, path.parent, signals or {}, of_recordings)
+    tables = _tables(files, path.parent, signals or {}, of_recordings, progress)
     _check_signals(draft, files, signals or {}, problems)
     _check_channels(draft, tables, problems)
     _check_starts_and_ends(draft, tables, problems)
     sensors = named_apart(draft.file.sensor)
-    read = _recordings(draft, sensors, tables, of_recordings)
+    read = _recordings(draft, sensors, tables, of_recordings, progress)
     problems.raise_if_any()
     recordings = tuple(read.values())
     if not recordings:
@@ -258,12 +272,13 @@ def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, tuple[st
 
 
 def _tables(
-    files: Mapping[int, Sequence[str]], folder: Path, signals: Signals, problems: Problems
+    files: Mapping[int, Sequence[str]], folder: Path, signals: Signals, problems: Problems, progress: Progress
 ) -> dict[int, dict[str, Table]]:
     """Read every recording that can be read, each once; by the drop's index and the recording's name."""
     others = {Path(file).name for names in files.values() for file in names}
     read_already: dict[str, Table] = {}
-    for file in dict.fromkeys(file for names in files.values() for file in names):
+    each = tuple(dict.fromkeys(file for names in files.values() for file in names))
+    for file in counted(progress, "reading the recordings", each):
         try:
             read_already[file] = (
                 from_sep005(signals[file], Path(file).name) if file in signals else read_table(folder / file, others)
@@ -327,6 +342,7 @@ def _recordings(
     sensors: Sequence[Sensor],
     tables: Mapping[int, Mapping[str, Table]],
     problems: Problems,
+    progress: Progress,
 ) -> dict[int, Recording]:
     """Make the recording of every drop whose files could be read; by the drop's index."""
     pairs = [
@@ -337,7 +353,8 @@ def _recordings(
     understood = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
     recordings: dict[int, Recording] = {}
-    for (index, of_drop), drop, name in zip(tables.items(), drops, recording_names(drops), strict=True):
+    names = counted(progress, "checking the clocks and units of the recordings", tuple(recording_names(drops)))
+    for (index, of_drop), drop, name in zip(tables.items(), drops, names, strict=True):
         with problems.collecting():
             recordings[index] = recording_of_drop(of_drop, pairs, drop, name)
     return recordings

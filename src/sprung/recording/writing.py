@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, cast
 
@@ -12,6 +11,7 @@ import numpy as np
 import tomli_w
 from pydantic import TypeAdapter
 
+from sprung.recording.comments import commented
 from sprung.recording.formats import split_unit
 from sprung.recording.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.recording.reading import FILE
@@ -35,7 +35,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
 
     The recordings are written in each sensor's own unit and direction, nine significant digits; a channel that is left
     out stays without numbers. Recordings of other formats become text tables. The JSON Schema of the campaign file is put
-    beside it, by which editors complete its keys.
+    beside it, by which editors complete its keys, and comments say what each section and key is for.
 
     Parameters
     ----------
@@ -56,6 +56,18 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
     InputError
         If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
+    write_whole(folder, campaign_files(campaign), overwrite=overwrite)
+    return Path(folder) / FILE
+
+
+def campaign_files(campaign: Campaign) -> dict[str, bytes]:
+    """Return what `write` writes of a campaign: content by file name, the campaign file last.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    """
     pieces = [recording.parts or (recording,) for recording in campaign.recordings]
     names = tuple(_file_names(campaign.drops, pieces))
     sensors = {sensor.channel: sensor for sensor in campaign.sensors}
@@ -65,9 +77,8 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
         for name, piece in zip(own, of_drop, strict=True)
     }
     files[SCHEMA_FILE] = schema_text().encode()
-    files[FILE] = SCHEMA_LINE.encode() + _toml(_document(campaign, names))
-    write_whole(folder, files, overwrite=overwrite)
-    return Path(folder) / FILE
+    files[FILE] = (SCHEMA_LINE + commented(_toml(_document(campaign, names)))).encode()
+    return files
 
 
 def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) -> Iterator[tuple[str, ...]]:
@@ -105,7 +116,9 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
         "sensor": [written(sensor) for sensor in campaign.sensors],
         "load": [_load(load) for load in campaign.loads if load.name != EMPTY.name],
         "drop": [
-            ({"file": own[0]} if len(own) == 1 else {"files": list(own)}) | written(drop, "file", "files", "window")
+            ({"file": own[0]} if len(own) == 1 else {"files": list(own)})
+            | {"load": drop.load, "wheels": drop.wheels}
+            | written(drop, "file", "files", "window")
             for own, drop in zip(files, campaign.drops, strict=True)
         ],
     }
@@ -139,19 +152,34 @@ def _measured(known: Known) -> float | dict[str, float]:
     return known.value if known.exact else {"value": known.value, "std": known.std}
 
 
-def _toml(document: Mapping[str, Any]) -> bytes:
-    lists = {name: entries for name, entries in document.items() if isinstance(entries, list)}
-    parts = [tomli_w.dumps({name: value for name, value in document.items() if name not in lists})]
-    for name, entries in lists.items():
-        # Entry by entry, for tomli-w would put short ones on one line, where nobody expects a drop.
-        tables = (re.sub(r"^(\[+)", rf"\1{name}.", tomli_w.dumps(entry), flags=re.MULTILINE) for entry in entries)
-        parts += [f"[[{name}]]\n{table}" for table in tables]
+def _toml(document: Mapping[str, Any]) -> str:
+    """Write a campaign file: one line for each key, one section for each sensor, load and drop."""
+    sections = [_keys({name: value for name, value in document.items() if not isinstance(value, dict | list)})]
+    for name, value in document.items():
+        if isinstance(value, dict):
+            sections.append(f"[{name}]\n{_keys(value)}")
+        elif isinstance(value, list):
+            sections += [f"[[{name}]]\n{_keys(entry)}" for entry in value]
+    return "\n".join(sections)
 
-    def one_line(match: re.Match[str]) -> str:
-        return "= [" + ", ".join(line.strip().removesuffix(",") for line in match[1].rstrip().split("\n")) + "]"
 
-    # Vectors read better on one line; no text can look like this, for TOML writes line breaks in text as \n.
-    return re.sub(r"= \[\n((?:    [^\n]*,\n)+)\]", one_line, "\n".join(parts)).encode()
+def _keys(entry: Mapping[str, Any]) -> str:
+    """Write the keys of a section, the equals signs below each other."""
+    widest = max(map(len, entry), default=0)
+    return "".join(f"{name:<{widest}} = {_value(value, widest + 5)}\n" for name, value in entry.items())
+
+
+def _value(value: Any, indent: int = 0) -> str:
+    """Write a value on one line; a list of tables has one line for each."""
+    match value:
+        case dict():
+            return "{ " + ", ".join(f"{name} = {_value(one)}" for name, one in value.items()) + " }"
+        case [dict(), *_]:
+            return "[ " + f",\n{' ' * indent}".join(map(_value, value)) + " ]"
+        case list() | tuple():
+            return f"[{', '.join(map(_value, value))}]"
+        case _:
+            return tomli_w.dumps({"value": value}).removeprefix("value = ").removesuffix("\n")
 
 
 def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:

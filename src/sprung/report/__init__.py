@@ -7,10 +7,18 @@ from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
-from sprung.report.folder import write_report, write_results
+from sprung.report.folder import (
+    REPORT_FILES,
+    RESULT_FILES,
+    Saved,
+    add_report,
+    save_result,
+    write_report,
+    write_results,
+)
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
-from sprung.report.page import page_of
+from sprung.report.page import drawn_page, page_of
 from sprung.report.palette import LIGHT
 from sprung.report.paper import paper_view
 from sprung.report.paper_copy import pdf_of
@@ -26,15 +34,18 @@ from sprung.report.pictures import (
     whole_picture,
 )
 from sprung.report.plan import plan_view
-from sprung.report.sketch import VehicleSketch, drawing_svg, vehicle_sketch
+from sprung.report.sketch import VehicleSketch, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
+from sprung.report.truth import truth_view
 from sprung.report.validation import draw_validation, validation_view, write_validation
 
 __all__ = [
     "BODY_EDGES",
     "CHECK_FILE",
     "LIGHT",
+    "REPORT_FILES",
+    "RESULT_FILES",
     "STRUTS",
     "Band",
     "Curve",
@@ -44,8 +55,11 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
+    "Saved",
     "VehicleSketch",
+    "add_report",
     "amplitude_pictures",
+    "blank_sketch",
     "channels_picture",
     "check_page",
     "check_view",
@@ -55,6 +69,7 @@ __all__ = [
     "draw_check",
     "draw_validation",
     "drawing_svg",
+    "drawn_page",
     "modes_view",
     "motion_picture",
     "near_picture",
@@ -64,10 +79,13 @@ __all__ = [
     "pdf_of",
     "plan_view",
     "result_view",
+    "save_result",
+    "sketch_sheet",
     "spectra_picture",
     "stability_picture",
     "svg_of",
     "text_of",
+    "truth_view",
     "validation_view",
     "vehicle_sketch",
     "whole_picture",

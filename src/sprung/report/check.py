@@ -88,7 +88,7 @@ def check_view(check: Check, page: Path | None = None) -> RenderableType:
     if check.missing:
         parts += [Text(), _listed("Missing", map(_said, missing_items(check.missing)))]
     if page is not None:
-        parts += [Text(), Text(f"Page: {page}")]
+        parts += [Text(), Text(f"Page: {page}", no_wrap=True, overflow="ignore")]
     return Group(*parts, Text(), Text(check.summary, style="bold"))
 
 
@@ -112,7 +112,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
         length = "" if drop.start is None or drop.end is None else f"{drop.end - drop.start:.2f}"
         if drop.start is None:
             moments[-1] = "left out"
-        rows.append([drop.label, drop.load or "?", drop.kind or "?", *moments, length, ", ".join(drop.faults)])
+        rows.append([drop.label, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
     title = "Drops, s on each recording's own clock; the decay is used from ... to"
     spare = ("length", "faults", "load", "lift-off", "landing", "release")
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)

@@ -138,15 +138,14 @@ def _blocks(table: Table, columns: Sequence[_Column], width: int) -> list[Line] 
 
 
 def _listed(columns: Sequence[_Column], width: int) -> list[Line]:
-    """Arrange every row as a list of its cells, each behind its header; empty cells are not listed."""
+    """Arrange every row as a list of its cells, each behind its header; a dash stands for an empty one."""
     name, *others = columns
-    lines: list[Line] = []
+    lines = [Line(line, "dim") for line in wrapped(name.header, width) if line]
     for i, cell in enumerate(name.cells):
         lines += [Line(line, "bold") for line in wrapped(cell, width) if line]
         for column in others:
-            if column.cells[i]:
-                first, *more = wrapped(f"{column.header}: {column.cells[i]}".removeprefix(": "), width - 2, indent=2)
-                lines += [Line(f"  {first}"), *(Line(f"  {line}") for line in more)]
+            text = f"{column.header}: {column.cells[i] or '-'}".removeprefix(": ")
+            lines += [Line(f"  {line}") for line in wrapped(text, width - 2, indent=2)]
     return lines
 
 

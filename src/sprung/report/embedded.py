@@ -82,9 +82,18 @@ def figure_json(picture: Picture) -> str:
                         curve["bars"] = place_of(mark.bars, Axis("", 0, 1), False)
                 curves.append(curve)
         place = [round(value, 1) for value in (box.left, box.top, box.width, box.height)]
-        about = panel.channel if panel.channel not in panel.y.label else "" if panel.channel else panel.note
-        named = ", ".join(part for part in (about, panel.y.label) if part)
-        panels.append({"name": named, "channel": panel.channel, "box": place, "y": _axis(panel.y), "curves": curves})
+        unit = panel.y.label.rpartition(", ")[2] if panel.channel else panel.y.label
+        named = ", ".join(part for part in (panel.channel or panel.note, unit) if part)
+        panels.append(
+            {
+                "name": named,
+                "channel": panel.channel,
+                "lane": bool(panel.name),
+                "box": place,
+                "y": _axis(panel.y),
+                "curves": curves,
+            }
+        )
     document = {
         "title": picture.title,
         "zoomable": picture.zoomable,

@@ -1,47 +1,121 @@
-"""The results folder: results.json, series.npz and the report beside them, written together."""
+"""The results folder: results.json and series.npz first, then the report beside them."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
+from sprung.errors import InputError, Omissions
 from sprung.pipeline import Result, load
 from sprung.recording import write_whole
-from sprung.report.page import FILE, page_of
+from sprung.report.page import FILE, drawn_page
 from sprung.report.paper_copy import PDF_FILE, pdf_of
 
+RESULT_FILES = ("results.json", "series.npz")
+"""What programs read; the report can be made from it."""
 
-def write_results(result: Result, folder: Path, report: bool = True) -> tuple[Path, ...]:
-    """Write a result into a folder, with its report or without, all of the files or none.
+REPORT_FILES = (*RESULT_FILES, FILE)
+"""What an identification writes with its report."""
+
+
+class Saved(NamedTuple):
+    """What was written.
+
+    Attributes
+    ----------
+    result
+        With everything that is missing named in its ``omissions``.
+    files
+        Every file, results.json first.
+    """
+
+    result: Result
+    files: tuple[Path, ...]
+
+
+def save_result(result: Result, folder: Path, *, overwrite: bool = False) -> Saved:
+    """Write results.json and series.npz, before anything is drawn.
 
     Parameters
     ----------
     result
         From `sprung.identify`.
     folder
-        Made if it does not exist. Files of the same names in it are replaced.
-    report
-        Whether to write report.html too. What an earlier result left there and this one does not write anew is taken away: it
-        would be read as this one's.
+        Made if it does not exist. An earlier result of sprung's is replaced; a report of it goes, for it would be read as
+        this one's.
+    overwrite
+        Whether files that sprung did not write, or that were changed since, are replaced too.
 
     Returns
     -------
-    tuple of Path
-        Every file, results.json first.
+    Saved
 
     Raises
     ------
     InputError
-        If the folder cannot be written.
+        If such files would be overwritten, with their list, or the folder cannot be written.
     """
-    page = {FILE: page_of(result).encode()} if report else {}
-    files = page | result.files()
-    write_whole(folder, files)
-    for stale in (PDF_FILE,) if report else (FILE, PDF_FILE):
-        (folder / stale).unlink(missing_ok=True)
-    return tuple(folder / name for name in reversed(files))
+    files = result.files()
+    write_whole(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
+    return Saved(result, tuple(folder / name for name in reversed(files)))
 
 
-def write_report(folder: Path, pdf: bool = False) -> tuple[Path, ...]:
+def write_results(result: Result, folder: Path, report: bool = True, *, overwrite: bool = False) -> Saved:
+    """Write a result into a folder, and then its report, which may fail without harm to the result.
+
+    Parameters
+    ----------
+    result
+        From `sprung.identify`.
+    folder
+        Made if it does not exist. An earlier result of sprung's is replaced, with its report.
+    report
+        Whether to write report.html too.
+    overwrite
+        Whether files that sprung did not write, or that were changed since, are replaced too.
+
+    Returns
+    -------
+    Saved
+
+    Raises
+    ------
+    InputError
+        If such files would be overwritten, with their list, or the folder cannot be written.
+    """
+    saved = save_result(result, folder, overwrite=overwrite)
+    return add_report(saved.result, folder, overwrite=overwrite) if report else saved
+
+
+def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Saved:
+    """Write the report beside a result that is saved; what of it cannot be drawn is named in results.json too.
+
+    Parameters
+    ----------
+    result, folder, overwrite
+        As for `save_result`.
+
+    Returns
+    -------
+    Saved
+
+    Raises
+    ------
+    InputError
+        As `save_result`.
+    """
+    omissions, page = Omissions(result.omissions), ""
+    with omissions.noting("The report", "written"):
+        page, missing = drawn_page(result)
+        omissions.add(missing)
+    result = replace(result, omissions=omissions.sentences)
+    files = ({FILE: page.encode()} if page else {}) | result.files()
+    write_whole(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
+    return Saved(result, tuple(folder / name for name in reversed(files)))
+
+
+def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) -> Saved:
     """Write the report of a result again, from its folder alone.
 
     Parameters
@@ -50,20 +124,27 @@ def write_report(folder: Path, pdf: bool = False) -> tuple[Path, ...]:
         With results.json and series.npz, as `Result.save` writes it.
     pdf
         Whether to write it for paper too.
+    overwrite
+        Whether a report that sprung did not write, or that was changed since, is replaced too.
 
     Returns
     -------
-    tuple of Path
-        report.html, and report.pdf where it was asked for.
+    Saved
+        report.html, and report.pdf where it was asked for and could be written.
 
     Raises
     ------
     InputError
-        If the result cannot be read, the folder cannot be written, or there is no library that writes PDF.
+        If the result cannot be read, other files would be overwritten, the folder cannot be written, or there is no library
+        that writes PDF.
     """
     result = load(folder)
-    files = {FILE: page_of(result).encode()}
+    page, missing = drawn_page(result)
+    omissions = Omissions(missing)
+    files = {FILE: page.encode()}
     if pdf:
-        files[PDF_FILE] = pdf_of(result)
-    write_whole(folder, files)
-    return tuple(folder / name for name in files)
+        with omissions.noting("The report for paper", "written", unless=(InputError,)):
+            files[PDF_FILE] = pdf_of(result)
+    write_whole(folder, files, overwrite=overwrite)
+    written = tuple(folder / name for name in files)
+    return Saved(replace(result, omissions=omissions.sentences), written)

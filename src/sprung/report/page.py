@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.resources import files
 from typing import NamedTuple
 
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
 
+from sprung.errors import Omissions
 from sprung.pipeline import Result
 from sprung.report import sections
 from sprung.report.embedded import figure_json
 from sprung.report.palette import DARK, LIGHT
 from sprung.report.picture import Picture
+from sprung.report.sections.context import Context
 from sprung.report.sketch import Drawing, drawing_svg
 from sprung.report.style import alone_style, role_rules
 from sprung.report.svg import lower, svg_of
@@ -43,7 +45,7 @@ class Section(NamedTuple):
 
 
 def page_of(result: Result, unfolded: bool = False) -> str:
-    """Write the report.
+    """Write the report; a part that cannot be drawn is named at its top.
 
     Parameters
     ----------
@@ -57,20 +59,40 @@ def page_of(result: Result, unfolded: bool = False) -> str:
     str
         HTML; the same for the same result.
     """
+    return drawn_page(result, unfolded)[0]
+
+
+def drawn_page(result: Result, unfolded: bool = False) -> tuple[str, tuple[str, ...]]:
+    """Write the report, and say which parts of it could not be drawn.
+
+    Parameters
+    ----------
+    result, unfolded
+        As for `page_of`.
+
+    Returns
+    -------
+    tuple
+        HTML, and a sentence for each thing that is missing, those of the result first.
+    """
     page = _ENVIRONMENT.get_template("page.html")
     record = list(record_of(result))
-    return page.render(
+    omissions = Omissions(result.omissions)
+    sections = list(_sections(result, unfolded, omissions))
+    text = page.render(
         result=result,
+        omissions=omissions.sentences,
         verdict=verdict_words(result),
         record=record,
         running_head=_css_text(" · ".join([result.name, *(told for name, told in record if name == "Date")])),
         facts=facts_of(result),
-        sections=list(_sections(result, unfolded)),
+        sections=sections,
         light=LIGHT,
         dark=DARK,
         roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
         script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )
+    return text, omissions.sentences
 
 
 def _script() -> str:
@@ -84,23 +106,28 @@ def _css_text(text: str) -> Markup:
     return Markup('"{}"').format(Markup("".join(letters)))  # noqa: S704 (nothing is left in it that means something)
 
 
-def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
+def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[Section]:
     style = alone_style(halo=False) if unfolded else ""
-    parts = (
-        ("characteristics", "Masses, ride and wheel hop", "characteristics.html", sections.characteristics(result)),
-        ("parameters", "Parameters", "parameters.html", sections.parameters(result)),
-        ("geometry", "Geometry, sensors and loads", "geometry.html", sections.geometry(result)),
-        ("known", "Known beforehand", "known.html", sections.known(result)),
-        ("recordings", "Recordings", "recordings.html", sections.recordings(result, unfolded)),
-        ("spectra", "Spectra", "pictures.html", sections.spectra(result)),
-        ("stabilisation", "Stabilisation diagram", "pictures.html", sections.stabilisation(result)),
-        ("modes", "Modes", "modes.html", sections.modes(result)),
-        ("comparison", "Measured and simulated", "motions.html", sections.motions(result, unfolded)),
-        ("amplitude", "Frequency and damping against amplitude", "pictures.html", sections.amplitude(result)),
-        ("correlation", "Correlation of the parameters", "correlation.html", sections.correlation(result)),
-        ("next", "What to measure next", "next.html", sections.next_step(result)),
-        ("settings", "Settings, versions and files", "settings.html", sections.settings(result)),
-        ("literature", "Literature", "literature.html", sections.literature(result)),
+    parts: tuple[tuple[str, str, str, Callable[[], Context | None]], ...] = (
+        (
+            "characteristics",
+            "Masses, ride and wheel hop",
+            "characteristics.html",
+            lambda: sections.characteristics(result),
+        ),
+        ("parameters", "Parameters", "parameters.html", lambda: sections.parameters(result)),
+        ("geometry", "Geometry, sensors and loads", "geometry.html", lambda: sections.geometry(result)),
+        ("known", "Known beforehand", "known.html", lambda: sections.known(result)),
+        ("recordings", "Recordings", "recordings.html", lambda: sections.recordings(result, unfolded)),
+        ("spectra", "Spectra", "pictures.html", lambda: sections.spectra(result)),
+        ("stabilisation", "Stabilisation diagram", "pictures.html", lambda: sections.stabilisation(result)),
+        ("modes", "Modes", "modes.html", lambda: sections.modes(result)),
+        ("comparison", "Measured and simulated", "motions.html", lambda: sections.motions(result, unfolded)),
+        ("amplitude", "Frequency and damping against amplitude", "pictures.html", lambda: sections.amplitude(result)),
+        ("correlation", "Correlation of the parameters", "correlation.html", lambda: sections.correlation(result)),
+        ("next", "What to measure next", "next.html", lambda: sections.next_step(result)),
+        ("settings", "Settings, versions and files", "settings.html", lambda: sections.settings(result)),
+        ("literature", "Literature", "literature.html", lambda: sections.literature(result)),
     )
 
     def draw(picture: Picture) -> Markup:
@@ -114,6 +141,11 @@ def _sections(result: Result, unfolded: bool) -> Iterator[Section]:
     macros = _ENVIRONMENT.get_template("macros.html").module
     tools = {"macros": macros, "draw": draw, "sketch": sketch, "style": Markup(style)}  # noqa: S704 (made here)
     for anchor, title, template, context in parts:
-        if context is not None:
-            body = _ENVIRONMENT.get_template(template).render(**tools, **context)
+        body = None
+        # A part that fails costs no other: the reason why it is missing stands at the top.
+        with omissions.noting(f'The part "{title}" of the report'):
+            shown = context()
+            if shown is not None:
+                body = _ENVIRONMENT.get_template(template).render(**tools, **shown)
+        if body is not None:
             yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)

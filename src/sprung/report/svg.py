@@ -25,6 +25,9 @@ _MOST, _LEAST = 280.0, 0.5
 _NAME = 18
 """Letters of a name that are shown."""
 
+_NUMBER = 9.0
+"""Height of a number beside an axis, units."""
+
 _NARROW = 5.0
 """Width of a letter, on average, of a label beside a panel that is too low for the usual ones."""
 
@@ -141,7 +144,7 @@ def drawn(picture: Picture) -> tuple[str, float]:
 
 
 def _panel(panel: Panel, box: Box, zoomable: bool) -> Iterator[str]:
-    ticks = "".join(_ticks(panel.y, box))
+    ticks = "".join(_ticks(panel, box))
     yield f'<g class="ticks">{ticks}</g>' if zoomable else ticks
     number = 0
     for mark in panel.marks:
@@ -155,10 +158,16 @@ def _panel(panel: Panel, box: Box, zoomable: bool) -> Iterator[str]:
         yield f'<text class="{kind}" {place}>{escaped(text)}</text>'
 
 
-def _ticks(axis: Axis, box: Box) -> Iterator[str]:
-    for value, text in axis.marked:
+def _ticks(panel: Panel, box: Box) -> Iterator[str]:
+    # Numbers keep clear of each other, and of those of the next panel where panels touch.
+    inside = 4.5 if panel.name else -1.0
+    last = np.inf
+    for value, text in panel.y.marked:
         y = float(box.down(np.array(value)))
         yield f'<path class="grid" d="M{box.left:.0f} {y:.1f}h{box.width:.0f}"/>'
+        if not box.top + inside <= y <= box.bottom - inside or abs(last - y) < _NUMBER:
+            continue
+        last = y
         yield f'<text class="tick" x="{box.left - 4:.0f}" y="{y + 3:.1f}" text-anchor="end">{escaped(text)}</text>'
 
 

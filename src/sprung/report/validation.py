@@ -19,8 +19,8 @@ from sprung.tables import Table
 from sprung.validation import DropValidation, ModeAmplitude, Trace
 
 COLUMNS = (
-    "/noise: what is left, over the noise. Predicted: by the vehicle fitted to all other drops. Least white: in which "
-    "channel what is left repeats itself, how much, and after what time."
+    "/noise: residual over the sensors' noise. Predicted: by the vehicle fitted to all other drops. Least white: largest "
+    "autocorrelation of the residuals: channel, value, lag."
 )
 """What the columns of the table of drops say."""
 

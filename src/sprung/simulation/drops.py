@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from sprung.errors import Problems
+from sprung.progress import Progress, Step, counted, silent
 from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
@@ -35,6 +36,7 @@ def simulate(
     known: Mapping[str, Given] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
     gravity: float = STANDARD_GRAVITY,
+    progress: Progress = silent,
 ) -> Campaign:
     """Simulate the drop tests of a vehicle, as they would have been recorded.
 
@@ -66,6 +68,8 @@ def simulate(
         What is said about the model to identify.
     gravity
         m/s².
+    progress
+        Called with each drop that is begun.
 
     Returns
     -------
@@ -115,7 +119,7 @@ def simulate(
     first = max(before / rate - rest, 0.0)
     loaded = {load.name: load for load in setup.loads}
     released, accelerations = [], []
-    for drop in setup.drops:
+    for drop in counted(progress, "simulating the drops", setup.drops):
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         released.append(replace(drop, height=height))
         with problems.collecting():
@@ -125,6 +129,7 @@ def simulate(
             accelerations.append(fall.motion(1 / rate, after, first).acceleration)
     problems.raise_if_any()
     if forces_beside(vehicle.tracks, vehicle.extras):
+        progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
         blocks = [Block(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
         accelerations = [motion.acceleration for motion in motions]

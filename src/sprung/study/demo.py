@@ -10,6 +10,9 @@ from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import SCHOOL_BUS, WHEELS, Sensor, Wheel
 
+DEMO_VEHICLE = SCHOOL_BUS
+"""The vehicle that is dropped: its parameters are the true values of the example."""
+
 _BODY_RANGE, _WHEEL_RANGE = 4.0, 50.0  # g: the wheels see ten times what the body sees
 _STEPS = 2**16  # of a 16-bit recorder over the full range
 
@@ -38,7 +41,7 @@ def demo_campaign(seed: int = 1) -> Campaign:
     -------
     Campaign
     """
-    wheelbase = SCHOOL_BUS.wheelbase
+    wheelbase = DEMO_VEHICLE.wheelbase
     places = {
         "body_fl": (0.12, 0.69, 0.55),
         "body_fr": (0.12, -0.69, 0.55),
@@ -48,7 +51,7 @@ def demo_campaign(seed: int = 1) -> Campaign:
     body = [_sensor(name, "body", _BODY_RANGE, position) for name, position in places.items()]
     wheels = [_sensor(f"wheel_{station}", station, _WHEEL_RANGE) for station in WHEELS]
     return simulate(
-        SCHOOL_BUS,
+        DEMO_VEHICLE,
         sensors=body + wheels,
         loads=[_LOAD],
         rate=500,
@@ -56,9 +59,9 @@ def demo_campaign(seed: int = 1) -> Campaign:
         offset=0.02 * STANDARD_GRAVITY,
         seed=seed,
         known={
-            "total_mass": Known(SCHOOL_BUS.total_mass, 5.0),
-            "a": Known(SCHOOL_BUS.a),
-            "b": Known(SCHOOL_BUS.b),
+            "total_mass": Known(DEMO_VEHICLE.total_mass, 5.0),
+            "a": Known(DEMO_VEHICLE.a),
+            "b": Known(DEMO_VEHICLE.b),
             "t_f2": Known(0.4),
             "t_r2": Known(0.5),
         },

@@ -12,6 +12,7 @@ from sprung.display import shown
 from sprung.identification import structured_least_squares
 from sprung.modal import modes_of, paper_name
 from sprung.pipeline import identify
+from sprung.progress import Progress, Step, silent
 from sprung.recording import Campaign
 from sprung.study.misprints import BUS_LOAD, Misprint, find_misprints
 from sprung.study.paper_method import FIVE_BUMPS, bump_campaign, drop_campaign, identify_as_the_paper, state_matrices
@@ -184,7 +185,7 @@ def fit_all_records(campaign: Campaign) -> Mapping[str, float]:
 
 
 def reproduce(
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = silent,
     *,
     joint_fit: JointFit | None = fit_all_records,
     noise_levels: Sequence[float] = NOISE_LEVELS,
@@ -195,7 +196,7 @@ def reproduce(
     Parameters
     ----------
     progress
-        Told in words what is being done.
+        Called with each step that begins.
     joint_fit
         The identification to compare with under noise: that of `sprung.identify` unless given, None for none.
     noise_levels
@@ -207,15 +208,15 @@ def reproduce(
     -------
     PaperReproduction
     """
-    progress("Table 2: the simulated car")
+    progress(Step("Table 2: the simulated car"))
     simulated = table_2()
-    progress("Table 3: the modes of the school bus")
+    progress(Step("Table 3: the modes of the school bus"))
     modes = table_3()
-    progress("Table 5: the school bus from simulated records")
+    progress(Step("Table 5: the school bus from simulated records"))
     bus = bus_identified_back()
     points = []
-    for level in noise_levels:
-        progress(f"noise of {level:g} m/s²")
+    for number, level in enumerate(noise_levels, start=1):
+        progress(Step("identifying with noise", number, len(noise_levels), f"{level:g} m/s²"))
         points.append(noise_point(level, seeds, joint_fit))
     return PaperReproduction(simulated, modes, bus, find_misprints(), tuple(points))
 

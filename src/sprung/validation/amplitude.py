@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.identification import Fit
 from sprung.modal import Mode, modes_of
+from sprung.progress import Progress, counted, silent
 from sprung.validation.bodies import BodyMotion, body_rows
 from sprung.validation.sliding import Trace, follow_mode
 from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, free_decay
@@ -68,7 +69,11 @@ class ModeAmplitude:
 
 
 def mode_amplitudes(
-    fit: Fit, model: LinearModel | NonlinearModel, sensors: Sequence[Sensor], motions: Sequence[BodyMotion]
+    fit: Fit,
+    model: LinearModel | NonlinearModel,
+    sensors: Sequence[Sensor],
+    motions: Sequence[BodyMotion],
+    progress: Progress = silent,
 ) -> tuple[ModeAmplitude, ...]:
     """Follow the modes of the body through the decays of one load.
 
@@ -82,6 +87,8 @@ def mode_amplitudes(
         The sensors.
     motions
         Of the drops with this load.
+    progress
+        Called with each mode that is begun.
 
     Returns
     -------
@@ -94,9 +101,9 @@ def mode_amplitudes(
     rows = body_rows(fit, sensors)
     told = [one for one in motions if np.isfinite(one.measured).all()]
     found = []
-    for which, mode in enumerate(modes):
-        if mode.name is None or not mode.name.startswith("body ") or not told:
-            continue
+    of_body = [i for i, mode in enumerate(modes) if mode.name is not None and mode.name.startswith("body ") and told]
+    for which in counted(progress, "following the modes of the body through the decays", of_body):
+        mode = modes[which]
         shares = [_share(one, modes, which, rows) for one in told]
         best = sorted(range(len(told)), key=lambda i: -shares[i])[:_DROPS]
         noise = told[best[0]].noise
@@ -118,7 +125,7 @@ def mode_amplitudes(
                     break
                 begin *= _LARGER
             of_drops = tuple(traces), tuple(simulations)
-            found.append(ModeAmplitude(mode.name, mode.frequency, mode.damping_ratio, *of_drops, simulated))
+            found.append(ModeAmplitude(str(mode.name), mode.frequency, mode.damping_ratio, *of_drops, simulated))
     return tuple(found)
 
 

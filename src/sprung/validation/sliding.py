@@ -19,8 +19,8 @@ Complex = NDArray[np.complex128]
 _PERIODS, _HOP = 1.5, 0.25
 """Periods in a window, and from one window to the next."""
 
-_RATE = 64.0
-"""Samples per second of which one window is made: neighbours are averaged, as wheels hop at 20 Hz at most."""
+_PER_PERIOD = 6.0
+"""Samples per period of the fastest mode of which one window is made: neighbours are averaged."""
 
 _TRIED = (1.0, 1.4, 2.0, 2.8)
 """Multiples of the frequency from which a window is fitted: where friction holds a suspension, it leaps."""
@@ -101,10 +101,13 @@ def follow_mode(
 
     Notes
     -----
-    In each window the body is taken to move as Re Σ b λ² A e^{λt}, with complex amplitudes A and an offset eliminated as they
-    are linear, so that a fit has two unknowns. Uncertainties are those of least squares.
+    In each window the body is taken to accelerate as Re Σ b A e^{λt}, with complex amplitudes A and an offset eliminated as
+    they are linear, so that a fit has two unknowns. Averaging neighbours changes no more than A. Uncertainties are those of
+    least squares. A window says nothing where it has no more samples than unknowns, or where the frequency found is an alias,
+    above half the rate of its samples.
     """
-    every = max(round(rate / _RATE), 1)
+    fastest = max(abs(mode.pole.imag) for mode in modes) / (2 * np.pi)
+    every = max(round(rate / (_PER_PERIOD * fastest)), 1)
     count = record.shape[1] // every
     thin = record[:, : count * every].reshape(3, count, every).mean(axis=2) / noise[:, None]
     own, others = modes[which], [mode for i, mode in enumerate(modes) if i != which]
@@ -144,10 +147,13 @@ class _Window:
 
     def _columns(self, pole: complex, shape: Complex) -> Iterator[Real]:
         """Give what the two parts of an amplitude do, each of shape (3 · time,)."""
-        # From where the mode is largest, so that no column is out of all proportion to the others.
-        motion = (shape * pole**2 / self.noise)[:, None] * np.exp(pole * (self.time - self.time[0]))
+        motion = (shape / self.noise)[:, None] * np.exp(pole * (self.time - self._largest(pole)))
         yield motion.real.ravel()
         yield -motion.imag.ravel()
+
+    def _largest(self, pole: complex) -> float:
+        """When a mode is largest, s: counted from there, none overflows or is out of all proportion to the others."""
+        return float(self.time[0] if pole.real < 0 else self.time[-1])
 
     def _fixed(self) -> Real:
         offsets = np.kron(np.eye(3), np.ones((len(self.time), 1)))
@@ -158,8 +164,11 @@ class _Window:
         basis: Real = left[:, singular > 1e-6 * singular[0]]
         return basis
 
-    def fit(self, poles: Sequence[complex]) -> tuple[complex, Real, float]:
-        """Fit the pole, from several others: it, the covariance of its parts, and the amplitude in the middle."""
+    def fit(self, poles: Sequence[complex]) -> tuple[complex, Real | None, float]:
+        """Fit the pole, from several others: it, the covariance of its parts, and the displacement in the middle.
+
+        There is no covariance where the window says nothing.
+        """
         basis = self._fixed()
         values = self.values.ravel()
         values = values - basis @ (basis.T @ values)
@@ -185,15 +194,20 @@ class _Window:
         own = np.column_stack(list(self._columns(pole, self.shape)))
         own -= basis @ (basis.T @ own)
         parts = np.linalg.lstsq(own, values, rcond=None)[0]
-        freedom = max(len(values) - basis.shape[1] - 4, 1)
+        freedom = len(values) - basis.shape[1] - 4
+        if freedom <= 0 or pole.imag >= np.pi / (self.time[1] - self.time[0]):
+            return pole, None, 0.0
         slopes = np.asarray(end.jac, dtype=float)
         covariance = 2 * float(end.cost) / freedom * np.linalg.pinv(slopes.T @ slopes)
-        return pole, covariance, float(np.hypot(*parts) * np.exp(-pole.real * self.time[0]))
+        middle = float(np.exp(-pole.real * self._largest(pole)))
+        return pole, covariance, float(np.hypot(*parts)) / abs(pole) ** 2 * middle
 
 
-def _as_ratio(pole: complex, covariance: Real) -> tuple[float, float, float, float]:
+def _as_ratio(pole: complex, covariance: Real | None) -> tuple[float, float, float, float]:
     """Turn a pole into undamped frequency, its standard uncertainty, damping ratio, and its own."""
     size = abs(pole)
+    if covariance is None:
+        return size / (2 * np.pi), np.inf, -pole.real / size, np.inf
     along = np.array([pole.real, pole.imag]) / size
     across = np.array([-(pole.imag**2), pole.real * pole.imag]) / size**3
     turn = 2 * np.pi

@@ -15,6 +15,7 @@ from sprung.pipeline.diagnosis.of_all import exchanged_loads, misplaced_loads, t
 from sprung.pipeline.diagnosis.of_channels import WithoutChannel, exchanges, scores
 from sprung.pipeline.diagnosis.of_drops import WithoutDrop
 from sprung.pipeline.diagnosis.suspicion import MOST_OF_IT, SURE
+from sprung.progress import Progress, counted, silent
 
 _PROMISING = 0.85
 """Part of what is unexplained that may be left for a first fault to be believed in while a second is looked for."""
@@ -25,13 +26,15 @@ _WORTH_IT = 0.3
 _MOST_FAULTS = 3
 
 
-def diagnose(bench: Bench) -> tuple[Hypothesis, ...]:
+def diagnose(bench: Bench, progress: Progress = silent) -> tuple[Hypothesis, ...]:
     """Find what is wrong.
 
     Parameters
     ----------
     bench
         The campaign.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -41,7 +44,7 @@ def diagnose(bench: Bench) -> tuple[Hypothesis, ...]:
     found: list[Hypothesis] = []
     first, before, settled = bench, bench.base.unexplained, 0
     while len(found) < _MOST_FAULTS:
-        best = compete(bench)
+        best = compete(bench, progress)
         if best is None or (not best.specific and any(not one.specific for one in found)):
             break
         found.append(best)
@@ -58,13 +61,15 @@ def diagnose(bench: Bench) -> tuple[Hypothesis, ...]:
     return taken
 
 
-def compete(bench: Bench) -> Hypothesis | None:
+def compete(bench: Bench, progress: Progress = silent) -> Hypothesis | None:
     """Let all hypotheses compete.
 
     Parameters
     ----------
     bench
         The campaign.
+    progress
+        Called with each step that begins.
 
     Returns
     -------
@@ -72,7 +77,7 @@ def compete(bench: Bench) -> Hypothesis | None:
         The best one, if it explains much; where another one does so about as well, it is only named, and that one with it.
     """
     base = bench.base
-    pool = [*_of_parts(bench), *misplaced_loads(bench), *coupled_otherwise(bench)]
+    pool = [*_of_parts(bench, progress), *misplaced_loads(bench), *coupled_otherwise(bench)]
     for more in (exchanged_loads, exchanges):
         if not any(one.tally.explained(bench.noise) or (one.trial.explained and not one.specific) for one in pool):
             pool += more(bench)
@@ -136,7 +141,7 @@ def _simplest(pool: Sequence[Hypothesis]) -> Hypothesis:
     return min(alike, key=lambda one: (one.free, one.score(1.0)))
 
 
-def _of_parts(bench: Bench) -> Iterator[Hypothesis]:
+def _of_parts(bench: Bench, progress: Progress) -> Iterator[Hypothesis]:
     """Leave out each channel and each drop, and look at those for which that is worth it."""
     counts = bench.base.tally.counts
     channels, drops = (np.flatnonzero(counts.any(axis=axis)).tolist() for axis in (0, 1))
@@ -150,9 +155,12 @@ def _of_parts(bench: Bench) -> Iterator[Hypothesis]:
     near: dict[str | None, float] = {
         one.where: one.gain for one in reversed(scores(bench.base)) if one.kind != "load-position"
     }
+    chosen: list[WithoutChannel | WithoutDrop] = []
     odd = np.flatnonzero(~bench.base.tally.explained_in(bench.noise))
     for part, gain in zip(parts, gains, strict=True):
         named = bench.campaign.sensors[part.channel].channel if isinstance(part, WithoutChannel) else None
         alone = isinstance(part, WithoutChannel) and odd.tolist() == [part.channel]
         if alone or max(gain, near.get(named, 0.0)) > max(_WORTH_IT * best, SURE):
-            yield from part.hypotheses(bench)
+            chosen.append(part)
+    for part in counted(progress, "looking for what is wrong, without one channel or drop", chosen):
+        yield from part.hypotheses(bench)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import accumulate
 from pathlib import Path
@@ -14,6 +14,7 @@ from sprung.pipeline.drafting.look import Look, look
 from sprung.pipeline.drafting.records import Draft
 from sprung.pipeline.drafting.single import put_together
 from sprung.pipeline.drafting.text import campaign_text, missing_in
+from sprung.progress import Progress, Step, silent
 from sprung.recording import FILE
 
 _NO_RECORDINGS = frozenset(
@@ -23,7 +24,7 @@ _NO_RECORDINGS = frozenset(
 """Endings of what lies about in a folder of recordings, and is passed over without a word."""
 
 
-def draft(folder: str | os.PathLike[str], progress: Callable[[float], None] | None = None) -> Draft:
+def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwrite: bool = False) -> Draft:
     """Draft a campaign from the recordings in a folder and its subfolders.
 
     Parameters
@@ -31,7 +32,9 @@ def draft(folder: str | os.PathLike[str], progress: Callable[[float], None] | No
     folder
         Where the recordings are; the campaign file goes there.
     progress
-        Called with the part that is done, 0 to 1.
+        Called with each recording that is begun, and within long ones, with the part that is done.
+    overwrite
+        Whether a campaign file that is there already is to be replaced: it is drafted anew.
 
     Returns
     -------
@@ -45,7 +48,7 @@ def draft(folder: str | os.PathLike[str], progress: Callable[[float], None] | No
         reason for each of them.
     """
     folder = Path(folder)
-    _refuse(folder)
+    _refuse(folder, overwrite)
     names = tuple(_recordings(folder))
     if not names:
         do = "Put the recordings there, in any format that sprung reads."
@@ -56,15 +59,15 @@ def draft(folder: str | os.PathLike[str], progress: Callable[[float], None] | No
     unreadable: dict[str, tuple[Problem, ...]] = {}
     for i, name in enumerate(names):
 
-        def tell(fraction: float, i: int = i) -> None:
-            if progress is not None:
-                progress(before[i] + (before[i + 1] - before[i]) * fraction)
+        def tell(fraction: float, i: int = i, name: str = name) -> None:
+            done = before[i] + (before[i + 1] - before[i]) * fraction
+            progress(Step("looking for drops", i + 1, len(names), name, done=done))
 
+        tell(0.0)
         try:
             looks.append(look(folder, name, tell))
         except InputError as error:
             unreadable[name] = error.problems
-        tell(1.0)
     looks = list(put_together(looks, folder))
     if not any(one.drops for one in looks):
         raise InputError([*_no_drops(looks), *(problem for problems in unreadable.values() for problem in problems)])
@@ -89,13 +92,13 @@ def draft(folder: str | os.PathLike[str], progress: Callable[[float], None] | No
     return replace(made, text=text, missing=missing_in(text))
 
 
-def _refuse(folder: Path) -> None:
+def _refuse(folder: Path, overwrite: bool) -> None:
     if not folder.is_dir():
         found = "a file" if folder.exists() else "no such folder"
         do = "Give the folder that the recordings are in."
         raise InputError([Problem(str(folder), found, "a folder with recordings", do)])
     path = folder / FILE
-    if path.exists():
+    if path.exists() and not overwrite:
         do = f"Go on with it (sprung check {path}), or move it away to have it drafted anew."
         raise InputError([Problem(str(path), "a campaign file", "a folder that has none yet", do)])
 

@@ -164,8 +164,13 @@ class Draft:
         """Where the campaign file goes."""
         return self.folder / FILE
 
-    def write(self) -> Path:
+    def write(self, *, overwrite: bool = False) -> Path:
         """Write the campaign file and, for editors, its JSON Schema beside it; whole or not at all.
+
+        Parameters
+        ----------
+        overwrite
+            Whether files of these names that sprung did not write, or that were changed since, are replaced.
 
         Returns
         -------
@@ -175,9 +180,10 @@ class Draft:
         Raises
         ------
         InputError
-            If the folder cannot be written to.
+            If such files would be overwritten, with their list, or the folder cannot be written to.
         """
-        write_whole(self.folder, {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()})
+        files = {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()}
+        write_whole(self.folder, files, overwrite=overwrite)
         return self.path
 
     def document(self) -> dict[str, Any]:

@@ -28,6 +28,18 @@ _ITEMS = gap("[ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for e
 _LOAD = gap("empty, or the name of the [[load]] that was on the vehicle")
 _WHEELS = gap("[fl, fr, rl, rr] each in quotes: those that were dropped")
 
+_LOADS = """\
+# One [[load]] for each load that was on the vehicle in some of the drops; the load "empty" always exists, and a vehicle that
+# was dropped only empty needs none. Weigh each piece, measure where its centre lies, and write:
+#
+# [[load]]
+# name     = "sandbags"                # what the drops call it: load = "sandbags"
+# items    = [ { mass = 235, position = [-1.2, 0.4, 1.1] },     # kg; m: forward of the front axle, left, above the ground
+#              { mass = 20, on = "fl" } ]                       # a piece on a wheel: fl, fr, rl or rr
+# or, when only totals are known, centred on the body, in place of items:
+# added    = { mass = 470, I_yy = 1057.5, I_xx = 339.6 }        # kg and kg m²
+"""
+
 _KEYS = 9
 """Length of the longest usual key of a section, so that the equals signs stand below each other."""
 
@@ -49,6 +61,7 @@ def campaign_text(draft: Draft) -> str:
         SCHEMA_LINE + _HEAD,
         _vehicle(draft.name),
         *map(_sensor, draft.sensors),
+        _LOADS,
         *map(_load, draft.loads),
         *(_drop(drop) for drop in draft.drops),
     ]

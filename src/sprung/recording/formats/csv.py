@@ -9,6 +9,7 @@ import codecs
 from bisect import bisect_right
 from dataclasses import dataclass, replace
 from itertools import chain
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +25,6 @@ from sprung.recording.formats.table import Table, split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
-    from pathlib import Path
 
     from numpy.typing import NDArray
 
@@ -64,15 +64,45 @@ class CsvFormat:
             raise refuse(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
         ahead = blocks(path, encoding)
         head = next(ahead, Block(0, []))
-        text = "\n".join(head.lines)
-        end = _end(text)
-        if not text[:end].strip():
-            expected = "a line with the names of the columns, then the samples"
-            raise refuse(file, "an empty file", expected, "Export it again.")
-        layout = layout_of(text, end)
-        rate = _rate(text, layout, file)
-        _check(layout, rate, end, file)
-        return _table(_Text(path, encoding, layout), chain([head], ahead), rate, _may_be_time(text, layout))
+        layout, rate, times = _understood(head, file)
+        return _table(_Text(path, encoding, layout), chain([head], ahead), rate, times)
+
+
+def table_of_lines(file: str, lines: Sequence[str]) -> Table:
+    """Understand lines as a text table, for formats whose cells can be written as text.
+
+    Parameters
+    ----------
+    file
+        What to call their file in messages.
+    lines
+        All of them, in memory, the cells separated as in a text table.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InputError
+        As from `CsvFormat.read`.
+    """
+    head = Block(0, list(lines))
+    layout, rate, times = _understood(head, file)
+    return _table(_Lines(Path(file), Encoding("utf-8", 0), layout, (), head), [head], rate, times)
+
+
+def _understood(head: Block, file: str) -> tuple[Layout, Rate | None, list[int]]:
+    """Recognise the layout of a table, its rate where a line above says it, and the columns that may be the time."""
+    text = "\n".join(head.lines)
+    end = _end(text)
+    if not text[:end].strip():
+        expected = "a line with the names of the columns, then the samples"
+        raise refuse(file, "an empty file", expected, "Export it again.")
+    layout = layout_of(text, end)
+    rate = _rate(text, layout, file)
+    _check(layout, rate, end, file)
+    return layout, rate, _may_be_time(text, layout)
 
 
 def _end(text: str) -> int:
@@ -143,10 +173,19 @@ class _Text:
         """Its bytes."""
         return self.path.stat().st_size
 
+    @property
+    def small(self) -> bool:
+        """Whether it is read at once."""
+        return self.size <= _SMALL
+
+    def blocks(self, start: int) -> Iterator[Block]:
+        """Give its lines from a byte on."""
+        return blocks(self.path, self.encoding, start)
+
     def cells(self, columns: Sequence[int], first: int, last: int) -> Iterator[tuple[int, Cells]]:
         """Read the blocks with some samples; give the first sample of each as well."""
         sample, number, start = self.marks[bisect_right(self.marks, first, key=lambda mark: mark[0]) - 1]
-        pieces = blocks(self.path, self.encoding, start)
+        pieces = self.blocks(start)
         while sample < last:
             with reading(self.path, "a text table"):
                 lines = _samples(next(pieces), number, self.layout)
@@ -169,6 +208,33 @@ class _Text:
                     begin, text, before = all_.get(column, (line, cell, 0))
                     all_[column] = (begin, text, before + count)
         return whole.spoilt(column)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines(_Text):
+    """Lines that are in memory.
+
+    Attributes
+    ----------
+    held
+        All of them.
+    """
+
+    held: Block = Block(0, [])  # noqa: RUF009 (a tuple that nobody changes)
+
+    @property
+    def size(self) -> int:
+        """Letters of them."""
+        return sum(len(line) + 1 for line in self.held.lines)
+
+    @property
+    def small(self) -> bool:
+        """Always: they are in memory anyhow."""
+        return True
+
+    def blocks(self, start: int) -> Iterator[Block]:  # noqa: ARG002 (there is one block)
+        """Give all lines."""
+        return iter([self.held])
 
 
 def _samples(block: Block, number: int, layout: Layout) -> Block:
@@ -205,7 +271,7 @@ def _gone_through(text: _Text, ahead: Iterable[Block], columns: Sequence[int]) -
 
 def _table(text: _Text, ahead: Iterable[Block], rate: Rate | None, candidates: Sequence[int]) -> Table:
     layout = text.layout
-    small = text.size <= _SMALL
+    small = text.small
     read = range(len(layout.names)) if small else candidates
     text, cells, cut = _gone_through(text, ahead, read)
     notes = [f"line {line}, between names and samples, was passed over" for line in layout.passed]

@@ -26,6 +26,7 @@ _OWN = tuple(
     EntryPoint(name, f"sprung.recording.formats.{name}:{format_}", GROUP)
     for name, format_ in (
         ("csv", "CsvFormat"),
+        ("excel", "ExcelFormat"),
         ("hdf5", "Hdf5Format"),
         ("iso_mme", "IsoMmeFormat"),
         ("mat", "MatFormat"),

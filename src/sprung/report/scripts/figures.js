@@ -3,7 +3,7 @@
 
 function element(kind, attributes, parent) {
   const svg = kind === "path" || kind === "text" || kind === "rect";
-  const made = svg ? document.createElementNS("http://www.w3.org/2000/svg", kind) : document.createElement(kind);
+  const made = svg ? document.createElementNS(document.querySelector("svg").namespaceURI, kind) : document.createElement(kind);
   for (const [key, value] of Object.entries(attributes)) key === "text" ? (made.textContent = value) : made.setAttribute(key, value);
   parent?.append(made);
   return made;

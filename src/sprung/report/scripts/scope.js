@@ -70,6 +70,7 @@ function scopeOf(figure, svg, held, columns) {
     for (const [value, text] of ticks.filter((_, i) => i % every === 0)) {
       const y = top + tall * (1 - along(axis, value));
       element("path", { class: "grid", d: `M${left} ${y.toFixed(1)}h${width}` }, group);
+      if (panel.lane && (y < top + 4.5 || y > top + tall - 4.5)) continue;
       element("text", { class: "tick", x: left - 4, y: (y + 3).toFixed(1), "text-anchor": "end", text }, group);
     }
   }
@@ -145,7 +146,7 @@ function scopeOf(figure, svg, held, columns) {
       const [, top, , tall] = panel.box;
       element("path", { class: "cursor", d: `M${place(time).toFixed(1)} ${top}v${tall}` }, groups[i]);
       const lines = panel.curves.filter((curve) => !curve.points && !hidden.has(curve.name));
-      const texts = lines.map((curve) => `${lines.length > 1 ? `${curve.name} ` : ""}${written(data[curve.y][nearest(data[curve.x], time)], 4)}`);
+      const texts = lines.map((curve) => [curve.name, written(data[curve.y][nearest(data[curve.x], time)], 4)].filter(Boolean).join(" "));
       element("text", { class: "reading", x: left + 4, y: top + 10, text: texts.join(" · ") }, groups[i]);
       words.push(`${panel.name}: ${texts.join(", ")}`);
     });

@@ -24,16 +24,19 @@ class Length:
         m; None where it is not known.
     std
         Standard uncertainty, m; 0 for an exact value.
+    written
+        What stands in place of the value; empty for the value itself.
     """
 
     value: float | None = None
     std: float = 0.0
+    written: str = ""
 
     @property
     def text(self) -> str:
         """The value as the sketch shows it: rounded by its uncertainty, to 1 mm at most; ``?`` where it is not known."""
-        if self.value is None:
-            return "?"
+        if self.written or self.value is None:
+            return self.written or "?"
         written = round_by_uncertainty(self.value, max(self.std, _FINEST))[0] if self.std else f"{self.value:.4g}"
         return f"{written} m"
 
@@ -74,6 +77,8 @@ class Geometry:
         Without the load ``empty``.
     identified
         Whether a, b and the half-distances come from an identification.
+    blank
+        Whether it is drawn to be written on, and not to scale.
     """
 
     name: str
@@ -89,6 +94,7 @@ class Geometry:
     sensors: tuple[Sensor, ...] = ()
     loads: tuple[Load, ...] = ()
     identified: bool = False
+    blank: bool = False
 
 
 def geometry_of(source: Campaign | Result) -> Geometry:

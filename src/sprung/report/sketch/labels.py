@@ -190,8 +190,10 @@ def place_labels(labels: Sequence[Label], taken: Iterable[Box], frame: Box) -> t
 def _around(label: Label) -> Iterator[Placed]:
     """Give places beside the point in the preferred directions."""
     width, height = label.size
+    # Above the centre of gravity nothing else is dimensioned.
+    directions = ((0, -1), *_DIRECTIONS) if label.kind == "gravity" else _DIRECTIONS
     for distance in _DISTANCES:
-        for x, y in _DIRECTIONS:
+        for x, y in directions:
             # The side of the text that faces the point stays at the distance, whatever the text's size.
             middle = (
                 label.at[0] + x * distance + (width / 2 if x > 0.7 else -width / 2 if x < -0.7 else x * width / 2),

@@ -41,6 +41,8 @@ class Proportions:
     @property
     def to_scale(self) -> bool:
         """Whether anything along the vehicle is known."""
+        if self.geometry.blank:
+            return False
         return self.geometry.wheelbase.value is not None or any(True for _ in self.places)
 
     @property

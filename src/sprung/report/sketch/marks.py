@@ -1,0 +1,154 @@
+"""Marks of sensors and loads on a drawing, and the labels that belong to them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from sprung.report.sketch.labels import Label
+from sprung.report.sketch.proportions import Proportions
+from sprung.report.sketch.shapes import Disc, Kind, Point, Shape, Stroke
+from sprung.vehicle import WHEELS, Wheel
+
+_MARK = 3.6
+"""Half-size of the mark of a sensor or a load, units."""
+
+_SAME = 7.0
+"""Marks less than this apart, units, share one label."""
+
+_LONGEST = 26
+"""Letters of a name that are written."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """How lengths are placed on a drawing.
+
+    Attributes
+    ----------
+    scale
+        Units per m.
+    origin
+        Of the front axle's centre on the ground or on the centreline.
+    """
+
+    scale: float
+    origin: Point
+
+    def at(self, x: float, up: float) -> Point:
+        """Place a point: x to the right, y or z upwards."""
+        return self.origin[0] + self.scale * x, self.origin[1] - self.scale * up
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A sensor or a piece of a load.
+
+    Attributes
+    ----------
+    at
+        Where it is, units.
+    text
+        Its label.
+    kind
+        What it is.
+    on_body
+        Whether it is on the body, and not on a wheel.
+    """
+
+    at: Point
+    text: str
+    kind: Kind
+    on_body: bool = True
+
+
+Marks: TypeAlias = Callable[[Frame], list[Mark]]
+"""Places the marks once the frame of a drawing is known."""
+
+
+def mark_placer(
+    drawn: Proportions,
+    project: Callable[[tuple[float, float, float]], tuple[float, float]],
+    wheel: Callable[[Wheel], tuple[float, float]],
+) -> Marks:
+    """Return a function that places the sensors and loads whose place is known.
+
+    Parameters
+    ----------
+    drawn
+        The vehicle as it is drawn.
+    project
+        From x, y and z of a point on the body to its two coordinates on the drawing, m.
+    wheel
+        From a wheel station to its two coordinates on the drawing, m.
+    """
+    stations: list[str | None] = ["body", *WHEELS, None]
+
+    def marks(frame: Frame) -> list[Mark]:
+        found = []
+        for sensor in sorted(drawn.geometry.sensors, key=lambda one: stations.index(one.on)):
+            if sensor.position is not None:
+                found.append(Mark(frame.at(*project(sensor.position)), shortened(sensor.channel), "sensor"))
+            elif sensor.on is not None and sensor.on != "body":
+                found.append(Mark(frame.at(*wheel(sensor.on)), shortened(sensor.channel), "sensor", False))
+        for load in drawn.geometry.loads:
+            for item in load.items:
+                text = shortened(f"{load.name} {item.mass:.4g} kg")
+                if item.position is not None:
+                    found.append(Mark(frame.at(*project(item.position)), text, "load"))
+                elif item.on is not None:
+                    found.append(Mark(frame.at(*wheel(item.on)), text, "load", False))
+        return found
+
+    return marks
+
+
+def grouped_labels(marks: Sequence[Mark]) -> Iterator[Label]:
+    """Yield the labels of marks; marks of one kind that lie on one point share one.
+
+    Parameters
+    ----------
+    marks
+        On one drawing.
+    """
+    groups: list[list[Mark]] = []
+    for mark in marks:
+        for group in groups:
+            apart = max(abs(mark.at[0] - group[0].at[0]), abs(mark.at[1] - group[0].at[1]))
+            if group[0].kind == mark.kind and apart < _SAME:
+                group.append(mark)
+                break
+        else:
+            groups.append([mark])
+    for group in groups:
+        yield Label(group[0].at, tuple(dict.fromkeys(mark.text for mark in group)), group[0].kind)
+
+
+def shortened(name: str) -> str:
+    """Shorten a name that is too long for a label.
+
+    Parameters
+    ----------
+    name
+        Any.
+    """
+    printable = "".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in name)
+    return printable if len(printable) <= _LONGEST else f"{printable[: _LONGEST - 1]}…"
+
+
+def mark_shapes(mark: Mark) -> Iterator[Shape]:
+    """Draw the mark of a sensor or a load.
+
+    Parameters
+    ----------
+    mark
+        The mark.
+    """
+    (x, y), r = mark.at, _MARK
+    if mark.kind == "sensor":
+        yield Disc(mark.at, r, "sensor", filled=mark.on_body)
+        return
+    yield Stroke(((x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)), mark.kind, closed=True)
+    yield Stroke(((x - r, y - r), (x + r, y + r)), mark.kind)
+    yield Stroke(((x - r, y + r), (x + r, y - r)), mark.kind)

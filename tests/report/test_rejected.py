@@ -1,0 +1,100 @@
+"""A rejected result gives no estimates, whoever asks: every number that was one is looked for in everything that is shown."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import sprung
+from goldens import stored_result
+from sprung.errors import InputError
+from sprung.pipeline import Result
+from sprung.pipeline.withholding import withhold_estimates
+from sprung.report import page_of, result_view, text_of
+from sprung.tables import value_cells
+from sprung.validation import Verdict
+
+REASON = "the model does not explain the records: in wheel_fl its error is 7.0 % of the signal"
+
+
+@pytest.fixture(scope="module")
+def sound() -> Result:
+    return stored_result("accept")
+
+
+@pytest.fixture(scope="module")
+def rejected(sound: Result) -> Result:
+    return withhold_estimates(dataclasses.replace(sound, verdict=Verdict("reject", (REASON,))))
+
+
+def numbers_of(result: Result) -> set[str]:
+    """What was estimated, as tables round it, and as JSON writes it; short figures may stand elsewhere by chance."""
+    found = [one for one in (*result.parameters.values(), *result.derived.values()) if one.status == "estimated"]
+    shown = (
+        {value_cells(one)[0] for one in found} | {repr(one.value) for one in found} | {repr(one.std) for one in found}
+    )
+    for modes in result.modes.values():
+        shown |= {repr(mode.frequency) for mode in modes} | {f"{mode.frequency:.5f}" for mode in modes}
+    return {text for text in shown if len(re.sub(r"\D", "", text)) >= 4}
+
+
+def test_nothing_shows_an_estimate(sound: Result, rejected: Result) -> None:
+    numbers = numbers_of(sound)
+    assert len(numbers) > 30
+    shown = {
+        "terminal": text_of(result_view(rejected)),
+        "notebook": rejected._repr_html_(),
+        "repr": repr(rejected),
+        "report": page_of(rejected),
+        "results.json": rejected.to_json(),
+    }
+    for where, text in shown.items():
+        # Of whole numbers, not of their parts: 17000 is in 117000.
+        there = {number for number in numbers if re.search(rf"(?<![\d.]){re.escape(number)}(?![\d.])", text)}
+        assert there == set(), where
+    for text in (shown["terminal"], shown["notebook"]):
+        assert "no estimates are reported" in " ".join(text.split())
+        assert REASON[:40] in " ".join(text.split())
+
+
+def test_results_json_says_so_as_the_contract_has_it(rejected: Result) -> None:
+    document = json.loads(rejected.to_json())
+    estimates = document["parameters"].values()
+    assert {one["status"] for one in estimates} <= {"known", "unidentifiable"}
+    assert all(one["value"] is None and one["std"] is None for one in estimates if one["status"] == "unidentifiable")
+    assert document["scale"]["per_total_mass"] == {}
+    assert document["correlation"] == {"names": [], "matrix": []}
+    assert all(modes == [] for modes in document["modes"].values())
+    assert (document["amplitude"] or [], document["next_step"]) == ([], None)
+    # Why it was rejected can still be seen.
+    assert document["fit"]["noise"]
+    assert document["fit"]["misfit"]
+    assert document["validation"]
+
+
+def test_a_file_of_an_older_sprung_that_holds_numbers_is_read_without(sound: Result, tmp_path: Path) -> None:
+    document = json.loads(sound.to_json())
+    del document["checksums"]
+    document["verdict"] = {"state": "reject", "reasons": [REASON]}
+    (tmp_path / "results.json").write_text(json.dumps(document), encoding="utf-8")
+    read = sprung.load(tmp_path / "results.json", series=False)
+    assert {one.value for one in read.parameters.values() if one.status != "known"} == {None}
+    assert all(modes == () for modes in read.modes.values())
+
+
+def test_it_is_compared_and_drawn_without(sound: Result, rejected: Result) -> None:
+    found = sprung.compare([sound, rejected], names=["one", "other"])
+    assert all(row.told[1].value is None for rows in (found.parameters, found.modes) for row in rows.values())
+    for draw in (sprung.plot.correlation, sprung.plot.amplitude):
+        with pytest.raises(InputError):
+            draw(rejected)
+    with pytest.raises(InputError):
+        _ = rejected.vehicle
+
+
+def test_a_result_that_is_not_rejected_stays_as_it_is(sound: Result) -> None:
+    assert withhold_estimates(sound) is sound
