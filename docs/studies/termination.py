@@ -55,7 +55,7 @@ class Command:
 
 def _campaign(folder: Path) -> None:
     (folder / "car.toml").write_text(CAR)
-    sprung.write(sprung.simulate_file(folder / "car.toml", seed=1), folder / "campaign")
+    sprung.write(sprung.simulate(folder / "car.toml", seed=1), folder / "campaign")
 
 
 def _vehicle(folder: Path) -> None:

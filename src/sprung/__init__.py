@@ -28,14 +28,11 @@ if TYPE_CHECKING:
         is_recordings,
         load,
         modes,
-        modes_of_recordings,
         plan,
-        plan_campaign,
-        plan_file,
         validate,
     )
     from sprung.recording import Campaign, Drop, read, schema_text, to_sep005, write
-    from sprung.simulation import simulate, simulate_file
+    from sprung.simulation import simulate
     from sprung.study import Comparison, compare
     from sprung.vehicle import Load, Sensor, Vehicle
 
@@ -54,14 +51,10 @@ __all__ = [
     "is_recordings",
     "load",
     "modes",
-    "modes_of_recordings",
     "plan",
-    "plan_campaign",
-    "plan_file",
     "read",
     "schema_text",
     "simulate",
-    "simulate_file",
     "to_sep005",
     "validate",
     "write",
@@ -84,14 +77,10 @@ _HOME = {
     "is_recordings": "pipeline",
     "load": "pipeline",
     "modes": "pipeline",
-    "modes_of_recordings": "pipeline",
     "plan": "pipeline",
-    "plan_campaign": "pipeline",
-    "plan_file": "pipeline",
     "read": "recording",
     "schema_text": "recording",
     "simulate": "simulation",
-    "simulate_file": "simulation",
     "to_sep005": "recording",
     "validate": "pipeline",
     "write": "recording",
@@ -112,4 +101,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted([*__all__, *_ROOMS, "__version__"])

@@ -11,11 +11,14 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
+from sprung.display import shown
+
 
 class SprungError(Exception):
     """Base of every error that sprung raises on purpose."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Problem:
     """One reason why an input cannot be used.
@@ -56,10 +59,28 @@ class InputError(SprungError, ValueError):
         super().__init__("\n".join(str(problem) for problem in self.problems))
 
 
+class UnknownNameError(SprungError, KeyError):
+    """Nothing has this name; says which one was probably meant.
+
+    Attributes
+    ----------
+    name : str
+    """
+
+    def __init__(self, name: str, allowed: Iterable[str]) -> None:
+        self.name = name
+        super().__init__(name)
+        self._said = f"nothing is named '{name}'. {did_you_mean(name, allowed)}"
+
+    def __str__(self) -> str:
+        return self._said
+
+
 class ResultFileError(InputError):
     """A saved result cannot be read back: newer schema, truncated or edited."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Fault:
     """Something wrong with a recording or the campaign which the rest of the campaign survives.

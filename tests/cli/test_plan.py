@@ -35,7 +35,7 @@ def test_what_cannot_be_told_is_named_below_the_table(vehicle_file: Path) -> Non
 
 
 def test_every_width_shows_every_parameter_of_every_alternative(vehicle_file: Path) -> None:
-    drawn_up = sprung.plan_file(vehicle_file)
+    drawn_up = sprung.plan(vehicle_file)
     check_view_is_whole(plan_view(drawn_up), tables=1)
     shown = text_of(plan_view(drawn_up), Console(width=80, highlight=False, color_system=None))
     assert not any(line != line.rstrip() for line in shown.splitlines())

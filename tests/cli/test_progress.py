@@ -54,7 +54,7 @@ def test_reading_and_checking_name_every_recording_and_stage(folder: Folder) -> 
 def test_simulating_and_modes_name_their_steps(tmp_path: Path) -> None:
     (tmp_path / "car.toml").write_text(CAR)
     steps: list[Step] = []
-    campaign = sprung.simulate_file(tmp_path / "car.toml", seed=1, progress=steps.append)
+    campaign = sprung.simulate(tmp_path / "car.toml", seed=1, progress=steps.append)
     assert [step.step for step in steps] == [1, 2, 3, 4, 5]
     steps.clear()
     sprung.modes(campaign, method="era", progress=steps.append)

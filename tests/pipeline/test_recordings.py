@@ -29,7 +29,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_a_folder_of_tables_gives_the_modes(folder: Path) -> None:
     assert sprung.is_recordings(folder)
-    found = sprung.modes_of_recordings(folder)["recordings"]
+    found = sprung.modes(folder)["recordings"]
     assert [mode.name for mode in found] == [f"mode {i}" for i in range(1, 8)]
     assert found.drops == ("drop0", "drop1", "drop2", "drop3")
     for mode in found:
@@ -38,8 +38,8 @@ def test_a_folder_of_tables_gives_the_modes(folder: Path) -> None:
 
 
 def test_one_file_will_do_and_begins_where_it_is_told(folder: Path) -> None:
-    whole = sprung.modes_of_recordings(folder / "drop0.csv", start=0.0)["recordings"]
-    later = sprung.modes_of_recordings(folder / "drop0.csv", start=0.5)["recordings"]
+    whole = sprung.modes(folder / "drop0.csv", start=0.0)["recordings"]
+    later = sprung.modes(folder / "drop0.csv", start=0.5)["recordings"]
     assert whole[0].frequency == pytest.approx(later[0].frequency, rel=0.02)
     assert whole[0].frequency_std is not None
     assert later[0].frequency_std is not None
@@ -55,7 +55,7 @@ def test_a_campaign_is_none(folder: Path) -> None:
 def test_what_does_not_go_together_is_refused_at_once(folder: Path) -> None:
     (folder / "other.csv").write_text("time,a0\n" + "".join(f"{i / 100},{i % 3}\n" for i in range(50)))
     with pytest.raises(InputError) as caught:
-        sprung.modes_of_recordings(folder)
+        sprung.modes(folder)
     said = str(caught.value)
     assert "1 channels that all 5 files have" in said
     assert "other.csv 100 Hz" in said
@@ -73,7 +73,7 @@ def lively(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_recording_of_a_drop_is_used_after_its_landing(lively: Path) -> None:
     """From its largest reading on, with tyres off the ground, twenty modes came out, sixteen of which the car does not have."""
-    found = sprung.modes_of_recordings(lively, amplitude=True)["recordings"]
+    found = sprung.modes(lively, amplitude=True)["recordings"]
     truth = [mode.frequency for mode in modes_of(LIVELY.matrices())]
     for mode in found:
         assert mode.frequency_std is not None
@@ -90,8 +90,8 @@ def test_a_recording_in_g_without_a_unit_has_its_drop_too(lively: Path, tmp_path
     names = ["time", *(f"ch{i}" for i in range(cells.shape[1] - 1))]
     assert len(names) == len(head.split(","))
     np.savetxt(tmp_path / "one.csv", cells, delimiter=",", header=",".join(names), comments="")
-    one = sprung.modes_of_recordings(tmp_path / "one.csv")["recordings"]
-    other = sprung.modes_of_recordings(lively)["recordings"]
+    one = sprung.modes(tmp_path / "one.csv")["recordings"]
+    other = sprung.modes(lively)["recordings"]
     assert [mode.frequency for mode in one] == pytest.approx([mode.frequency for mode in other], rel=1e-3)
 
 

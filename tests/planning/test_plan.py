@@ -190,7 +190,7 @@ def test_what_is_known_is_not_offered() -> None:
 
 def test_a_campaign_goes_on_from_its_own_error_bars() -> None:
     campaign = sprung.simulate(TABLE_1_CAR, drops=[{}, {"wheels": ("fl", "rl")}], noise=0.05, seed=3)
-    result, plan = sprung.identify(campaign), sprung.plan_campaign(campaign)
+    result, plan = sprung.identify(campaign), sprung.plan(campaign)
     assert plan.next_step.text == result.next_step
     own = bound(plan, "as it is").percents
     for name, estimate in result.parameters.items():

@@ -127,7 +127,7 @@ def modal(
     """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
     with working("reading the recordings") as progress:
         if sprung.is_recordings(campaign):
-            found = sprung.modes_of_recordings(
+            found = sprung.modes(
                 campaign,
                 method=method,
                 order=order,
@@ -173,7 +173,7 @@ def simulate(
 ) -> None:
     """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
     with working("reading the vehicle") as progress:
-        campaign = sprung.simulate_file(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
+        campaign = sprung.simulate(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
         progress(Step("writing the campaign"))
         written = sprung.write(campaign, output, overwrite=force)
     if as_json:
@@ -206,7 +206,7 @@ def plan(
 ) -> None:
     """Say what to measure next: how well each parameter would be known from a test, and from its alternatives."""
     with working("reading") as progress:
-        drawn_up = sprung.plan_file(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
+        drawn_up = sprung.plan(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
     if as_json:
         say_json(drawn_up.document())
     else:

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
+
+from sprung.display import shown
+from sprung.estimate.rounding import round_by_uncertainty
 
 Status = Literal["estimated", "known", "unidentifiable"]
 """Where a value comes from: see `Estimate`."""
@@ -15,6 +19,7 @@ NORMAL_95 = 1.959963984540054
 """Half-width of the central 95 % of a normal distribution, in standard deviations."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Estimate:
     """A quantity with its uncertainty.
@@ -50,7 +55,21 @@ class Estimate:
             return None
         return 100 * self.std / abs(self.value)
 
+    def __str__(self) -> str:
+        if self.value is None or self.std is None:
+            return "not determined"
+        value, std = round_by_uncertainty(self.value, self.std)
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{value}{f' ± {std}' if std else ''}{unit}"
 
+    def __format__(self, spec: str) -> str:
+        """Return the value by a number's format, ``f"{estimate:.3g}"``; without one value, uncertainty and unit."""
+        if not spec:
+            return str(self)
+        return format(math.nan if self.value is None else self.value, spec)
+
+
+@shown
 @dataclass(frozen=True, slots=True)
 class Ratio:
     """A quantity per total mass: what is left to say when the absolute scale is not determined.

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sprung.display import shown
 
+
+@shown
 @dataclass(frozen=True, slots=True)
 class Known:
     """A quantity known beforehand.

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.identification.joint import Fit
 from sprung.identification.subspace import canonical_basis
 from sprung.modal import leading_entry
-from sprung.vehicle import PARAMETERS, quantity
+from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
 
 Real = NDArray[np.float64]
 
@@ -32,6 +33,7 @@ _DERIVED_UNITS = {"total_mass": "kg", "front_axle_mass": "kg", "rear_axle_mass":
 _PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
 
 
+@shown
 @dataclass(frozen=True)
 class Unidentifiable:
     """A combination of parameters that the data do not determine.
@@ -48,6 +50,7 @@ class Unidentifiable:
     text: str
 
 
+@shown
 @dataclass(frozen=True)
 class Scale:
     """The absolute scale, and what is left without it.
@@ -64,6 +67,7 @@ class Scale:
     per_total_mass: dict[str, Ratio]
 
 
+@shown
 @dataclass(frozen=True)
 class Correlation:
     """Correlation of the estimated parameters.
@@ -80,6 +84,7 @@ class Correlation:
     matrix: tuple[tuple[float, ...], ...]
 
 
+@shown
 @dataclass(frozen=True)
 class Estimates:
     """Everything that may be said about the parameters.
@@ -116,7 +121,7 @@ def conclude(fit: Fit, known: Mapping[str, Known]) -> Estimates:
     -------
     Estimates
     """
-    parameters = {name: estimate_of(fit, known, name) for name in fit.names}
+    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not name.startswith(LOAD_MASS)}
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 
@@ -135,7 +140,7 @@ def estimate_of(fit: Fit, known: Mapping[str, Known], name: str) -> Estimate:
     Estimate
     """
     value, gradient = quantity(name, fit.names, fit.values)
-    unit = PARAMETERS[name].unit if name in PARAMETERS else _DERIVED_UNITS[name]
+    unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
     if name in known and known[name].exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
@@ -161,7 +166,7 @@ def _scale(fit: Fit) -> Scale:
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
-        if PARAMETERS[name].scales:
+        if PARAMETERS[name].scales and not name.startswith(LOAD_MASS):
             ratio = float(fit.values[i]) / total
             direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
             std = fit.spread(direction, fit.size(name) / total)
@@ -184,7 +189,13 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
     # Whatever is undetermined belongs to the direction that moves it most, if to no other.
     named = {name for one in found for name in one.parameters}
     for i, name in enumerate(fit.names):
-        if parameters[name].status == "unidentifiable" and not together[i].any() and name not in named and shares.size:
+        if (
+            name in parameters
+            and parameters[name].status == "unidentifiable"
+            and not together[i].any()
+            and name not in named
+            and shares.size
+        ):
             together[i, np.argmax(shares[i])] = True
     for direction, moved in zip(directions.T, together.T, strict=True):
         names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
@@ -200,7 +211,7 @@ def _combinations(fit: Fit, parameters: Mapping[str, Estimate]) -> tuple[Unident
 
 
 def _correlation(fit: Fit, parameters: Mapping[str, Estimate]) -> Correlation:
-    chosen = [i for i, name in enumerate(fit.names) if parameters[name].status == "estimated"]
+    chosen = [i for i, name in enumerate(fit.names) if name in parameters and parameters[name].status == "estimated"]
     covariance = fit.covariance[np.ix_(chosen, chosen)]
     spread = np.sqrt(np.diag(covariance))
     matrix = covariance / np.outer(spread, spread) if chosen else covariance

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.estimate import Known
 from sprung.identification.climb import NO_INFORMATION, RANK
 from sprung.identification.inflation import of_colour
@@ -32,6 +33,7 @@ _LEAST = 0.01
 """Information that a direction without any is given, so that it hides behind no other: ten powers of e of uncertainty."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Fit:
     """The joint fit of all decays.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification.joint import Fit
 from sprung.identification.solution import differentiate_modes, solve_modes
 from sprung.modal import Mode, leading_entry, name_modes, paper_name
@@ -23,6 +24,7 @@ _TOLD = 0.5
 """Part of itself by which a value may be uncertain, to count as told."""
 
 
+@shown
 @dataclass(frozen=True)
 class ModeEstimate:
     """One mode of the identified vehicle.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ from sprung.identification.likelihood import Likelihood
 from sprung.identification.start import Outline, catalogue
 from sprung.prepare import Decay
 from sprung.progress import Progress, Step, silent
-from sprung.vehicle import LinearModel, Rows, Sensor
+from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_names
 
 Real = NDArray[np.float64]
 
@@ -100,6 +101,24 @@ class Summit:
         """Up to a constant."""
         return -0.5 * self.climb.cost(self.point)
 
+    @property
+    def absolute_loglikelihood(self) -> float:
+        """Natural logarithm of the likelihood, with its constant: -½ Σ (ln 2πσ² + r²/σ²), and what is known uncertainly."""
+        observations = self.climb.likelihood.observations.sum(axis=0)
+        squares = self.point.evaluation.residual.sum(axis=0) / self.noise**2
+        return self.loglikelihood - 0.5 * float(
+            observations.sum() * np.log(2 * np.pi) + squares[observations > 0].sum()
+        )
+
+    @property
+    def unknowns(self) -> int:
+        """How many numbers the samples had to determine: parameters, noise levels, initial states, offsets and clocks."""
+        observations = self.climb.likelihood.observations > 0
+        free = self.climb.knowledge.free(self.point.u).shape[1]
+        eliminated = round(float(self.point.evaluation.leverage.sum()))
+        counted: int = free + int(observations.any(axis=0).sum()) + int(observations.sum()) + eliminated
+        return counted
+
     @cached_property
     def disagreement(self) -> float:
         """By how much the drops contradict each other, as a factor on every variance; 1 where not significantly."""
@@ -123,6 +142,7 @@ def ascend(
     known: Mapping[str, Known],
     *,
     start: Mapping[str, float] | None = None,
+    guess: Mapping[str, float] = MappingProxyType({}),
     starts: int = STARTS,
     enough: float = CONVERGED,
     progress: Progress = silent,
@@ -141,6 +161,8 @@ def ascend(
         Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
     start
         Parameter values, SI, to start from; where it is left out, a direct start and the catalogue of usual vehicles.
+    guess
+        Values of some parameters, SI, where `start` is left out: the vehicle with them competes with those of the catalogue.
     starts
         How many are refined: the direct one where there is one, and those of the catalogue that explain the records best
         as they are. The best end wins.
@@ -156,24 +178,28 @@ def ascend(
     if start is None and any(decay.clocks for decay in decays):
         # As far as the release has told, all clocks are one: near enough for a start.
         together = [replace(decay, clocks=()) for decay in decays]
-        first = ascend(together, models, sensors, known, starts=starts, enough=NEAR, progress=progress)
+        first = ascend(together, models, sensors, known, guess=guess, starts=starts, enough=NEAR, progress=progress)
         progress(Step("setting the loggers' clocks"))
         apart = ascend(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
     outline = Outline.of(known, sensors)
     engine = "m_e" in next(iter(models.values())).names
-    usual = [dict(start)] if start is not None else list(catalogue(outline, known, engine))
+    masses = {name: one.value for name, one in known.items() if name.startswith(LOAD_MASS)}
+    usual = [masses | dict(start)] if start is not None else [one | masses for one in catalogue(outline, known, engine)]
     climb = _climb(decays, models, sensors, known, usual[0])
     at = climb.knowledge.coordinates.by_name
     if start is not None:
-        return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(start)), None, enough, CLOSE_BY)], enough)
+        return _best(climb, [climb.to_the_top(climb.knowledge.bind(at(usual[0])), None, enough, CLOSE_BY)], enough)
     likelihood = climb.likelihood
     assert isinstance(likelihood, Likelihood)  # noqa: S101 (made above; for the type checker)
-    direct = direct_start(likelihood.records.runs, likelihood.models, sensors, outline)
-    tried = [] if direct is None else [(at(direct), NEARER)]
+    nominal = [model.with_known(masses) for model in likelihood.models] if masses else likelihood.models
+    direct = direct_start(likelihood.records.runs, nominal, sensors, outline)
+    tried = [] if direct is None else [(at(direct | masses), NEARER)]
+    places = [at(values) for values in usual]
+    if guess:
+        places.insert(0, at(_completed(guess, {**usual[0], **(direct or {})})))
     if len(tried) < starts:
         progress(Step(f"rating {len(usual)} usual vehicles as starts"))
-        places = [at(values) for values in usual]
         order = np.argsort(climb.first_costs(likelihood, places), kind="stable")
         tried += [(places[i], FAR) for i in order[: starts - len(tried)]]
     ends: list[Point] = []
@@ -182,6 +208,13 @@ def ascend(
         summit = min(ends, key=climb.cost, default=None)
         ends.append(climb.to_the_top(climb.knowledge.bind(u), summit, enough, damping))
     return _best(climb, ends, enough)
+
+
+def _completed(guess: Mapping[str, float], usual: Mapping[str, float]) -> dict[str, float]:
+    """Complete a guess by a usual vehicle's values; half-distances that it shares hold for springs and dampers apart too."""
+    shared = {own: value for name, value in guess.items() for own in separate_names(name)}
+    apart = {name: guess[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in guess}
+    return {**usual, **shared, **apart, **guess}
 
 
 def look_around(summit: Summit) -> Summit:

@@ -188,7 +188,7 @@ def _flights(
     names, samples = tuple(parameters), int(_FLIGHT / _FINE)
 
     def flight(values: Mapping[str, float]) -> Real:
-        vehicle = Vehicle.from_parameters(values, name="falling", **heights.by_key)
+        vehicle = Vehicle.nearest(values, name="falling", **heights.by_key)
         fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
         rows = Rows.of([sensor.row for sensor in sensors], names).at(np.array(list(values.values())))
         return np.asarray(rows @ fall.motion(_FINE, samples).acceleration, dtype=np.float64)

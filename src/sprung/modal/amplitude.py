@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sprung.display import shown
 from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
 from sprung.modal.likelihood import Poles
@@ -38,6 +39,7 @@ _LEAST, _MOST = -0.1, 1.0
 """Damping ratios between which a window shows a free vibration."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class ModeTrace:
     """One mode through the decays of one or several records; all arrays of shape (window,), the largest amplitude first.

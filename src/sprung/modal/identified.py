@@ -9,11 +9,13 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.modal.modes import Mode
 
 Real = NDArray[np.float64]
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Rejected:
     """A pole that was met and is none of the modes.
@@ -30,6 +32,7 @@ class Rejected:
     reason: str
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Modes(Sequence[Mode]):
     """Modes common to several free decays, a sequence in the order of undamped natural frequency.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sprung.display import shown
 from sprung.vehicle import Matrices
 
 Real = NDArray[np.float64]
@@ -21,6 +22,7 @@ UNRESOLVED = 0.1
 """Standard uncertainty of a pole, as a part of its size, from which on the records do not determine it."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Spread:
     """How sure a mode is.
@@ -41,6 +43,7 @@ class Spread:
     excess: float = 1.0
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Mode:
     """One mode: a pair of conjugate poles, or one real pole of an overdamped motion.

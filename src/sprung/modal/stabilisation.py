@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sprung.display import shown
 from sprung.modal.criteria import complexity
 from sprung.modal.decays import Decays
 from sprung.modal.identified import Rejected
@@ -25,6 +26,7 @@ _LEAST_ORDERS = 4
 """At which a pole must be there, however late it appears."""
 
 
+@shown
 @dataclass(frozen=True)
 class Criteria:
     """By how much a pole may change from one order to the next, and how long it must stay.
@@ -96,6 +98,7 @@ class Cluster:
     count: int
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Diagram:
     """Poles over order.

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sprung.display import shown
 from sprung.errors import Problems
 from sprung.modal.modes import Mode, modes_from
 from sprung.modal.records import as_records
@@ -16,6 +17,7 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class StateVariables:
     """What the State Variable Method finds.

@@ -11,10 +11,11 @@ from sprung.pipeline.displays import (
     ratios_table,
 )
 from sprung.pipeline.drafting import Draft, draft
+from sprung.pipeline.found import FoundMode, LoadModes
 from sprung.pipeline.identify import Identification, identify, identify_campaign, with_amplitudes
-from sprung.pipeline.modes import FoundMode, LoadModes, ModesByLoad, modes
-from sprung.pipeline.plan import plan, plan_campaign, plan_file
-from sprung.pipeline.recordings import is_recordings, modes_of_recordings
+from sprung.pipeline.modes import ModesByLoad, modes
+from sprung.pipeline.plan import plan
+from sprung.pipeline.recordings import is_recordings
 from sprung.pipeline.result import FitReport, Result
 from sprung.pipeline.saved import load
 from sprung.pipeline.series import Recorded, Series
@@ -47,13 +48,10 @@ __all__ = [
     "load",
     "meaning_of",
     "modes",
-    "modes_of_recordings",
     "modes_table",
     "other_quantities",
     "parameters_table",
     "plan",
-    "plan_campaign",
-    "plan_file",
     "ratios_table",
     "validate",
     "with_amplitudes",

@@ -7,10 +7,11 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.errors import Fault, InputError
 from sprung.pipeline.clocks import ClockReport
 from sprung.pipeline.diagnosis import examine
@@ -21,7 +22,11 @@ from sprung.progress import Progress, silent
 from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
+if TYPE_CHECKING:
+    import pandas as pd
 
+
+@shown
 @dataclass(frozen=True)
 class ChannelReport:
     """What one channel of one drop shows.
@@ -51,6 +56,7 @@ class ChannelReport:
     faults: tuple[str, ...]
 
 
+@shown
 @dataclass(frozen=True)
 class DropReport:
     """One drop: what happened when, which part of it was used, why, and the codes of its faults.
@@ -126,6 +132,7 @@ class DropReport:
         return bool(self.wheels) and self.wheels_seen is not None and set(self.wheels_seen) != set(self.wheels)
 
 
+@shown
 @dataclass(frozen=True)
 class Check:
     """What the recordings of a campaign show, and what the campaign does not say yet.
@@ -154,6 +161,14 @@ class Check:
     def usable(self) -> bool:
         """Whether at least one drop can be used."""
         return any(drop.start is not None for drop in self.drops)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return what happened in each drop as a table, times in s on the recording's own clock."""
+        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+
+        columns = ["file", "load", "kind", "release", "landing", "start", "end", "rate", "faults"]
+        rows = [[getattr(drop, one) for one in columns[:-1]] + [", ".join(drop.faults)] for drop in self.drops]
+        return pd.DataFrame(rows, columns=columns).set_index("file")
 
     @property
     def summary(self) -> str:

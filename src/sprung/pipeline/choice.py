@@ -79,15 +79,17 @@ class Choice:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The parameters."""
-        return parameter_names(self.tracks, self.extras)
+        """The parameters: the vehicle's, and the masses of loads that are known with an uncertainty."""
+        used = {drop.load for drop in self.campaign.drops}
+        masses = [name for load in self.campaign.loads if load.name in used for name in load.uncertain_masses]
+        return (*parameter_names(self.tracks, self.extras), *masses)
 
     @cached_property
     def models(self) -> Mapping[str, LinearModel]:
         """Equations of motion by load name, without the forces that no matrix carries."""
         elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
         return {
-            load.name: LinearModel.of(elements + load.elements(self.heights), self.names)
+            load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
             for load in self.campaign.loads
         }
 
@@ -176,6 +178,8 @@ def choose_model(campaign: Campaign, tracks: Tracks | None = None, extras: tuple
     known = dict(campaign.known)
     if campaign.wheelbase is not None:
         known["wheelbase"] = campaign.wheelbase
+    for load in campaign.loads:
+        known |= load.uncertain_masses
     undecided = tracks is None and campaign.model.tracks is None and not apart and not together
     # Where heights are known they say all that gravity does.
     said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.known else ()))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import Fit, Summit, clear_of_splines, timed_by_decay, timed_by_release, told_alone
 from sprung.prepare import Decay, Prepared
 from sprung.recording import Campaign, LoggerClock
@@ -25,6 +26,7 @@ _PASSES = 2
 """The better the vehicle, the better it tells the clocks, and they it."""
 
 
+@shown
 @dataclass(frozen=True)
 class ClockReport:
     """How a logger's clock stood in a drop.

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from sprung.estimate import Estimate, Ratio, round_by_uncertainty
 from sprung.identification import ModeEstimate
 from sprung.tables import Table, unit_text, value_cells, with_std
-from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS
+from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, PARAMETERS, WHEEL_LOADS
 
 if TYPE_CHECKING:
-    from sprung.pipeline.modes import FoundMode
+    from sprung.pipeline.found import FoundMode
 
 _OF_ALL = "of the empty vehicle"
 _DERIVED = {
@@ -50,7 +50,9 @@ def meaning_of(name: str) -> str:
     -------
     str
     """
-    return PARAMETERS[name].meaning if name in PARAMETERS else _DERIVED.get(name, _OF_ALL)
+    if name in PARAMETERS or name.startswith(LOAD_MASS):
+        return PARAMETERS[name].meaning
+    return _DERIVED.get(name, _OF_ALL)
 
 
 def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from sprung.errors import Fault
 from sprung.identification import CONVERGED, describe
@@ -39,6 +40,7 @@ def fit_campaign(
     tracks: Tracks | None = None,
     extras: Sequence[str] | None = None,
     fall: bool | None = None,
+    start: Mapping[str, float] = MappingProxyType({}),
     progress: Progress = silent,
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
@@ -46,7 +48,7 @@ def fit_campaign(
     campaign, _, undeclared = examine(campaign, progress)
 
     def begin(mended: Sequence[Hypothesis]) -> Stand:
-        return begun(campaign, tracks, extras, mended, progress, undeclared)
+        return begun(campaign, tracks, extras, mended, progress, undeclared, start)
 
     stand, mended = _with_statement(begin(()), begin)
     accused = tuple[Fault, ...]()

@@ -12,25 +12,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Omissions
-from sprung.identification import Fit, characteristics_of, conclude, mode_estimates
+from sprung.identification import Fit, Summit, characteristics_of, conclude, estimate_of, mode_estimates
 from sprung.pipeline.amplitude import amplitudes_of
 from sprung.pipeline.axes import about_roll_axis, axes_of
 from sprung.pipeline.check import check_prepared
 from sprung.pipeline.choice import Choice
 from sprung.pipeline.clocks import clock_reports
 from sprung.pipeline.fitted import fit_campaign
+from sprung.pipeline.options import CampaignSource, campaign_from, model_options
 from sprung.pipeline.planned import as_test
 from sprung.pipeline.profiles import check_asked, profiles_of
 from sprung.pipeline.result import FitReport, Result, TestedVehicle
 from sprung.pipeline.series import Series
 from sprung.pipeline.setup import setup_of
 from sprung.pipeline.stand import Fitted
+from sprung.pipeline.starting import start_values
 from sprung.pipeline.way import Attempt
 from sprung.pipeline.withholding import withhold_estimates
 from sprung.planning import next_step
 from sprung.prepare import Decay
 from sprung.progress import Progress, Step, silent
-from sprung.recording import Campaign
 from sprung.validation import (
     BodyMotion,
     Misfit,
@@ -40,17 +41,18 @@ from sprung.validation import (
     judge_residuals,
     validate_drops,
 )
-from sprung.vehicle import EMPTY, Tracks
+from sprung.vehicle import EMPTY, LOAD_MASS, Tracks, Vehicle
 
 METHOD = "joint maximum likelihood"
 
 
 def identify(
-    campaign: Campaign,
+    campaign: CampaignSource,
     *,
     tracks: Tracks | None = None,
-    extras: Sequence[str] | None = None,
+    extras: str | Sequence[str] | None = None,
     fall: bool | None = None,
+    start: Result | Vehicle | Mapping[str, float] | None = None,
     profile: str | Sequence[str] = (),
     amplitude: bool = False,
     progress: Progress = silent,
@@ -60,15 +62,18 @@ def identify(
     Parameters
     ----------
     campaign
-        From `sprung.read` or `sprung.simulate`.
+        From `sprung.read` or `sprung.simulate`; or the path of a campaign file or of its folder.
     tracks
         ``shared``: one half-distance per axle; ``separate``: springs and dampers apart. Overrides the campaign.
     extras
-        Exactly these extras beyond the paper's model, such as ``anti-roll``. Overrides the campaign.
+        Exactly these extras beyond the paper's model, such as ``anti-roll``; one may be given alone. Overrides the campaign.
     fall
         Whether drops are used from their release on, and not only from when the last tyre is down. It halves the uncertainties
         and takes a few times as long; left open, it is done where a parameter is uncertain by more than 2 %. Overrides the
         campaign.
+    start
+        A vehicle near the one that is sought: an earlier result, a vehicle, or values by name, SI. It competes with usual
+        vehicles for where the search begins, which helps where the vehicle is unlike them all; the likeliest one found wins.
     profile
         Parameters whose 95 % interval is to follow from the whole profile of the likelihood, not from its curvature at the
         maximum: for those that are weakly determined, whose interval is not symmetric. Also derived quantities
@@ -86,8 +91,8 @@ def identify(
     Raises
     ------
     InputError
-        If no drop can be used, what is known contradicts the model that is wanted, or a profile is wanted of something that
-        the model does not have.
+        If the campaign cannot be read, tracks or an extra are unknown, no drop can be used, what is known contradicts the model
+        that is wanted, or a profile is wanted of something that the model does not have.
 
     Examples
     --------
@@ -99,7 +104,9 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
-    found = identify_campaign(campaign, tracks=tracks, extras=extras, fall=fall, profile=profile, progress=progress)
+    found = identify_campaign(
+        campaign, tracks=tracks, extras=extras, fall=fall, start=start, profile=profile, progress=progress
+    )
     return with_amplitudes(found, progress) if amplitude else found.result
 
 
@@ -119,11 +126,12 @@ class Identification(NamedTuple):
 
 
 def identify_campaign(
-    campaign: Campaign,
+    campaign: CampaignSource,
     *,
     tracks: Tracks | None = None,
-    extras: Sequence[str] | None = None,
+    extras: str | Sequence[str] | None = None,
     fall: bool | None = None,
+    start: Result | Vehicle | Mapping[str, float] | None = None,
     profile: str | Sequence[str] = (),
     progress: Progress = silent,
 ) -> Identification:
@@ -131,13 +139,17 @@ def identify_campaign(
 
     Parameters
     ----------
-    campaign, tracks, extras, fall, profile, progress
+    campaign, tracks, extras, fall, start, profile, progress
         As for `identify`.
     """
-    campaign.require_complete()
+    tracks, extras = model_options(tracks, extras)
+    begin = start_values(start)
+    campaign = campaign_from(campaign, progress)
     asked = check_asked(profile, campaign, tracks, extras)
-    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, progress=progress)
-    options = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
+    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
+    options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
+    if begin:
+        options["start"] = [f"{name} = {value:g}" for name, value in begin.items()]
     return Identification(fitted, result_of(fitted, asked, progress, options=options))
 
 
@@ -193,13 +205,14 @@ def result_of(
         derived={
             **({} if rejected else characteristics_of(fit, choice.known, choice.models[EMPTY.name])),
             **about_roll_axis(fit, choice.heights),
+            **{name: estimate_of(fit, choice.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
         },
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
         modes={load: () if rejected else mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
-        fit=_fit_report(choice, why, path, fit, decays, channels, misfit),
+        fit=_fit_report(choice, why, path, fit, decays, channels, misfit, summit),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *accused))),
         validation=validated,
@@ -221,6 +234,7 @@ def _fit_report(
     decays: Sequence[Decay],
     channels: Sequence[str],
     misfit: Misfit,
+    summit: Summit,
 ) -> FitReport:
     return FitReport(
         samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
@@ -241,6 +255,8 @@ def _fit_report(
         inflated_by=fit.inflated_by,
         most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
         misfit=dict(zip(channels, misfit.relative.tolist(), strict=True)),
+        loglikelihood=summit.absolute_loglikelihood,
+        unknowns=summit.unknowns,
     )
 
 

@@ -17,41 +17,47 @@ from sprung.errors import InputError, Problems
 from sprung.pipeline.choice import choose_model
 from sprung.pipeline.fitted import fit_campaign
 from sprung.pipeline.identify import result_of
+from sprung.pipeline.options import CampaignSource, campaign_from
 from sprung.pipeline.planned import as_test
 from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
 from sprung.progress import Progress, Step, silent
-from sprung.recording import Campaign, Drop, ModelChoice, read, read_vehicle
-from sprung.simulation import DEFAULT_HEIGHT, Given, Setup
+from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
+from sprung.simulation import DEFAULT_HEIGHT, Setup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
 
-RATE, NOISE = 500.0, 0.02
-"""Samples per second and m/s² root-mean-square where nobody says."""
+RATE, NOISE, DURATION = 500.0, 0.02, 3.2
+"""Samples per second, m/s² root-mean-square, and s after the release where nobody says."""
 
 
 def plan(
-    vehicle: Vehicle,
+    source: Vehicle | CampaignSource,
     *,
     wanted: float = 1.0,
     sensors: Sequence[Sensor | Mapping[str, Any]] | None = None,
     loads: Sequence[Load | Mapping[str, Any]] | None = None,
     drops: Sequence[Drop | Mapping[str, Any]] | None = None,
-    rate: float = RATE,
-    noise: float | Mapping[str, float] = NOISE,
-    duration: float = 3.2,
+    rate: float | None = None,
+    noise: float | Mapping[str, float] | None = None,
+    duration: float | None = None,
     known: Mapping[str, Given] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
+    progress: Progress = silent,
 ) -> Plan:
-    """Say what a planned test of a vehicle would tell, what its alternatives would, and which of them is enough.
+    """Say what a test would tell, what its alternatives would, and which of them is enough.
 
     Parameters
     ----------
-    vehicle
-        As it is thought to be.
+    source
+        A vehicle as it is thought to be, or the path of its vehicle file: then a test of it is planned. Or a campaign, or the
+        path of one: then it is identified, and the plan says what to measure next; its first row is what the campaign has told.
     wanted
         Percent that the standard uncertainty of no parameter is to exceed.
     sensors, loads, drops, rate, noise, duration, known, model
-        Of the planned test, as for `sprung.simulate`.
+        Of the planned test of a vehicle, as for `sprung.simulate`; a vehicle file's own where none are given, else 500 samples
+        per second, 0.02 m/s² and 3.2 s. A campaign has its own.
+    progress
+        Told in words what is being done.
 
     Returns
     -------
@@ -60,7 +66,7 @@ def plan(
     Raises
     ------
     InputError
-        If something does not fit together, or the vehicle cannot be dropped so; all faults at once.
+        If a file cannot be used, something does not fit together, or the vehicle cannot be dropped so; all faults at once.
 
     Examples
     --------
@@ -70,6 +76,29 @@ def plan(
     """
     problems = Problems()
     _check_wanted(wanted, problems)
+    test: dict[str, object] = {"sensors": sensors, "loads": loads, "drops": drops, "rate": rate, "noise": noise}
+    test |= {"duration": duration, "known": known, "model": model}
+    if isinstance(source, Campaign) or not (isinstance(source, Vehicle) or _describes_vehicle(source)):
+        for name, value in test.items():
+            if value is not None:
+                found = f"{value:g}" if isinstance(value, float | int) else type(value).__name__
+                do = f"Leave {name} out, or plan from a vehicle."
+                problems.add(f"plan: {name}", found, "nothing: a campaign brings its own along", do)
+        problems.raise_if_any()
+        return _plan_further(campaign_from(source, progress), wanted, progress)
+    if isinstance(source, Vehicle):
+        vehicle = source
+    else:
+        file = read_vehicle(source)
+        vehicle = file.vehicle
+        sensors = file.sensors or None if sensors is None else sensors
+        loads = file.loads if loads is None else loads
+        drops = file.drops or None if drops is None else drops
+        known = file.all_known if known is None else known
+        model = file.model if model is None else model
+    rate = RATE if rate is None else rate
+    noise = NOISE if noise is None else noise
+    duration = DURATION if duration is None else duration
     setup = Setup.of(
         vehicle,
         sensors=sensors,
@@ -121,33 +150,8 @@ def plan(
     return draw_up(PlannedTest(subject, planned), wanted)
 
 
-def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Progress = silent) -> Plan:
-    """Identify a vehicle, and say what to measure next.
-
-    Parameters
-    ----------
-    campaign
-        From `sprung.read` or `sprung.simulate`.
-    wanted
-        Percent that the standard uncertainty of no parameter is to exceed.
-    progress
-        Called with each step that begins.
-
-    Returns
-    -------
-    Plan
-        Its first row is what the campaign has told; vehicle, noise and drops are those that were found in it. Of a rejected
-        campaign the reasons alone.
-
-    Raises
-    ------
-    InputError
-        If no drop can be used, or what is known contradicts the model that is wanted.
-    """
-    problems = Problems()
-    _check_wanted(wanted, problems)
-    problems.raise_if_any()
-    campaign.require_complete()
+def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
+    """Identify a vehicle, and say what to measure next."""
     fitted = fit_campaign(campaign, progress=progress)
     result = result_of(fitted, progress=progress)
     if result.verdict.state == "reject":
@@ -157,66 +161,10 @@ def plan_campaign(campaign: Campaign, *, wanted: float = 1.0, progress: Progress
     return draw_up(as_test(fitted), wanted)
 
 
-def plan_file(
-    path: str | os.PathLike[str],
-    *,
-    wanted: float = 1.0,
-    rate: float | None = None,
-    noise: float | None = None,
-    progress: Progress = silent,
-) -> Plan:
-    """Say what to measure, from a vehicle file or a campaign.
-
-    Parameters
-    ----------
-    path
-        A vehicle file, a campaign file, or the folder of one.
-    wanted
-        Percent that the standard uncertainty of no parameter is to exceed.
-    rate, noise
-        Samples per second, and m/s² root-mean-square of every channel: for a vehicle file alone, 500 and 0.02 unless
-        given; a campaign has its own.
-    progress
-        Called with each step that begins.
-
-    Returns
-    -------
-    Plan
-
-    Raises
-    ------
-    InputError
-        If the file cannot be used; all faults at once.
-    """
-    path = Path(path)
-    if not _describes_vehicle(path):
-        problems = Problems()
-        _check_wanted(wanted, problems)
-        for name, value in (("rate", rate), ("noise", noise)):
-            if value is not None:
-                do = f"Leave {name} out, or plan from a vehicle file."
-                problems.add(f"plan: {name}", f"{value:g}", "nothing: a campaign brings its own along", do)
-        problems.raise_if_any()
-        return plan_campaign(read(path, progress=progress), wanted=wanted, progress=progress)
-    file = read_vehicle(path)
-    known = dict(file.known) if file.wheelbase is None else {**file.known, "wheelbase": file.wheelbase}
-    return plan(
-        file.vehicle,
-        wanted=wanted,
-        sensors=file.sensors or None,
-        loads=file.loads,
-        drops=file.drops or None,
-        rate=RATE if rate is None else rate,
-        noise=NOISE if noise is None else noise,
-        known=known,
-        model=file.model,
-    )
-
-
-def _describes_vehicle(path: Path) -> bool:
+def _describes_vehicle(path: str | os.PathLike[str]) -> bool:
     """Tell a vehicle file, which has the section ``[parameters]``; what cannot be read is left to who reads it."""
     try:
-        return "parameters" in tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return "parameters" in tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
     except (OSError, ValueError):
         return False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Problems
-from sprung.modal import DEFAULT
-from sprung.pipeline.modes import ModesByLoad, examined
+from sprung.pipeline.found import LoadModes, examined
 from sprung.prepare import find_drops
 from sprung.progress import Progress, counted, silent
 from sprung.recording import FILE, Table, read_table
@@ -60,14 +60,14 @@ def recordings_in(place: Path) -> list[Path]:
 
 def modes_of_recordings(
     path: str | os.PathLike[str],
-    method: str = DEFAULT,
-    order: int | None = None,
+    method: str,
+    order: int | None,
     *,
-    start: float | None = None,
-    amplitude: bool = False,
-    diagram: bool = False,
+    start: float | None,
+    amplitude: bool,
+    diagram: bool,
     progress: Progress = silent,
-) -> ModesByLoad:
+) -> LoadModes:
     """Find the modes common to free decays that nothing is known of but their recordings.
 
     Parameters
@@ -84,8 +84,8 @@ def modes_of_recordings(
 
     Returns
     -------
-    ModesByLoad
-        A dict, under `RECORDINGS`. Modes are numbered. Channels keep their unit, but for accelerations, which come in m/s².
+    LoadModes
+        Modes are numbered. Channels keep their unit, but for accelerations, which come in m/s².
 
     Raises
     ------
@@ -133,7 +133,7 @@ def modes_of_recordings(
             records.append(decay)
             names.append(file.stem if len(spans) == 1 else f"{file.stem} from {table.time[begin]:.3f} s")
     problems.raise_if_any()
-    numbered = examined(
+    return examined(
         records,
         rates[0],
         method,
@@ -144,7 +144,73 @@ def modes_of_recordings(
         diagram=diagram,
         progress=progress,
     )
-    return ModesByLoad({RECORDINGS: numbered})
+
+
+def modes_of_arrays(
+    arrays: Sequence[Real],
+    rate: float | None,
+    method: str,
+    order: int | None,
+    *,
+    channels: Sequence[str] | None,
+    start: float | None,
+    amplitude: bool,
+    diagram: bool,
+) -> LoadModes:
+    """Find the modes common to free decays in memory.
+
+    Parameters
+    ----------
+    arrays
+        One decay each, shape (channel, time).
+    rate
+        Samples per second.
+    method, order, amplitude, diagram
+        As for `modes`.
+    channels
+        Names; ``channel 1`` and so on unless given.
+    start
+        Where the free decay begins, s from the first sample; 0 unless given.
+
+    Returns
+    -------
+    LoadModes
+        Modes are numbered.
+
+    Raises
+    ------
+    InputError
+        If the arrays do not go together, or the rate is missing; every problem at once.
+    """
+    problems = Problems()
+    if rate is None or not (math.isfinite(rate) and rate > 0):
+        found = "nothing" if rate is None else f"{rate:g}"
+        problems.add("modes: rate", found, "samples per second", "Give rate = ... of the array.")
+    given = [np.asarray(one, dtype=float) for one in arrays]
+    for number, one in enumerate(given, start=1):
+        where = f"modes: array {number}"
+        if one.ndim != 2 or one.shape[0] < 2 or one.shape[1] <= one.shape[0]:
+            expected = "(channel, time), with two channels or more and more samples than channels"
+            problems.add(where, f"shape {one.shape}", expected, "Transpose it, or give all channels.")
+        elif not np.isfinite(one).all():
+            bad = int((~np.isfinite(one)).sum())
+            problems.add(where, f"{bad} values that are not finite", "numbers", "Leave those channels or samples out.")
+    counts = {one.shape[0] for one in given}
+    if not given:
+        problems.add("modes", "no array", "at least one", "Give an array of shape (channel, time).")
+    elif len(counts) > 1:
+        problems.add(
+            "modes", f"arrays of {sorted(counts)} channels", "the same channels in all", "Leave the others out."
+        )
+    elif channels is not None and len(channels) not in counts:
+        problems.add("modes: channels", f"{len(channels)} names", f"{counts.pop()}, one each", "Correct the names.")
+    problems.raise_if_any()
+    assert rate is not None  # noqa: S101 (checked above; for the type checker)
+    begin = round((start or 0.0) * rate)
+    records = [one[:, begin:] for one in given]
+    named = tuple(channels or (f"channel {i + 1}" for i in range(given[0].shape[0])))
+    numbers = tuple(f"array {i + 1}" for i in range(len(records)))
+    return examined(records, rate, method, order, named, numbers, amplitude=amplitude, diagram=diagram)
 
 
 def _rate(file: Path, table: Table, problems: Problems) -> float:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+import math
+import textwrap
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
+import numpy as np
 from pydantic import ConfigDict, Field
 
+from sprung.display import shown
 from sprung.errors import Fault
-from sprung.estimate import Estimate
+from sprung.estimate import Covariance, Estimate, Named
 from sprung.identification import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.pipeline.amplitude import Amplitudes
 from sprung.pipeline.check import DropReport
@@ -33,6 +37,9 @@ from sprung.tables import escaped
 from sprung.validation import DropValidation, Verdict
 from sprung.vehicle import Vehicle
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 SCHEMA: Literal[1] = 1
 """Version of results.json; a change that an old reader would misread raises it."""
 
@@ -41,6 +48,7 @@ _EXACTLY = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
 """How a saved result is checked when it is read: a key that it does not have is an error."""
 
 
+@shown
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TestedVehicle:
     """The vehicle that was tested.
@@ -59,6 +67,7 @@ class TestedVehicle:
     identification: str | None = None
 
 
+@shown
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FitReport:
     """How the fit went.
@@ -93,6 +102,13 @@ class FitReport:
         The channel whose residuals are most coloured, where they enlarged the variances.
     misfit
         Model error of each channel as a part of its signal; 0 where none is significant.
+    loglikelihood
+        Natural logarithm of the likelihood at its maximum, of all samples and what was known with an uncertainty:
+        -½ Σ (ln 2πσ² + r²/σ²) with the estimated noise σ of each channel and the residuals r; None where an older sprung
+        wrote the result.
+    unknowns
+        How many numbers were estimated from the samples: free parameters of the vehicle, the noise of each channel, the initial
+        state of each drop, the offset of each channel in each drop, and offsets of clocks; None likewise.
     """
 
     __pydantic_config__ = _EXACTLY
@@ -115,9 +131,12 @@ class FitReport:
     inflated_by: Inflater | None = None
     most_coloured: str | None = None
     misfit: dict[str, float]
+    loglikelihood: float | None = None
+    unknowns: int | None = None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@shown
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Result:
     """Everything an identification gives; the contract's results.json, and the series beside it.
 
@@ -186,6 +205,58 @@ class Result:
     omissions: tuple[str, ...] = ()
     series: Mapping[str, Series] = field(default_factory=dict, repr=False)
     recordings: Mapping[str, Recorded] = field(default_factory=dict, repr=False)
+
+    def __post_init__(self) -> None:
+        for mapping in ("parameters", "derived", "modes"):
+            object.__setattr__(self, mapping, Named(getattr(self, mapping)))
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{name} {found}" for name, found in self.parameters.items())
+        lines = textwrap.wrap(said, 84, initial_indent="    ", subsequent_indent="    ")
+        most = 7
+        kept = lines if len(lines) <= most else [*lines[: most - 1], "    ..."]
+        loads = ", ".join(self.modes)
+        return "\n".join(
+            [f"Result of {self.name}: {self.verdict.state}", *kept, f"    modes: {loads}; {len(self.drops)} drops"]
+        )
+
+    @property
+    def covariance(self) -> Covariance:
+        """Covariance of the estimated parameters, those whose status is ``estimated``, SI."""
+        names = self.correlation.names
+        std = np.array([self.parameters[name].std or 0.0 for name in names])
+        return Covariance(names, np.array(self.correlation.matrix).reshape(len(names), len(names)) * np.outer(std, std))
+
+    @property
+    def loglikelihood(self) -> float | None:
+        """Natural logarithm of the maximum of the likelihood: see `FitReport`; None where an older sprung wrote the result."""
+        return self.fit.loglikelihood
+
+    @property
+    def aic(self) -> float | None:
+        """Akaike's information criterion, 2 k - 2 ln L with k = ``fit.unknowns``, all estimated numbers; None as above."""
+        if self.fit.loglikelihood is None or self.fit.unknowns is None:
+            return None
+        return 2 * self.fit.unknowns - 2 * self.fit.loglikelihood
+
+    @property
+    def bic(self) -> float | None:
+        """The Bayesian information criterion, k ln n - 2 ln L with n = ``fit.samples`` and k as in `aic`; None as above."""
+        if self.fit.loglikelihood is None or self.fit.unknowns is None:
+            return None
+        return self.fit.unknowns * math.log(self.fit.samples) - 2 * self.fit.loglikelihood
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return parameters and derived quantities as a table: value, std, lower and upper 95 % limit, unit, status."""
+        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+
+        rows = {
+            name: (found.value, found.std, *(found.interval95 or (None, None)), found.unit, found.status)
+            for name, found in {**self.parameters, **self.derived}.items()
+        }
+        columns = ["value", "std", "lower95", "upper95", "unit", "status"]
+        table = pd.DataFrame.from_dict(rows, orient="index", columns=columns)
+        return table.astype(dict.fromkeys(columns[:4], float)).rename_axis("parameter")
 
     @property
     def name(self) -> str:

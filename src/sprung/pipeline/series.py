@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.prepare import Mark, Seen
 from sprung.recording import Recording
 
@@ -23,6 +24,7 @@ _MARKS = "marks "
 """What stands behind a drop's name: of the fit, of the body, of its recording, and of each mark."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Series:
     """One drop as it was fitted.
@@ -48,6 +50,7 @@ class Series:
     body_simulated: Drawn | None = None
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Recorded:
     """One drop's whole recording, in SI, put right as far as it could be.

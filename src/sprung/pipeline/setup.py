@@ -10,6 +10,7 @@ from importlib.metadata import version
 import numpy as np
 from pydantic import ConfigDict
 
+from sprung.display import shown
 from sprung.estimate import Estimate, Known
 from sprung.identification import Fit, estimate_of
 from sprung.recording import Campaign, ModelChoice, SourceFile, TestRecord
@@ -19,6 +20,7 @@ _LIBRARIES = ("numpy", "scipy")
 """Whose versions may change the last digits of a result."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Before:
     """A quantity known before the recordings were looked at, and what they say of it.
@@ -41,6 +43,7 @@ class Before:
     missed: float | None = None
 
 
+@shown
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setup:
     """What an identification began with.

@@ -113,6 +113,7 @@ def begun(
     mended: Sequence[Hypothesis],
     progress: Progress,
     unusable: Mapping[str, Fault] = MappingProxyType({}),
+    guess: Mapping[str, float] = MappingProxyType({}),
 ) -> Stand:
     """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle.
 
@@ -132,10 +133,10 @@ def begun(
         campaign,
         prepared,
         lambda known: _without(campaign, prepare(known, progress), left_out),
-        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress),
+        lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, guess),
     )
     start = None if first is None else first.parameters
-    first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress)
+    first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress, guess)
     way = carried(Way(choice, first, prepared.decays, (), progress))
     way = linear(wanting(way, [extra for extra in wanted.linear_extras if extra not in choice.extras]))
     way = _from_contact(way)
@@ -170,9 +171,10 @@ def _ascend(
     start: Mapping[str, float] | None,
     enough: float,
     progress: Progress,
+    guess: Mapping[str, float],
 ) -> Summit:
     models, sensors, known = choice.models, campaign.sensors, choice.known
-    return ascend(decays, models, sensors, known, start=start, enough=enough, progress=progress)
+    return ascend(decays, models, sensors, known, start=start, guess=guess, enough=enough, progress=progress)
 
 
 def _need_decays(campaign: Campaign, prepared: Prepared) -> None:

@@ -11,16 +11,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.pipeline.amplitude import amplitude_document, plain_trace
 from sprung.pipeline.identify import identify_campaign, with_amplitudes
+from sprung.pipeline.options import CampaignSource
 from sprung.pipeline.result import Result
 from sprung.pipeline.series import packed
 from sprung.progress import Progress, silent
-from sprung.recording import Campaign, write_whole
+from sprung.recording import write_whole
 from sprung.validation import BodyMotion, ModeAmplitude, body_motions
 from sprung.vehicle import EMPTY, Tracks
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Validation:
     """What a validation shows.
@@ -89,10 +92,10 @@ class Validation:
 
 
 def validate(
-    campaign: Campaign,
+    campaign: CampaignSource,
     *,
     tracks: Tracks | None = None,
-    extras: Sequence[str] | None = None,
+    extras: str | Sequence[str] | None = None,
     progress: Progress = silent,
 ) -> Validation:
     """Identify a vehicle, and hold what it does against what was measured.
@@ -100,7 +103,7 @@ def validate(
     Parameters
     ----------
     campaign
-        From `sprung.read` or `sprung.simulate`.
+        From `sprung.read` or `sprung.simulate`; or the path of a campaign file or of its folder.
     tracks, extras
         As for `identify`.
     progress
@@ -113,7 +116,8 @@ def validate(
     Raises
     ------
     InputError
-        If no drop can be used, or what is known contradicts the model that is wanted.
+        If the campaign cannot be read, tracks or an extra are unknown, no drop can be used, or what is known contradicts the
+        model that is wanted.
 
     Examples
     --------

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import NEAR, Summit, inflation_of
 from sprung.pipeline.candidates import SEPARATE, brought, decided, fit_from, possible, size_of
 from sprung.pipeline.choice import Choice
@@ -27,6 +28,7 @@ _MUCH = 0.2
 """Part of the sensors' variance that a model may leave unexplained beside it."""
 
 
+@shown
 @dataclass(frozen=True)
 class Attempt:
     """One step of the way to the model.

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import NO_INFORMATION, RANK, Fit, Unidentifiable, canonical_basis, conclude
 from sprung.planning.subject import Subject
 
@@ -21,6 +22,7 @@ _EXACT = 1e-12
 """Relative uncertainty below which exact knowledge has fixed a parameter, such as b under an exact a and wheelbase."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Bound:
     """The bound of one test.

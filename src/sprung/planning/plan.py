@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from sprung.display import shown
 from sprung.errors import InputError, SprungError
 from sprung.planning.alternatives import Alternative, Cost, alternatives, bound
 from sprung.planning.bound import Bound, two_figures
 from sprung.planning.subject import PlannedTest
 
+if TYPE_CHECKING:
+    import pandas as pd
 
+
+@shown
 @dataclass(frozen=True, eq=False)
 class PlanRow:
     """One alternative.
@@ -37,6 +42,7 @@ class PlanRow:
     refused: str | None = None
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class NextStep:
     """What to measure next.
@@ -59,6 +65,7 @@ class NextStep:
     bound: Bound | None = field(repr=False)
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Plan:
     """The table of alternatives.
@@ -87,6 +94,13 @@ class Plan:
     rows: tuple[PlanRow, ...]
     next_step: NextStep
     rejected: tuple[str, ...] = ()
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the standard uncertainty to expect of each parameter, %, a row for each alternative; NaN: not determined."""
+        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+
+        rows = {row.label: {} if row.bound is None else dict(row.bound.percents) for row in self.rows}
+        return pd.DataFrame.from_dict(rows, orient="index").astype(float).rename_axis("alternative")
 
     def document(self) -> dict[str, Any]:
         """Give it as what JSON knows; percentages of undetermined parameters are null."""

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimate import Known
 from sprung.identification import Coordinates, Knowledge, Likelihood
@@ -58,6 +59,7 @@ class PlannedDrop(NamedTuple):
     height: float
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Subject:
     """A vehicle to test, what is known of it beforehand, and how it will be measured.
@@ -193,6 +195,7 @@ class Subject:
         )
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class PlannedTest:
     """Drops of one subject, done or not.

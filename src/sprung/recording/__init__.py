@@ -1,5 +1,6 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
+from sprung.recording.beforehand import Given, known_quantities
 from sprung.recording.campaign import (
     KINDS,
     Campaign,
@@ -35,6 +36,7 @@ __all__ = [
     "SLOWEST",
     "Campaign",
     "Drop",
+    "Given",
     "LoggerClock",
     "Missing",
     "ModelChoice",
@@ -50,6 +52,7 @@ __all__ = [
     "gap",
     "gaps_in",
     "kind_of",
+    "known_quantities",
     "merged",
     "overwriting_problems",
     "read",

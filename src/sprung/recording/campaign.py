@@ -12,8 +12,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from sprung.errors import Fault, InputError
+from sprung.display import shown
+from sprung.errors import Fault, InputError, Problems
 from sprung.estimate import Known
+from sprung.recording.beforehand import Given, known_quantities
 from sprung.recording.completeness import Missing
 from sprung.recording.recording import Recording
 from sprung.recording.sources import SourceFile
@@ -205,6 +207,7 @@ class TestRecord:
     """Whatever else belongs into the record: tyre pressures, fuel, weather."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Campaign:
     """All drops of one vehicle, and what was measured beforehand.
@@ -218,7 +221,8 @@ class Campaign:
     cg_height, wheel_height, roll_axis_height
         Heights above the ground, m, of the sprung mass's centre of gravity, the wheel centres and the roll axis.
     known
-        Quantities measured beforehand: parameters, ``total_mass``, ``front_axle_mass``, ``rear_axle_mass``.
+        Quantities measured beforehand: parameters, ``total_mass``, ``front_axle_mass``, ``rear_axle_mass``. Numbers, which are
+        exact, and mappings {value, std} become records.
     model
         What the user says about the model.
     sensors, loads
@@ -240,6 +244,11 @@ class Campaign:
         Of the vehicle: chassis, registration or test number; None where nobody gave it.
     test
         When, where and by whom the vehicle was tested, as far as the campaign file says it.
+
+    Raises
+    ------
+    InputError
+        If a known quantity has no such name, or cannot have such a value; all faults at once.
     """
 
     name: str
@@ -260,6 +269,16 @@ class Campaign:
     unread: tuple[Drop, ...] = ()
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
+
+    def __post_init__(self) -> None:
+        problems = Problems()
+        given: dict[str, Given] = dict(self.known)
+        if self.wheelbase is not None:
+            given["wheelbase"] = self.wheelbase
+        known = known_quantities(given, f"campaign {self.name}: known", problems)
+        problems.raise_if_any()
+        object.__setattr__(self, "wheelbase", known.pop("wheelbase", None))
+        object.__setattr__(self, "known", known)
 
     @property
     def heights(self) -> Heights:

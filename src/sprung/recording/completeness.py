@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from sprung.display import shown
 from sprung.errors import Problem
 from sprung.vehicle import EMPTY
 
@@ -28,6 +29,7 @@ _ITEMS = {
 """What a place in a campaign file holds, by its section and key."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Missing:
     """Something that a campaign file does not say.

@@ -61,6 +61,12 @@ def campaign_schema(of: type[CampaignFile] = CampaignFile) -> str:
     sensor |= _where({"on": {"const": "body"}}, {"required": ["position"]})
     load |= _where({"name": {"const": "empty"}}, _neither("items", "added"), _one("items", "added"))
     load["properties"]["items"]["minItems"] = 1
+    for part in (item, entries["Added"]):
+        mass, std = part["properties"]["mass"], part["properties"].pop("mass_std")
+        number = {key: value for key, value in mass.items() if key != "description"}
+        measured = {"value": {"description": "kg.", **number}, "std": std}
+        table = {"type": "object", "properties": measured, "required": ["value"], "additionalProperties": False}
+        part["properties"]["mass"] = {"description": mass["description"], "anyOf": [number, table]}
     item |= _one("position", "on")
     drop["properties"]["wheels"]["uniqueItems"] = True
     drop |= _one("file", "files")

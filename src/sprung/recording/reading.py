@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
 from sprung.progress import Progress, counted, silent
 from sprung.recording.campaign import Campaign, Drop, ModelChoice, TestRecord, recording_names
@@ -33,6 +34,7 @@ FILE = "campaign.toml"
 """The campaign file's name, where only its folder is given."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class VehicleFile:
     """What a vehicle file says: a vehicle to simulate, and the campaign to simulate with it.
@@ -61,6 +63,11 @@ class VehicleFile:
     path: Path | None = None
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
+
+    @property
+    def all_known(self) -> dict[str, Known]:
+        """What is known beforehand, the wheelbase included where the file gives it."""
+        return dict(self.known) if self.wheelbase is None else {**self.known, "wheelbase": self.wheelbase}
 
 
 def read(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.errors import Fault
 from sprung.vehicle import separated
 
@@ -15,6 +16,7 @@ ROUGHLY = 0.05
 """s: how far two clocks may stand apart where only the first motion that a logger shows has tied them."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class LoggerClock:
     """One of several loggers of a drop, and how its clock stands to the recording's.
@@ -49,6 +51,7 @@ class LoggerClock:
         return self.late + sum(slope * apart[name] for name, slope in self.follows.items())
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Recording:
     """The samples of one drop.

@@ -6,7 +6,10 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
+from sprung.display import shown
 
+
+@shown
 @dataclass(frozen=True, slots=True)
 class SourceFile:
     """One file as it was read.

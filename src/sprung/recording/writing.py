@@ -19,7 +19,7 @@ from sprung.recording.schema import SCHEMA
 from sprung.recording.signals import own_unit
 from sprung.recording.whole import write_whole
 from sprung.units import acceleration_factor
-from sprung.vehicle import EMPTY, Sensor
+from sprung.vehicle import EMPTY, Load, Sensor
 
 if TYPE_CHECKING:
     import os
@@ -114,7 +114,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
         "known": {name: _measured(known) for name, known in campaign.known.items()},
         "model": written(campaign.model),
         "sensor": [written(sensor) for sensor in campaign.sensors],
-        "load": [written(load) for load in campaign.loads if load.name != EMPTY.name],
+        "load": [_load(load) for load in campaign.loads if load.name != EMPTY.name],
         "drop": [
             ({"file": own[0]} if len(own) == 1 else {"files": list(own)})
             | {"load": drop.load, "wheels": drop.wheels}
@@ -138,6 +138,14 @@ def written(record: object, *without: str) -> dict[str, Any]:
     adapter: TypeAdapter[Any] = TypeAdapter(type(record))
     plain = adapter.dump_python(record, exclude_defaults=True, exclude_none=True, exclude=set(without))
     return cast("dict[str, Any]", plain)
+
+
+def _load(load: Load) -> dict[str, Any]:
+    keys = written(load)
+    for part in (*keys.get("items", ()), *([keys["added"]] if "added" in keys else [])):
+        if "mass_std" in part:
+            part["mass"] = {"value": part["mass"], "std": part.pop("mass_std")}
+    return keys
 
 
 def _measured(known: Known) -> float | dict[str, float]:

@@ -23,7 +23,7 @@ def plan_view(plan: Plan) -> RenderableType:
     Parameters
     ----------
     plan
-        From `sprung.plan`, `sprung.plan_campaign` or `sprung.plan_file`.
+        From `sprung.plan`.
 
     Returns
     -------

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sprung.errors import Problems
-from sprung.recording import Campaign, Drop, ModelChoice
-from sprung.simulation.beforehand import Given
+from sprung.recording import Campaign, Drop, Given, ModelChoice
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY

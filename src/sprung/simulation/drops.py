@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -11,8 +12,7 @@ import numpy as np
 
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
-from sprung.recording import Campaign, Drop, ModelChoice
-from sprung.simulation.beforehand import Given
+from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Block, Load, Sensor, Vehicle, drop_from_blocks, drops_with_forces, forces_beside
@@ -22,7 +22,7 @@ DEFAULT_HEIGHT = 0.05
 
 
 def simulate(
-    vehicle: Vehicle,
+    vehicle: Vehicle | str | os.PathLike[str],
     *,
     sensors: Sequence[Sensor | Mapping[str, Any]] | None = None,
     loads: Sequence[Load | Mapping[str, Any]] | None = None,
@@ -46,7 +46,8 @@ def simulate(
     Parameters
     ----------
     vehicle
-        The vehicle.
+        The vehicle; or the path of a vehicle file (``[vehicle]``, ``[parameters]`` in SI, ``[[sensor]]``, ``[[load]]`` and
+        ``[[drop]]`` without files), whose sensors, loads, drops, known quantities and model hold where none are given here.
     sensors, loads, drops
         Records, or mappings as they stand in a campaign file. Defaults: eight sensors, four at the body's corners and
         one on each wheel; the empty vehicle; with each load a drop of all, front, rear, left and right wheels. A drop
@@ -78,7 +79,7 @@ def simulate(
     Raises
     ------
     InputError
-        If something does not fit together; all faults at once.
+        If the file cannot be used, or something does not fit together; all faults at once.
 
     Examples
     --------
@@ -87,6 +88,15 @@ def simulate(
     >>> [drop.label for drop in campaign.drops][4:6], campaign.recordings[0].values.shape
     (['empty_roll_right', 'sandbags_bounce'], (8, 1800))
     """
+    file = None
+    if not isinstance(vehicle, Vehicle):
+        file = read_vehicle(vehicle)
+        vehicle = file.vehicle
+        sensors = file.sensors or None if sensors is None else sensors
+        loads = file.loads if loads is None else loads
+        drops = file.drops or None if drops is None else drops
+        known = file.all_known if known is None else known
+        model = file.model if model is None else model
     problems = Problems()
     setup = Setup.of(
         vehicle,
@@ -124,4 +134,5 @@ def simulate(
         motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
         accelerations = [motion.acceleration for motion in motions]
     accelerations = [np.hstack([np.zeros((len(one), before)), one]) for one in accelerations]
-    return setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))
+    campaign = setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))
+    return campaign if file is None else replace(campaign, identification=file.identification, test=file.test)

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
-from sprung.recording import Campaign, Drop, ModelChoice, Recording, recording_names
-from sprung.simulation.beforehand import Given, known_quantities
+from sprung.recording import Campaign, Drop, Given, ModelChoice, Recording, known_quantities, recording_names
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
@@ -113,7 +112,7 @@ class Setup:
             all_loads,
             name_files(chosen_drops),
             Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems),
-            known_quantities(known, vehicle.wheelbase, problems),
+            {"wheelbase": Known(vehicle.wheelbase)} | known_quantities(known or {}, "simulate: known", problems),
             record(ModelChoice, "model", model or {}, problems) or ModelChoice(),
         )
 

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
+from sprung.display import shown
 from sprung.errors import Problems
 from sprung.estimate import NORMAL_95
 from sprung.pipeline import Result, load
@@ -24,6 +25,7 @@ _ABSENT = "has another model"
 _ABOUT_AXES = ("I_xx", "I_yy")
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Told:
     """What one result says of a quantity.
@@ -41,6 +43,7 @@ class Told:
     why_not: str = ""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Difference:
     """What one result says of a quantity, less what the first says.
@@ -76,6 +79,7 @@ class Difference:
     why: str = ""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Quantity:
     """One row of the comparison.
@@ -95,6 +99,7 @@ class Quantity:
     differences: tuple[Difference, ...]
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Compared:
     """One of the results that are compared.
@@ -113,6 +118,7 @@ class Compared:
     reasons: tuple[str, ...]
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """Results side by side.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.modal import Mode, modes_of, paper_name
 from sprung.study.printed import K_ID_FRONT_RIGHT_WHEEL, TABLE_2, TABLE_3
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Added, Load
@@ -15,6 +16,7 @@ BUS_LOAD = Load(name="loaded", added=Added(mass=470, I_yy=1057.5, I_xx=339.6))
 """The load of the paper's experiment, section 4.1: on the body alone."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Misprint:
     """Something in the paper that cannot stand as printed.

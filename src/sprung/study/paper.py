@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.identification import structured_least_squares
 from sprung.modal import modes_of, paper_name
 from sprung.pipeline import identify
@@ -39,6 +40,7 @@ CAR_LOAD = Load(
 """ΔM = 0.1 M: what remains of eq. (20), about 10 % on all seven masses."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class ParameterRow:
     """One row of Table 2, or of the bus.
@@ -70,6 +72,7 @@ class ParameterRow:
         return 100 * (self.identified / self.known - 1)
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class ModalValues:
     """Frequencies and damping ratio of a mode.
@@ -87,6 +90,7 @@ class ModalValues:
     damping_ratio: float
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class ModeRow:
     """One row of Table 3: what the paper prints and what the model of Tables 4 and 5 has.
@@ -109,6 +113,7 @@ class ModeRow:
     computed: ModalValues
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class NoisePoint:
     """Worst error of any parameter at one level of sensor noise; medians over seeds, %.
@@ -128,6 +133,7 @@ class NoisePoint:
     joint_fit: float | None
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class PaperReproduction:
     """The paper's numbers beside ours.

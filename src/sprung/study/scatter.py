@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2, t
 
+from sprung.display import shown
 from sprung.study.significance import holm
 
 Real = NDArray[np.float64]
@@ -19,6 +20,7 @@ FEWEST = 3
 _STANDS_OUT = 0.05
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Scatter:
     """One quantity over several results.

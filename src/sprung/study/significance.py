@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2, norm
 
+from sprung.display import shown
 from sprung.pipeline import Result
 
 Real = NDArray[np.float64]
@@ -17,6 +18,7 @@ _RANK = 1e-6
 """Eigenvalue of a correlation matrix below which what was known beforehand fixes a direction, not the recordings."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Joint:
     """All quantities that two results have estimated, compared at once.

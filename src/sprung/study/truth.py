@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from sprung.display import shown
 from sprung.estimate import Estimate
 from sprung.pipeline import Result
 from sprung.vehicle import Vehicle
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class TrueValue:
     """A parameter whose true value is known because it was simulated.

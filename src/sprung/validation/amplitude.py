@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import Fit
 from sprung.modal import Mode, modes_of
 from sprung.progress import Progress, counted, silent
@@ -37,6 +38,7 @@ _TRIES, _LARGER, _REACHED = 6, 1.4, 0.9
 """How many times a simulated decay is begun, each time so much larger, until it reaches this part of the measured ones."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class ModeAmplitude:
     """One mode of the body against amplitude.

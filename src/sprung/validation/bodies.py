@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import Fit
 from sprung.prepare import Decay
 from sprung.validation.whiteness import noise_of_sensors
@@ -29,6 +30,7 @@ _SIGNIFICANT = 4.0
 """Standard deviations by which its mean square must exceed that of the noise for a motion to be there at all."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class BodyMotion:
     """What the body did in one drop, and what the fitted vehicle does.

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import Fit, Prediction, Summit, predictions
 from sprung.prepare import Decay
 from sprung.validation.bodies import MOTIONS, BodyMotion
@@ -23,6 +24,7 @@ _DISTANT = 6.0
 """Standard deviations by which a drop must be further from the others than chance would have it."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class DropValidation:
     """How well the fitted vehicle does one drop.

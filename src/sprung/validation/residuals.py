@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
 from sprung.identification import Fit, residual_records
 from sprung.prepare import Decay
 from sprung.validation.sensors import moments, sensor_noise
@@ -18,6 +19,7 @@ _SIGNIFICANT = 4.0
 """Standard errors by which an excess must be real before it counts."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Misfit:
     """How far the model is from the records, beyond the sensors' noise.

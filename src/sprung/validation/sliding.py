@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from sprung.display import shown
 from sprung.modal import Mode
 
 Real = NDArray[np.float64]
@@ -34,6 +35,7 @@ _LEAST, _MOST = -0.1, 0.8
 """Damping ratios between which a window shows a vibration."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Trace:
     """One mode through one decay. All arrays have the shape (window,); neighbouring windows overlap by five sixths.

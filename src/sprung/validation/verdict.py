@@ -10,6 +10,7 @@ from typing import Literal
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.estimate import Estimate
 from sprung.identification import Fit
 from sprung.tables import escaped
@@ -42,6 +43,7 @@ in every direction), and among how many others that shows."""
 _NO_DROPS: Mapping[str, DropValidation] = MappingProxyType({})
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """Whether the numbers may be used.

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
+from sprung.display import shown
 from sprung.identification import Fit, residual_records
 from sprung.prepare import Decay
 from sprung.validation.sensors import moments, sensor_noise
@@ -19,6 +20,7 @@ _SPAN = 0.25
 """s over which residuals are correlated with themselves: a quarter of a period of a body mode."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Remainder:
     """What is left of one channel in one drop.

@@ -29,6 +29,7 @@ from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
 from sprung.vehicle.nonlinear import Forces, NonlinearModel
 from sprung.vehicle.parameters import (
     EXTRA_PARAMETERS,
+    LOAD_MASS,
     NEUTRAL,
     PARAMETERS,
     Parameter,
@@ -55,6 +56,7 @@ __all__ = [
     "LAWS",
     "LEVEL",
     "LINEAR_EXTRAS",
+    "LOAD_MASS",
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from sprung.display import shown
 from sprung.errors import Problems, SprungError, did_you_mean
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.crossing import first_fall
@@ -67,6 +68,7 @@ class Piece(NamedTuple):
         return expm(self.generator * (time - self.start)) @ self.state
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Fall:
     """The motion after one release, exact at any time.

@@ -11,6 +11,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+from sprung.display import shown
 from sprung.vehicle import rows
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
@@ -27,6 +28,7 @@ EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
 """All extras; those beyond the linear ones are forces with laws of their own."""
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Element:
     """One linear force law.
@@ -49,6 +51,7 @@ class Element:
     factor: float = 1.0
 
 
+@shown
 @dataclass(frozen=True, slots=True)
 class Force:
     """An element with a law of its own.

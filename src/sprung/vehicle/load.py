@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Annotated
+from collections.abc import Collection, Iterator, Mapping
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
 from sprung.errors import InputError, Problem
+from sprung.estimate import Known
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
+from sprung.vehicle.parameters import LOAD_MASS
 from sprung.vehicle.record import record
 from sprung.vehicle.rows import Wheel
 
@@ -24,12 +26,30 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 """A number in a campaign file: neither infinite nor NaN."""
 
 
+def _with_std(given: Any) -> Any:
+    """Take a mass apart that is written as { value = ..., std = ... }."""
+    keys = getattr(given, "kwargs", given)
+    if not isinstance(keys, Mapping):
+        return given
+    # Past this point values count as Python's, where strict typing takes no list for a tuple.
+    plain = {name: tuple(value) if isinstance(value, list) else value for name, value in keys.items()}
+    mass = plain.get("mass")
+    if isinstance(mass, Mapping) and {"value"} <= mass.keys() <= {"value", "std"}:
+        std = mass.get("std", 0.0)
+        if isinstance(std, bool) or not isinstance(std, int | float) or not 0 <= std < float("inf"):
+            raise ValueError("the std of a mass must be a number, 0 or more, in kg")
+        plain |= {"mass": mass["value"], "mass_std": float(std)}
+    return plain
+
+
 @record
 class Item:
     """One piece of a load: a mass at a place."""
 
     mass: Positive
-    """kg."""
+    """kg; in a campaign file also { value = ..., std = ... }."""
+    mass_std: NotNegative = 0.0
+    """Standard uncertainty of the mass, kg; 0 means exact."""
     position: tuple[Finite, Finite, Finite] | None = None
     """x forward of the front axle, y left of the centreline, z above the ground, m; for items on the body."""
     inertia: tuple[NotNegative, NotNegative] = (0.0, 0.0)
@@ -37,29 +57,38 @@ class Item:
     on: Wheel | None = None
     """The wheel it sits on, for items not on the body."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, given: Any) -> Any:
+        return _with_std(given)
+
     @model_validator(mode="after")
     def _somewhere(self) -> Item:
         if (self.position is None) == (self.on is None):
             raise ValueError('an item needs either a position on the body or the wheel it sits on (on = "fl")')
         return self
 
-    def elements(self, heights: Heights) -> Iterator[Element]:
+    def elements(self, heights: Heights, mass: str | float | None = None) -> Iterator[Element]:
         """Give what the item adds to the vehicle.
 
         Parameters
         ----------
         heights
             Of the empty vehicle; without them the item counts as level with the centre of gravity.
+        mass
+            Name of the parameter that is its mass, or kg; its own mass unless given.
         """
+        mass = self.mass if mass is None else mass
         if self.on is not None:
-            yield Element("mass", self.mass, rows.wheel(self.on))
+            yield Element("mass", mass, rows.wheel(self.on))
         elif self.position is not None:
             x, y, z = self.position
-            yield Element("mass", self.mass, rows.body_point(x, y))
+            yield Element("mass", mass, rows.body_point(x, y))
             for row, own, arm in zip((rows.roll(), rows.pitch()), self.inertia, heights.item_arms(z), strict=True):
-                yield Element("mass", own + self.mass * arm**2, row)
+                yield Element("mass", own, row)
+                yield Element("mass", mass, row, arm**2)
                 if heights.known:
-                    yield Element("spring", -self.mass * heights.tipping(z), row)
+                    yield Element("spring", mass, row, -heights.tipping(z))
 
 
 @record
@@ -67,7 +96,9 @@ class Added:
     """A load of which only totals are known, taken as centred on the body's centre of gravity (the paper's bus)."""
 
     mass: NotNegative
-    """kg, on the body."""
+    """kg, on the body; in a campaign file also { value = ..., std = ... }."""
+    mass_std: NotNegative = 0.0
+    """Standard uncertainty of the mass, kg; 0 means exact."""
     I_yy: NotNegative = 0.0
     """kg m², pitch."""
     I_xx: NotNegative = 0.0
@@ -77,9 +108,26 @@ class Added:
     m_ur: NotNegative = 0.0
     """kg on each rear wheel."""
 
-    def elements(self) -> Iterator[Element]:
-        """Give what the load adds to the vehicle."""
-        yield Element("mass", self.mass, rows.bounce())
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, given: Any) -> Any:
+        return _with_std(given)
+
+    @model_validator(mode="after")
+    def _some_mass(self) -> Added:
+        if self.mass_std > 0 and self.mass == 0:
+            raise ValueError("a mass of 0 kg has no uncertainty; give the load's mass")
+        return self
+
+    def elements(self, mass: str | float | None = None) -> Iterator[Element]:
+        """Give what the load adds to the vehicle.
+
+        Parameters
+        ----------
+        mass
+            Name of the parameter that is its mass on the body, or kg; its own unless given.
+        """
+        yield Element("mass", self.mass if mass is None else mass, rows.bounce())
         yield Element("mass", self.I_yy, rows.pitch())
         yield Element("mass", self.I_xx, rows.roll())
         yield Element("mass", self.m_uf, rows.wheel("fl"))
@@ -119,7 +167,20 @@ class Load:
             return self.added.mass + 2 * (self.added.m_uf + self.added.m_ur)
         return sum(item.mass for item in self.items)
 
-    def elements(self, heights: Heights = LEVEL) -> tuple[Element, ...]:
+    @property
+    def uncertain_masses(self) -> dict[str, Known]:
+        """Masses that are known with an uncertainty, kg, by the names under which they are parameters of a fit."""
+        if self.added is not None:
+            parts: dict[str, Item | Added] = {f"{LOAD_MASS}{self.name}": self.added}
+        else:
+            several = len(self.items) > 1
+            parts = {self._name_of(i, several): item for i, item in enumerate(self.items)}
+        return {name: Known(part.mass, part.mass_std) for name, part in parts.items() if part.mass_std > 0}
+
+    def _name_of(self, item: int, several: bool) -> str:
+        return f"{LOAD_MASS}{self.name}, item {item + 1}" if several else f"{LOAD_MASS}{self.name}"
+
+    def elements(self, heights: Heights = LEVEL, unknown: Collection[str] = ()) -> tuple[Element, ...]:
         """Give the elements that the load adds; ΔM is the sum of the masses, full where the items are off centre.
 
         Parameters
@@ -127,6 +188,8 @@ class Load:
         heights
             Of the empty vehicle; without them every item counts as level with the centre of gravity. Where they tell what
             carries the body, a load tips it the more the higher it stands.
+        unknown
+            Names of parameters; masses of `uncertain_masses` among them are parameters, and not numbers.
 
         Raises
         ------
@@ -137,8 +200,14 @@ class Load:
             expected, do = "items = [...] or added = {...}", "Write what the load consists of."
             raise InputError([Problem(f"load '{self.name}'", "neither items nor added", expected, do)])
         if self.added is not None:
-            return tuple(self.added.elements())
-        return tuple(element for item in self.items for element in item.elements(heights))
+            name = self._name_of(0, several=False)
+            return tuple(self.added.elements(name if name in unknown else None))
+        names = [self._name_of(i, len(self.items) > 1) for i in range(len(self.items))]
+        return tuple(
+            element
+            for item, name in zip(self.items, names, strict=True)
+            for element in item.elements(heights, name if name in unknown else None)
+        )
 
 
 EMPTY = Load(name="empty")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from sprung.display import shown
 from sprung.vehicle.elements import Element, Law
 from sprung.vehicle.rows import HEAVE, Row, coordinates
 
@@ -49,6 +50,7 @@ class Matrices(NamedTuple):
         return weight
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Rows:
     """Several rows over one list of parameters.
@@ -91,6 +93,7 @@ class Rows:
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class LinearModel:
     """M, C and K over one list of parameters, as polynomials in them.
@@ -159,6 +162,16 @@ class LinearModel:
             np.array(list(kept.values())).reshape(shape),
         )
         return cls(tuple(names), products, constants, tuple(elements))
+
+    def with_known(self, known: Mapping[str, float]) -> LinearModel:
+        """Return the model in which some parameters that multiply elements are known numbers, SI by name."""
+        elements = [
+            replace(one, coefficient=known[one.coefficient])
+            if isinstance(one.coefficient, str) and one.coefficient in known
+            else one
+            for one in self.elements
+        ]
+        return LinearModel.of(elements, [name for name in self.names if name not in known])
 
     @classmethod
     def side_by_side(cls, models: Sequence[LinearModel]) -> LinearModel:

@@ -138,7 +138,7 @@ class NonlinearModel:
         gravity: float = STANDARD_GRAVITY,
     ) -> NonlinearModel:
         """Compile a vehicle with its heights and a load, elements and forces beside them, over a list of parameter names."""
-        added = load.elements(heights)
+        added = load.elements(heights, names)
         linear = LinearModel.of([*elements, *added], names)
         return cls(linear, LinearModel.of(added, names), Forces.of(forces, names), gravity)
 

@@ -23,81 +23,100 @@ class Parameter(NamedTuple):
     """Whether it may be negative."""
 
 
-PARAMETERS: Mapping[str, Parameter] = {
-    "m_s": Parameter("kg", "sprung mass", True),
-    "I_yy": Parameter("kg m^2", "pitch inertia of the sprung mass", True),
-    "I_xx": Parameter("kg m^2", "roll inertia of the sprung mass", True),
-    "m_uf": Parameter("kg", "unsprung mass, each front wheel", True),
-    "m_ur": Parameter("kg", "unsprung mass, each rear wheel", True),
-    "k_sf": Parameter("N/m", "spring rate, each front wheel", True),
-    "k_sr": Parameter("N/m", "spring rate, each rear wheel", True),
-    "k_tf": Parameter("N/m", "tyre rate, each front wheel", True),
-    "k_tr": Parameter("N/m", "tyre rate, each rear wheel", True),
-    "c_sf": Parameter("N s/m", "damper rate, each front wheel", True),
-    "c_sr": Parameter("N s/m", "damper rate, each rear wheel", True),
-    "a": Parameter("m", "centre of gravity of the sprung mass to front axle", False),
-    "b": Parameter("m", "centre of gravity of the sprung mass to rear axle", False),
-    "t_f": Parameter("m", "half-distance of springs and dampers, front", False),
-    "t_r": Parameter("m", "half-distance of springs and dampers, rear", False),
-    "t_f1": Parameter("m", "half-distance of the front dampers", False),
-    "t_r1": Parameter("m", "half-distance of the rear dampers", False),
-    "t_f2": Parameter("m", "half-distance of the front springs", False),
-    "t_r2": Parameter("m", "half-distance of the rear springs", False),
-    "c_tf": Parameter("N s/m", "tyre damping, each front wheel", True, False),
-    "c_tr": Parameter("N s/m", "tyre damping, each rear wheel", True, False),
-    "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
-    "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
-    "w_h": Parameter(
-        "N m", "weight of the body times the height by which it stands above what carries it", True, False, True
-    ),
-    "y_s": Parameter("m", "centre of gravity of the sprung mass, left of the centreline", False, False, True),
-    "d_ksf": Parameter("N/m", "left front spring rate above the mean of both", True, False, True),
-    "d_ksr": Parameter("N/m", "left rear spring rate above the mean of both", True, False, True),
-    "d_ktf": Parameter("N/m", "left front tyre rate above the mean of both", True, False, True),
-    "d_ktr": Parameter("N/m", "left rear tyre rate above the mean of both", True, False, True),
-    "d_csf": Parameter("N s/m", "left front damper rate above the mean of both", True, False, True),
-    "d_csr": Parameter("N s/m", "left rear damper rate above the mean of both", True, False, True),
-    "n_f": Parameter(
-        "1", "place of springs and dampers on a rigid front axle, part of its wheels' half-distance", False
-    ),
-    "n_r": Parameter(
-        "1", "place of springs and dampers on a rigid rear axle, part of its wheels' half-distance", False
-    ),
-    "n_f1": Parameter("1", "place of the dampers on a rigid front axle, part of its wheels' half-distance", False),
-    "n_r1": Parameter("1", "place of the dampers on a rigid rear axle, part of its wheels' half-distance", False),
-    "n_f2": Parameter("1", "place of the springs on a rigid front axle, part of its wheels' half-distance", False),
-    "n_r2": Parameter("1", "place of the springs on a rigid rear axle, part of its wheels' half-distance", False),
-    "m_xf": Parameter(
-        "kg",
-        "what rolls with a rigid front axle beside its unsprung masses, as a mass at each wheel",
-        True,
-        False,
-        True,
-    ),
-    "m_xr": Parameter(
-        "kg", "what rolls with a rigid rear axle beside its unsprung masses, as a mass at each wheel", True, False, True
-    ),
-    "m_e": Parameter("kg", "engine that moves on its mounts, a part of the sprung mass", True, False),
-    "k_e": Parameter("N/m", "engine mounts, all together", True),
-    "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
-    "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
-    "F_f": Parameter("N", "dry friction, each front wheel", True, False),
-    "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
-    "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
-    "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
-    "r_f": Parameter("1", "rebound damping over compression damping, front", False),
-    "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
-    "p_f": Parameter(
-        "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
-    ),
-    "p_r": Parameter(
-        "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
-    ),
-    "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
-    "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
-    "x_bf": Parameter("m", "compression from rest at which the front bump stops are met", False),
-    "x_br": Parameter("m", "compression from rest at which the rear bump stops are met", False),
-}
+LOAD_MASS = "mass of "
+"""How the name of a parameter begins that is the mass of a load, or of one of its items, known with an uncertainty."""
+
+
+class _Parameters(dict[str, Parameter]):
+    """What each parameter of the vehicle is; the masses of loads, which every campaign names itself, are alike."""
+
+    def __missing__(self, name: str) -> Parameter:
+        if name.startswith(LOAD_MASS):
+            return Parameter("kg", f"{name}, as the recordings and what was known of it say", True)
+        raise KeyError(name)
+
+
+PARAMETERS: Mapping[str, Parameter] = _Parameters(
+    {
+        "m_s": Parameter("kg", "sprung mass", True),
+        "I_yy": Parameter("kg m^2", "pitch inertia of the sprung mass", True),
+        "I_xx": Parameter("kg m^2", "roll inertia of the sprung mass", True),
+        "m_uf": Parameter("kg", "unsprung mass, each front wheel", True),
+        "m_ur": Parameter("kg", "unsprung mass, each rear wheel", True),
+        "k_sf": Parameter("N/m", "spring rate, each front wheel", True),
+        "k_sr": Parameter("N/m", "spring rate, each rear wheel", True),
+        "k_tf": Parameter("N/m", "tyre rate, each front wheel", True),
+        "k_tr": Parameter("N/m", "tyre rate, each rear wheel", True),
+        "c_sf": Parameter("N s/m", "damper rate, each front wheel", True),
+        "c_sr": Parameter("N s/m", "damper rate, each rear wheel", True),
+        "a": Parameter("m", "centre of gravity of the sprung mass to front axle", False),
+        "b": Parameter("m", "centre of gravity of the sprung mass to rear axle", False),
+        "t_f": Parameter("m", "half-distance of springs and dampers, front", False),
+        "t_r": Parameter("m", "half-distance of springs and dampers, rear", False),
+        "t_f1": Parameter("m", "half-distance of the front dampers", False),
+        "t_r1": Parameter("m", "half-distance of the rear dampers", False),
+        "t_f2": Parameter("m", "half-distance of the front springs", False),
+        "t_r2": Parameter("m", "half-distance of the rear springs", False),
+        "c_tf": Parameter("N s/m", "tyre damping, each front wheel", True, False),
+        "c_tr": Parameter("N s/m", "tyre damping, each rear wheel", True, False),
+        "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
+        "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
+        "w_h": Parameter(
+            "N m", "weight of the body times the height by which it stands above what carries it", True, False, True
+        ),
+        "y_s": Parameter("m", "centre of gravity of the sprung mass, left of the centreline", False, False, True),
+        "d_ksf": Parameter("N/m", "left front spring rate above the mean of both", True, False, True),
+        "d_ksr": Parameter("N/m", "left rear spring rate above the mean of both", True, False, True),
+        "d_ktf": Parameter("N/m", "left front tyre rate above the mean of both", True, False, True),
+        "d_ktr": Parameter("N/m", "left rear tyre rate above the mean of both", True, False, True),
+        "d_csf": Parameter("N s/m", "left front damper rate above the mean of both", True, False, True),
+        "d_csr": Parameter("N s/m", "left rear damper rate above the mean of both", True, False, True),
+        "n_f": Parameter(
+            "1", "place of springs and dampers on a rigid front axle, part of its wheels' half-distance", False
+        ),
+        "n_r": Parameter(
+            "1", "place of springs and dampers on a rigid rear axle, part of its wheels' half-distance", False
+        ),
+        "n_f1": Parameter("1", "place of the dampers on a rigid front axle, part of its wheels' half-distance", False),
+        "n_r1": Parameter("1", "place of the dampers on a rigid rear axle, part of its wheels' half-distance", False),
+        "n_f2": Parameter("1", "place of the springs on a rigid front axle, part of its wheels' half-distance", False),
+        "n_r2": Parameter("1", "place of the springs on a rigid rear axle, part of its wheels' half-distance", False),
+        "m_xf": Parameter(
+            "kg",
+            "what rolls with a rigid front axle beside its unsprung masses, as a mass at each wheel",
+            True,
+            False,
+            True,
+        ),
+        "m_xr": Parameter(
+            "kg",
+            "what rolls with a rigid rear axle beside its unsprung masses, as a mass at each wheel",
+            True,
+            False,
+            True,
+        ),
+        "m_e": Parameter("kg", "engine that moves on its mounts, a part of the sprung mass", True, False),
+        "k_e": Parameter("N/m", "engine mounts, all together", True),
+        "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
+        "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
+        "F_f": Parameter("N", "dry friction, each front wheel", True, False),
+        "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
+        "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
+        "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
+        "r_f": Parameter("1", "rebound damping over compression damping, front", False),
+        "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
+        "p_f": Parameter(
+            "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
+        ),
+        "p_r": Parameter(
+            "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
+        ),
+        "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
+        "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
+        "x_bf": Parameter("m", "compression from rest at which the front bump stops are met", False),
+        "x_br": Parameter("m", "compression from rest at which the rear bump stops are met", False),
+    }
+)
 """Every parameter that the models know, in the order in which tables show them."""
 
 EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {

@@ -10,6 +10,7 @@ from typing import Any, TypeVar, cast, dataclass_transform
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
+from sprung.display import shown
 from sprung.errors import InputError, Problem, did_you_mean
 
 Record = TypeVar("Record")
@@ -52,7 +53,7 @@ def record(model: type[Record]) -> type[Record]:
             raise InputError(problems_of_record(made, error, where)) from None
 
     type.__setattr__(made, "__init__", constructor)
-    return cast("type[Record]", made)
+    return shown(cast("type[Record]", made))
 
 
 def record_of(model: type[Record], keys: Mapping[str, Any]) -> Record:

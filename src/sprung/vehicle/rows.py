@@ -17,6 +17,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.display import shown
+
 Wheel = Literal["fl", "fr", "rl", "rr"]
 """A wheel station: front left, front right, rear left, rear right."""
 
@@ -38,6 +40,7 @@ HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 _Z, _THETA, _PHI, *_WHEELS, _ENGINE = np.eye(len(COORDINATES))
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Row:
     """A displacement g·X with g affine in geometric parameters.

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from sprung.display import shown
 from sprung.errors import Problems, did_you_mean
 from sprung.vehicle.elements import Tracks, seven_degrees_of_freedom
 from sprung.vehicle.heights import Heights
@@ -15,6 +16,7 @@ from sprung.vehicle.model import LinearModel, Matrices
 from sprung.vehicle.parameters import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, brought_by, parameter_names
 
 
+@shown
 @dataclass(frozen=True, kw_only=True)
 class Vehicle:
     """A two-axle road vehicle, by its parameters in SI units; named as in the paper.
@@ -230,9 +232,13 @@ class Vehicle:
         Parameters
         ----------
         values, name, heights
-            As for `from_parameters`.
+            As for `from_parameters`; masses of loads among the values are passed over.
         """
-        able = {one: value if PARAMETERS[one].signed else max(value, 0.0) for one, value in values.items()}
+        able = {
+            one: value if PARAMETERS[one].signed else max(value, 0.0)
+            for one, value in values.items()
+            if one in PARAMETERS
+        }
         return cls.from_parameters(able, name=name, **heights)
 
     @property

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.errors import Problem
 from sprung.prepare import FoundDrop, Place, Refusal
 from sprung.recording import FILE, SCHEMA_FILE, kind_of, schema_text, write_whole
@@ -124,6 +125,7 @@ class DraftFile:
     left_out: Mapping[str, str]
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Draft:
     """A drafted campaign.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sprung.display import shown
 from sprung.recording.formats.store import BUDGET, Store
 from sprung.units import acceleration_factor
 
@@ -60,6 +61,7 @@ def sample_number(sample: int) -> str:
     return f"sample {sample + 1}"
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class Table:
     """The columns of one file, as the file has them. Their samples stay there until `take` or `pieces` ask for them.
