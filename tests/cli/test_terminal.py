@@ -35,12 +35,12 @@ def numbers(text: str) -> set[str]:
 
 
 @pytest.mark.parametrize("columns", [20, 40, 60, 80, 100, 120, 200])
-def test_no_width_cuts_a_word_or_a_number(folder: Folder, leafbus: Identified, columns: int) -> None:
+def test_no_width_cuts_a_word_or_a_number(folder: Folder, one_drop: Identified, columns: int) -> None:
     wide = run("check", "--no-drawings", folder.path, columns=300)
     narrow = run("check", "--no-drawings", folder.path, columns=columns)
     starts = {f"{drop['start']:.3f}" for drop in run("check", "--no-drawings", folder.path, "--json").json["drops"]}
     assert starts <= numbers(narrow.out) <= numbers(wide.out)
-    result = sprung.load(leafbus.results)
+    result = sprung.load(one_drop.results)
     shown = text_of(result_view(result), console_of(columns))
     assert "…" not in shown
     full = text_of(result_view(result), console_of(300))
@@ -57,8 +57,8 @@ def console_of(columns: int) -> Console:
     return Console(width=columns, highlight=False, color_system=None)
 
 
-def test_a_wide_terminal_says_what_a_parameter_means(leafbus: Identified) -> None:
-    result = sprung.load(leafbus.results)
+def test_a_wide_terminal_says_what_a_parameter_means(one_drop: Identified) -> None:
+    result = sprung.load(one_drop.results)
     wide, narrow = (text_of(result_view(result), console_of(columns)) for columns in (120, 80))
     said = "spring rate, each front wheel"
     assert [line.split()[0] for line in wide.splitlines() if said in line] == ["k_sf"]
