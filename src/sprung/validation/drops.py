@@ -109,9 +109,7 @@ def validate_drops(
             fitted=float(np.sqrt(squares / energy)),
             residual=over_noise,
             predicted=None if foretold is None else float(np.sqrt(foretold.squares / energy)),
-            predicted_residual=None
-            if foretold is None
-            else over_noise * float(np.sqrt(foretold.squares / foretold.fitted)),
+            predicted_residual=None if foretold is None else over_noise * foretold.growth,
             unexpected=0.0 if foretold is None else _unexpected(foretold, energy, coloured),
             apart=None if foretold is None else foretold.distance[0] / max(foretold.distance[1], 1),
             whiteness={channels[channel]: one for channel, one in left.items()},
