@@ -121,3 +121,16 @@ def test_as_a_parameter_it_gives_the_same_matrices() -> None:
         known = as_parameter.with_known({"mass of bags": TRUE})
         assert known.names == names[:-1]
         assert pytest.approx(as_number.M, rel=1e-12) == known.matrices(values[:-1]).M
+
+
+def test_a_plan_counts_the_uncertainty_of_a_planned_load() -> None:
+    """Beside no scales the relative variances add, as in a fit: error² = error₀² + (std / mass)² for what scales."""
+    std = 3.0
+    exact, uncertain = (sprung.plan(TABLE_1_CAR, loads=[load(mass)]) for mass in (TRUE, {"value": TRUE, "std": std}))
+    assert list(uncertain.rows[0].bound.percents) == list(exact.rows[0].bound.percents)
+    for name, percent in exact.rows[0].bound.percents.items():
+        grown = (uncertain.rows[0].bound.percents[name] or 0) ** 2 - (percent or 0) ** 2
+        assert grown == pytest.approx((100 * std / TRUE) ** 2 * PARAMETERS[name].scales, rel=1e-3, abs=1e-6), name
+    # A weighing, which is exact, leaves little of it.
+    weighed = next(row for row in uncertain.rows if row.label == "total mass")
+    assert (weighed.bound.percents["m_s"] or 0) < 0.2

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.identification import NO_INFORMATION, RANK, Fit, Unidentifiable, canonical_basis, conclude
 from sprung.planning.subject import Subject
+from sprung.vehicle import LOAD_MASS
 
 Real = NDArray[np.float64]
 
@@ -61,7 +62,7 @@ class Bound:
         return {
             name: 100 * one if one <= 1 else None
             for name, one in zip(self.subject.names, spread, strict=True)
-            if one > _EXACT
+            if one > _EXACT and not name.startswith(LOAD_MASS)
         }
 
     @property

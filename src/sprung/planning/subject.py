@@ -22,6 +22,7 @@ from sprung.estimate import Known
 from sprung.identification import Coordinates, Knowledge, Likelihood
 from sprung.prepare import Decay, no_rest
 from sprung.vehicle import (
+    LOAD_MASS,
     PARAMETERS,
     LinearModel,
     Load,
@@ -105,13 +106,17 @@ class Subject:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The parameters of the model."""
-        return parameter_names(self.tracks, self.extras)
+        """The parameters of the model, and the masses of loads that are known with an uncertainty."""
+        masses = [name for name in self.known if name.startswith(LOAD_MASS)]
+        return (*parameter_names(self.tracks, self.extras), *masses)
 
     @cached_property
     def values(self) -> Real:
         """Their values, SI, shape (parameter,)."""
-        return np.array([getattr(self.vehicle, name) for name in self.names], dtype=float)
+        masses = {name: one.value for name, one in self.known.items() if name.startswith(LOAD_MASS)}
+        return np.array(
+            [masses[name] if name in masses else getattr(self.vehicle, name) for name in self.names], dtype=float
+        )
 
     @cached_property
     def knowledge(self) -> Knowledge:
@@ -165,7 +170,10 @@ class Subject:
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
         heights = self.vehicle.heights
         elements = seven_degrees_of_freedom(self.tracks, self.extras, heights)
-        models = {name: LinearModel.of(elements + load.elements(heights), self.names) for load, name in names.items()}
+        models = {
+            name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
+            for load, name in names.items()
+        }
         likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
         weights = self.rate / sampling / self.noise**2
         told = likelihood.at(self.values).evaluate(weights).information
