@@ -43,7 +43,6 @@ def test_the_name_is_written_and_read_back(folder: Folder, tmp_path: Path) -> No
 
 
 def test_a_drop_with_a_name_is_fitted_like_any_other(folder: Folder) -> None:
-    folder.edit("[known]", '[model]\ntracks = "shared"\nextras = []\n\n[known]')
     named = sprung.read(folder.path)
     plain = replace(
         named,

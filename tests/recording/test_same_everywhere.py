@@ -55,7 +55,7 @@ def written(campaign: sprung.Campaign, folder: Path, way: Way) -> Path:
         text = text.replace(f'"{recording.name}"', f'"{path.name}"')
     if way.nameless:
         numbered = iter(range(1, 100))
-        text = re.sub(r'channel = "\w+"', lambda _: f'channel = "ch{next(numbered)}"\nunit = "g"', text)
+        text = re.sub(r'channel *= "\w+"', lambda _: f'channel = "ch{next(numbered)}"\nunit = "g"', text)
     (folder / "campaign.toml").write_text(text, encoding="utf-8")
     return folder
 

@@ -172,7 +172,7 @@ def test_every_fault_is_named_at_once() -> None:
             sensors=[
                 {"channel": "a", "on": "body"},
                 {"channel": "b", "on": "fl", "unit": "furlong"},
-                {"channel": "b", "on": "fr", "high_pass": 40.0},
+                {"channel": "b", "on": "fr", "high_pass": 28.0},
             ],
             loads=[{"name": "lead"}, {"name": "sand", "added": {"mass": 1}}, {"name": "sand", "added": {"mass": 2}}],
             drops=[
