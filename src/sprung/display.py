@@ -27,6 +27,7 @@ def shown(cls: type[Record]) -> type[Record]:
     ----------
     cls
         A dataclass, or a mapping. A ``_repr_html_`` of its own stays, and a ``__repr__`` where the dataclass has repr=False.
+        Where it has a method ``__shown__``, that gives what to show, by name.
 
     Returns
     -------
@@ -86,8 +87,9 @@ def html_of_record(record: object) -> str:
 
 
 def _entries(record: object) -> Iterator[tuple[str, str]]:
-    if isinstance(record, Mapping):
-        yield from ((str(name), _brief(value)) for name, value in record.items())
+    shown_as = record.__shown__() if hasattr(record, "__shown__") else record
+    if isinstance(shown_as, Mapping):
+        yield from ((str(name), _brief(value)) for name, value in shown_as.items())
         return
     for one in fields(cast("Any", record)):
         value = getattr(record, one.name)
@@ -115,8 +117,7 @@ def _brief(value: object) -> str:
     elif hasattr(value, "shape") and hasattr(value, "dtype"):
         text = f"array of shape {value.shape}"
     elif isinstance(value, Mapping):
-        names = ", ".join(str(name) for name in list(value)[:_LISTED])
-        text = f"{{{names}{', ...' if len(value) > _LISTED else ''}: {len(value)}}}" if value else "{}"
+        text = _mapped(value)
     elif is_dataclass(value) or (isinstance(value, tuple) and hasattr(value, "_fields")):
         # Small records are shown whole, large ones by what they are.
         written = type(value).__str__ is not object.__str__ and type(value).__repr__ is text_of_record
@@ -130,6 +131,15 @@ def _brief(value: object) -> str:
         text = str(value)
     text = " ".join(text.split())
     return text if len(text) <= _BRIEF else f"{text[: _BRIEF - 3]}..."
+
+
+def _mapped(values: Mapping[Any, Any]) -> str:
+    """Return few short entries with their names, of others the first names and how many there are."""
+    text = f"{{{', '.join(f'{name}: {_brief(value)}' for name, value in list(values.items())[: _LISTED + 1])}}}"
+    if len(values) <= _LISTED and len(text) <= _BRIEF:
+        return text
+    names = [str(name) for name in values]
+    return f"{len(names)} by name: {', '.join(names[:_LISTED])}{', ...' if len(names) > _LISTED else ''}"
 
 
 def _several(values: list[object]) -> str:

@@ -146,6 +146,43 @@ def test_tables_for_pandas(result: Result, campaign: sprung.Campaign) -> None:
     assert list(sprung.check(campaign).to_dataframe().index) == [drop.file for drop in campaign.drops]
 
 
+def test_a_comparison_as_a_table(result: Result, tmp_path: Path) -> None:
+    """Each number is that of the records; results that were saved say the same."""
+    other = replace(result, parameters=result.parameters | {"k_sf": replace(result.parameters["k_sf"], value=2e4)})
+    compared = sprung.compare([result, other], names=["before", "after"])
+    table = compared.to_dataframe()
+    assert list(table.columns)[:4] == ["value", "std", "unit", "difference"]
+    assert len(table) == 2 * (len(compared.parameters) + len(compared.modes))
+    assert table.loc[("k_sf", "after"), "value"] == 2e4
+    assert table.loc[("k_sf", "after"), "difference"] == compared.parameters["k_sf"].differences[0].value
+    assert table.loc[("k_sf", "after"), "finding"] == "certain"
+    assert table["difference"].xs("before", level="result").isna().all()
+    folders = [one.save(tmp_path / name) for one, name in ((result, "a"), (other, "b"))]
+    saved = sprung.compare(folders, names=["before", "after"]).to_dataframe()
+    assert saved["value"].to_list() == table["value"].to_list()
+
+
+def test_small_mappings_are_written_out_and_large_ones_counted(result: Result) -> None:
+    known = repr(sprung.simulate(TABLE_1_CAR, drops=[{}], duration=0.6, known={"total_mass": 1551.8}))
+    assert "known={total_mass: Known(value=1551.8)}" in " ".join(known.split())
+    assert "noise=8 by name: body_fl, body_fr, body_rl, body_rr, ..." in " ".join(repr(result.fit).split())
+
+
+def test_a_vehicle_shows_what_it_was_made_with() -> None:
+    text = repr(TABLE_1_CAR)
+    assert "t_f=0.74" in text
+    assert "t_f1=" not in text
+    assert "n_f=" not in text
+    assert eval(text, {"Vehicle": sprung.Vehicle}) == TABLE_1_CAR  # noqa: S307 (our own text)
+    assert "cg_height=0.5" in repr(replace(TABLE_1_CAR, cg_height=0.5))
+
+
+def test_mappings_of_records_are_brief(result: Result) -> None:
+    for mapping in (result.validation, result.series, result.recordings):
+        assert len(repr(mapping).split("\n")) <= LINES
+        assert "<table" in mapping._repr_html_()  # type: ignore[attr-defined]
+
+
 def test_the_identified_vehicle_can_be_simulated_or_says_why_not(result: Result) -> None:
     assert result.vehicle.total_mass == pytest.approx(TABLE_1_CAR.total_mass, rel=1e-9)
     assert sprung.simulate(result.vehicle, drops=[{}], seed=1).name == result.name

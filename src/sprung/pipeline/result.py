@@ -207,7 +207,7 @@ class Result:
     recordings: Mapping[str, Recorded] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        for mapping in ("parameters", "derived", "modes"):
+        for mapping in ("parameters", "derived", "modes", "validation", "series", "recordings"):
             object.__setattr__(self, mapping, Named(getattr(self, mapping)))
 
     def __repr__(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from sprung.display import shown
 from sprung.errors import Problems
@@ -14,6 +14,9 @@ from sprung.pipeline import Result, load
 from sprung.study.scatter import Scatter, scatters, told_by
 from sprung.study.significance import Joint, holm, joint, two_sided
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LIKELY, CERTAIN = 0.05, 0.001
 """Chances, corrected for the number of comparisons, below which a difference is called likely and certain."""
@@ -154,12 +157,43 @@ class Comparison:
         """Names of the results whose numbers must not be used."""
         return tuple(one.name for one in self.results if one.verdict == "reject")
 
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return values and differences as a table, a row for each quantity of each result, SI.
+
+        Returns
+        -------
+        DataFrame
+            By quantity and result: ``value``, ``std`` and ``unit``; and ``difference`` from the first result with its
+            ``difference_std``, ``percent``, ``z``, ``p_holm`` and ``finding``, which the first result itself has not.
+        """
+        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+
+        rows = [
+            {"quantity": name, "result": one.name, "value": told.value, "std": told.std, "unit": row.unit}
+            | ({} if other is None else _difference_columns(other))
+            for name, row in {**self.parameters, **self.modes}.items()
+            for one, told, other in zip(self.results, row.told, (None, *row.differences), strict=True)
+        ]
+        columns = ["quantity", "result", "value", "std", "unit", *_difference_columns(Difference())]
+        return pd.DataFrame(rows, columns=columns).set_index(["quantity", "result"])
+
     def document(self) -> dict[str, Any]:
         """Give everything as plain values, for JSON."""
         return {
             **asdict(self),
             "scatter": {name: {**asdict(one), "stands_out": one.stands_out} for name, one in self.scatter.items()},
         }
+
+
+def _difference_columns(found: Difference) -> dict[str, float | str | None]:
+    return {
+        "difference": found.value,
+        "difference_std": found.std,
+        "percent": found.percent,
+        "z": found.z,
+        "p_holm": found.p_holm,
+        "finding": found.finding,
+    }
 
 
 def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | None = None) -> Comparison:

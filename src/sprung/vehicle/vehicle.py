@@ -261,6 +261,11 @@ class Vehicle:
         """Values of the parameters by name: shared half-distances where they are shared, extras where not zero."""
         return {name: getattr(self, name) for name in parameter_names(self.tracks, self.extras)}
 
+    def __shown__(self) -> dict[str, float | str]:
+        """Return what a console and a notebook show: what it was made with, without the places that follow from it."""
+        heights = {key: value for key, value in self.heights.by_key.items() if value is not None}
+        return {"name": self.name, **self.parameters, **heights}
+
     @property
     def extras(self) -> tuple[str, ...]:
         """What it has beyond the paper's vehicle."""
