@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 from sprung.display import shown
 
-
 _CANDIDATES = 10
 """How many of the names that share most letters with a mistyped one are compared with it letter by letter."""
 

@@ -49,7 +49,7 @@ class Prediction:
 
     @property
     def growth(self) -> float:
-        """By how much the residual's rms is larger as predicted than in the joint fit; one where the fit leaves nothing at all."""
+        """Residual rms as predicted over that of the joint fit; one where the fit leaves nothing at all."""
         return float(np.sqrt(self.squares / self.fitted)) if self.fitted > 0 else 1.0
 
 

@@ -117,27 +117,14 @@ class Setup:
         names |= {load.name if isinstance(load, Load) else str(load.get("name")) for load in loads or ()}
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
+        sensing = Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
         stated = {"wheelbase": Known(vehicle.wheelbase)} | known_quantities(known or {}, "simulate: known", problems)
-        check_statements(
-            "simulate",
-            sensors=chosen_sensors,
-            loads=all_loads,
-            drops=chosen_drops,
-            known={name: quantity for name, quantity in stated.items() if name != "wheelbase"},
-            wheelbase=stated["wheelbase"],
-            heights=vehicle.heights,
-            whole=False,
-            problems=problems,
-        )
-        for name, value in vehicle.parameters.items():
-            beyond = implausible(name, value)
-            if beyond is not None:
-                problems.add(f"simulate: vehicle.{name}", f"{value:g}", *beyond)
+        _check_plausible(vehicle, chosen_sensors, all_loads, chosen_drops, stated, problems)
         return cls(
             vehicle,
             all_loads,
             name_files(chosen_drops),
-            Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems),
+            sensing,
             stated,
             record(ModelChoice, "model", model or {}, problems) or ModelChoice(),
         )
@@ -185,6 +172,32 @@ class Setup:
             known={name: quantity for name, quantity in self.known.items() if name != "wheelbase"},
             model=self.model,
         )
+
+
+def _check_plausible(
+    vehicle: Vehicle,
+    sensors: Sequence[Sensor],
+    loads: Sequence[Load],
+    drops: Sequence[Drop],
+    known: Mapping[str, Known],
+    problems: Problems,
+) -> None:
+    """Add a problem for everything that a vehicle file may not state either."""
+    check_statements(
+        "simulate",
+        sensors=sensors,
+        loads=loads,
+        drops=drops,
+        known={name: quantity for name, quantity in known.items() if name != "wheelbase"},
+        wheelbase=known["wheelbase"],
+        heights=vehicle.heights,
+        whole=False,
+        problems=problems,
+    )
+    for name, value in vehicle.parameters.items():
+        beyond = implausible(name, value)
+        if beyond is not None:
+            problems.add(f"simulate: vehicle.{name}", f"{value:g}", *beyond)
 
 
 def check_not_negative(problems: Problems, **lengths: float) -> None:
