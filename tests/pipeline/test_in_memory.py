@@ -85,7 +85,7 @@ def test_a_simulation_refuses_the_same() -> None:
     known: Any = {"total_mass": 1.5518}
     for name, door in (("simulate", sprung.simulate), ("plan", sprung.plan)):
         with pytest.raises(InputError, match=rf"{name}: known\.total_mass"):
-            door(TABLE_1_CAR, known=known)  # type: ignore[operator]
+            door(TABLE_1_CAR, known=known)
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, TRUCK], ids=lambda one: one.name)

@@ -178,9 +178,10 @@ def test_a_vehicle_shows_what_it_was_made_with() -> None:
 
 
 def test_mappings_of_records_are_brief(result: Result) -> None:
+    mapping: Any
     for mapping in (result.validation, result.series, result.recordings):
         assert len(repr(mapping).split("\n")) <= LINES
-        assert "<table" in mapping._repr_html_()  # type: ignore[attr-defined]
+        assert "<table" in mapping._repr_html_()
 
 
 def test_the_identified_vehicle_can_be_simulated_or_says_why_not(result: Result) -> None:
@@ -199,6 +200,8 @@ def test_the_identified_vehicle_can_be_simulated_or_says_why_not(result: Result)
         ({"extras": "frction"}, "Did you mean 'friction'"),
         ({"extras": ["friction", "rebond"]}, "Did you mean 'rebound'"),
         ({"start": {"k_s_f": 1.0}}, "Did you mean 'k_sf'"),
+        ({"start": {"k_sf": "stiff"}}, "a number, SI"),
+        ({"start": 3}, "a result, a vehicle, or values by name"),
     ],
 )
 def test_options_are_checked_before_anything_is_read(options: dict[str, Any], message: str) -> None:
@@ -231,6 +234,21 @@ def test_known_quantities_become_records_and_impossible_ones_are_refused(campaig
             replace(campaign, known=bad)
         with pytest.raises(InputError, match=message):
             sprung.simulate(TABLE_1_CAR, known=bad)
+
+
+def test_parts_of_a_campaign_may_be_mappings(campaign: sprung.Campaign) -> None:
+    """As in a campaign file and in a simulation; what is wrong in them is named."""
+    given: Any = {"extras": ["friction"], "tracks": "shared"}
+    assert replace(campaign, model=given).model.extras == ("friction",)
+    wrong: Any = {"model": {"tracks": "seperate"}, "sensors": [{"chanel": "a"}]}
+    with pytest.raises(InputError) as caught:
+        replace(campaign, **wrong)
+    assert "Did you mean 'channel'" in str(caught.value)
+    assert "tracks" in str(caught.value)
+    with pytest.raises(UnknownNameError, match="Did you mean 'empty'"):
+        campaign.load("emty")
+    with pytest.raises(InputError, match="Did you mean 'friction'"):
+        sprung.identify(replace(campaign, model={"extras": ("frction",)}))  # type: ignore[arg-type]
 
 
 def test_records_name_what_is_wrong_with_their_keys() -> None:

@@ -37,8 +37,12 @@ class Covariance:
     names: tuple[str, ...]
     matrix: NDArray[np.float64]
 
-    def __getitem__(self, pair: tuple[str, str]) -> np.float64:
+    def __getitem__(self, pair: tuple[str, str] | str) -> np.float64:
         """Return the covariance of two parameters; `UnknownNameError` where one of them is not in it."""
+        if not isinstance(pair, tuple):
+            raise TypeError(
+                'a covariance is that of two parameters: covariance["m_s", "k_sf"], or twice the same for its variance'
+            )
         for name in pair:
             if name not in self.names:
                 raise UnknownNameError(name, self.names)

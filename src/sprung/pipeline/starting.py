@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from sprung.errors import Problems, did_you_mean
 from sprung.pipeline.result import Result
 from sprung.vehicle import PARAMETERS, Vehicle
@@ -35,8 +37,14 @@ def start_values(start: Result | Vehicle | Mapping[str, float] | None) -> dict[s
     if isinstance(start, Vehicle):
         return start.parameters
     problems = Problems()
+    if not isinstance(start, Mapping):
+        do = 'Give start={"k_sf": 20000}, an earlier result, or nothing.'
+        problems.add("start", type(start).__name__, "a result, a vehicle, or values by name", do)
+        problems.raise_if_any()
     for name, value in start.items():
-        if name not in PARAMETERS:
+        if isinstance(value, bool) or not isinstance(value, int | float | np.number):
+            problems.add(f"start[{name!r}]", repr(value), "a number, SI", "Correct it.")
+        elif name not in PARAMETERS:
             problems.add(f"start[{name!r}]", f"'{name}'", "the name of a parameter", did_you_mean(name, PARAMETERS))
         elif not math.isfinite(value) or (PARAMETERS[name].positive and value <= 0):
             problems.add(f"start[{name!r}]", f"{value:g}", f"a possible value, {PARAMETERS[name].unit}", "Correct it.")

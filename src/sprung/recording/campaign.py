@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import itertools
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import Annotated, Literal
@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from sprung.display import shown
-from sprung.errors import Fault, InputError, Problems
+from sprung.errors import Fault, InputError, Problems, UnknownNameError
 from sprung.estimate import Known
 from sprung.recording.beforehand import Given, known_quantities
 from sprung.recording.completeness import Missing
@@ -253,7 +253,8 @@ class Campaign:
     Raises
     ------
     InputError
-        If a known quantity has no such name, or cannot have such a value; all faults at once.
+        If a known quantity has no such name or cannot have such a value, or the keys of a sensor, load, drop or the model that
+        are given as a mapping are wrong; all faults at once.
     """
 
     name: str
@@ -277,6 +278,12 @@ class Campaign:
 
     def __post_init__(self) -> None:
         problems = Problems()
+        several: dict[str, Callable[..., object]] = {"sensors": Sensor, "drops": Drop, "loads": Load}
+        single: dict[str, Callable[..., object]] = {"model": ModelChoice, "test": TestRecord}
+        for name, kind in several.items():
+            object.__setattr__(self, name, tuple(_as_record(one, kind, problems) for one in getattr(self, name)))
+        for name, kind in single.items():
+            object.__setattr__(self, name, _as_record(getattr(self, name), kind, problems))
         given: dict[str, Given] = dict(self.known)
         if self.wheelbase is not None:
             given["wheelbase"] = self.wheelbase
@@ -307,10 +314,18 @@ class Campaign:
 
         Raises
         ------
-        KeyError
-            If there is none.
+        UnknownNameError
+            If there is none; a `KeyError` that says which one was probably meant.
         """
         for load in self.loads:
             if load.name == name:
                 return load
-        raise KeyError(name)
+        raise UnknownNameError(name, [load.name for load in self.loads])
+
+
+def _as_record(given: object, kind: Callable[..., object], problems: Problems) -> object:
+    """Return a record that was given by its keys, as a campaign file holds them; others as they are."""
+    if isinstance(given, Mapping):
+        with problems.collecting():
+            return kind(**given)
+    return given

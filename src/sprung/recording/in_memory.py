@@ -77,7 +77,10 @@ def check_statements(
     described = tuple(load for load in loads if load.name != EMPTY.name)
     file = CampaignFile.model_construct(
         vehicle=VehicleSection.model_construct(
-            wheelbase=None if wheelbase is None else _measured(wheelbase), **heights.by_key
+            wheelbase=None if wheelbase is None else _measured(wheelbase),
+            cg_height=heights.cg_height,
+            wheel_height=heights.wheel_height,
+            roll_axis_height=heights.roll_axis_height,
         ),
         known={quantity: _measured(one) for quantity, one in known.items()},
         sensor=tuple(sensors),
