@@ -293,6 +293,22 @@ def test_loaded_drops_declared_empty_move_like_another_mass(recorded: Campaign, 
     assert [drop.file for drop in result.drops if drop.start is None] == [recorded.recordings[i].name for i in drops]
 
 
+def test_check_leaves_out_the_drops_that_cannot_be_used_as_declared(recorded: Campaign) -> None:
+    checked = sprung.check(declared(recorded, "empty", 5, 6, 7, 8, 9))
+    assert checked.summary == "5 of 10 drops usable"
+    assert [drop.faults for drop in checked.drops] == [()] * 5 + [("undeclared-load",)] * 5
+    (fault,) = checked.faults
+    assert fault.code == "undeclared-load"
+
+
+def test_a_copy_is_one_fault(recorded: Campaign) -> None:
+    recordings = list(recorded.recordings)
+    recordings[5] = replace(recordings[0], name=recordings[5].name)
+    checked = sprung.check(replace(recorded, recordings=tuple(recordings)))
+    assert [(fault.code, fault.where) for fault in checked.faults] == [("copy", recordings[5].name)]
+    assert checked.summary == "9 of 10 drops usable"
+
+
 def found(campaign: Campaign) -> Fault:
     result = sprung.identify(campaign)
     (fault,) = result.faults
