@@ -20,7 +20,7 @@ from sprung.pipeline.series import Recorded
 from sprung.pipeline.stand import leave_out
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
 from sprung.progress import Progress, silent
-from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document
+from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document, require_plausible
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
 if TYPE_CHECKING:
@@ -226,10 +226,12 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = s
     Raises
     ------
     InputError
-        If a path is given and there is nothing that can be judged.
+        If a path is given and there is nothing that can be judged, or the campaign states what cannot be.
     """
     if not isinstance(campaign, Campaign):
         campaign = _campaign_at(Path(campaign), progress)
+    else:
+        require_plausible(campaign)
     try:
         campaign, prepared, undeclared = examine(campaign, progress)
     except InputError as error:  # what makes identifying impossible is one more thing to be told of here
