@@ -123,6 +123,11 @@ class DropReport:
     title: str = ""
 
     @property
+    def used_from(self) -> float | None:
+        """Where the fit begins to use the drop, s on the recording's own clock; without a fit where its decay begins."""
+        return self.start if self.fit_start is None else self.fit_start
+
+    @property
     def label(self) -> str:
         """What to call it: the name that the campaign gives it, or else its recording."""
         return self.title or self.file
