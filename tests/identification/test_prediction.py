@@ -75,9 +75,3 @@ def test_a_drop_that_is_unlike_the_others_is_far_from_them() -> None:
     distances = [one.distance[0] / one.distance[1] for one in predictions(summit, decays)]
     assert int(np.argmax(distances)) == 1
     assert distances[1] > 100
-
-
-def test_where_a_fit_leaves_nothing_nothing_grows() -> None:
-    """Records without noise may be fitted to the last bit: then no residual is there to be compared with."""
-    assert Prediction(fitted=0.0, squares=0.0, by_chance=(0.0, 0.0), distance=(0.0, 0)).growth == 1.0
-    assert Prediction(fitted=4.0, squares=9.0, by_chance=(0.0, 0.0), distance=(0.0, 0)).growth == 1.5

@@ -250,6 +250,22 @@ def test_one_mistake_with_all_sensors_or_drops_is_one_fault(
     assert do in fault.do
 
 
+@pytest.mark.parametrize(
+    ("kept", "wrong", "wheels"),
+    [((0, 1, 2, 3), 3, ("fr", "rr")), ((0, 1, 3, 4), 1, ("rl", "rr"))],
+    ids=["other side", "other end"],
+)
+def test_wheels_stated_wrongly_in_one_drop_are_told_of_that_drop(
+    recorded: Campaign, kept: tuple[int, ...], wrong: int, wheels: tuple[Wheel, ...]
+) -> None:
+    """One statement is simpler than those of eight sensors, although no other drop of these shows that side, or that end."""
+    drops = [replace(recorded.drops[i], wheels=wheels) if i == wrong else recorded.drops[i] for i in kept]
+    spoilt = replace(recorded, drops=tuple(drops), recordings=tuple(recorded.recordings[i] for i in kept))
+    (fault,) = sprung.check(spoilt).faults
+    assert (fault.code, fault.where) == ("wheels", recorded.recordings[wrong].name)
+    assert f"the release shows {', '.join(recorded.drops[wrong].wheels)} to have fallen" in fault.what
+
+
 def test_mirrored_sensors_are_put_right_before_anything_is_fitted(recorded: Campaign) -> None:
     result = sprung.identify(moved(recorded, lambda x, y: (x, -y)))
     assert result.verdict.state == "accept"
@@ -275,6 +291,22 @@ def test_loaded_drops_declared_empty_move_like_another_mass(recorded: Campaign, 
     assert fault.where.split(", ") == [recorded.recordings[i].name for i in drops]
     assert "[[load]]" in fault.do
     assert [drop.file for drop in result.drops if drop.start is None] == [recorded.recordings[i].name for i in drops]
+
+
+def test_check_leaves_out_the_drops_that_cannot_be_used_as_declared(recorded: Campaign) -> None:
+    checked = sprung.check(declared(recorded, "empty", 5, 6, 7, 8, 9))
+    assert checked.summary == "5 of 10 drops usable"
+    assert [drop.faults for drop in checked.drops] == [()] * 5 + [("undeclared-load",)] * 5
+    (fault,) = checked.faults
+    assert fault.code == "undeclared-load"
+
+
+def test_a_copy_is_one_fault(recorded: Campaign) -> None:
+    recordings = list(recorded.recordings)
+    recordings[5] = replace(recordings[0], name=recordings[5].name)
+    checked = sprung.check(replace(recorded, recordings=tuple(recordings)))
+    assert [(fault.code, fault.where) for fault in checked.faults] == [("copy", recordings[5].name)]
+    assert checked.summary == "9 of 10 drops usable"
 
 
 def found(campaign: Campaign) -> Fault:

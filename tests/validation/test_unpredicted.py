@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import sprung
-from sprung.identification import ascend, conclude, describe
+from sprung.identification import Prediction, ascend, conclude, describe
 from sprung.pipeline.choice import choose_model
 from sprung.prepare import prepare
 from sprung.recording import Campaign
@@ -56,3 +56,13 @@ def test_one_drop_alone_has_no_others() -> None:
     (drop,) = sprung.identify(made, tracks="shared", extras=()).validation.values()
     assert (drop.predicted, drop.predicted_residual, drop.unexpected) == (None, None, 0.0)
     assert drop.apart is None
+
+
+def test_a_residual_below_rounding_has_no_ratio(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without noise, sums of squares cancel to nothing in some drops, and rounding decides in which."""
+    made = sprung.simulate(TABLE_1_CAR, noise=0.0, seed=1, drops=[{"wheels": ["fl", "rl"]}, {"wheels": ["fl", "fr"]}])
+    nothing = Prediction(fitted=0.0, squares=0.0, by_chance=(3.0, 2.0), distance=(0.0, 13))
+    monkeypatch.setattr("sprung.validation.drops.predictions", lambda *_: (nothing, nothing))
+    result = sprung.identify(made, tracks="shared", extras=())
+    assert {drop.predicted_residual for drop in result.validation.values()} == {None}
+    assert {drop.predicted for drop in result.validation.values()} == {0.0}

@@ -47,11 +47,6 @@ class Prediction:
     by_chance: tuple[float, float]
     distance: tuple[float, int]
 
-    @property
-    def growth(self) -> float:
-        """Residual rms as predicted over that of the joint fit; one where the fit leaves nothing at all."""
-        return float(np.sqrt(self.squares / self.fitted)) if self.fitted > 0 else 1.0
-
 
 def predictions(summit: Summit, decays: Sequence[Decay]) -> tuple[Prediction, ...]:
     """Predict each drop from all others.

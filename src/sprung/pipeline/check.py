@@ -17,6 +17,7 @@ from sprung.pipeline.clocks import ClockReport
 from sprung.pipeline.diagnosis import examine
 from sprung.pipeline.drafting import Draft, draft
 from sprung.pipeline.series import Recorded
+from sprung.pipeline.stand import leave_out
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
 from sprung.progress import Progress, silent
 from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document, require_plausible
@@ -120,6 +121,11 @@ class DropReport:
     clocks: tuple[ClockReport, ...] = ()
     name: str = ""
     title: str = ""
+
+    @property
+    def used_from(self) -> float | None:
+        """Where the fit begins to use the drop, s on the recording's own clock; without a fit where its decay begins."""
+        return self.start if self.fit_start is None else self.fit_start
 
     @property
     def label(self) -> str:
@@ -236,8 +242,7 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = s
     except InputError as error:  # what makes identifying impossible is one more thing to be told of here
         found = tuple(Fault("mirrored", one.where, one.found, one.do) for one in error.problems)
         return check_prepared(replace(campaign, faults=(*campaign.faults, *found)), prepare(campaign, progress))
-    campaign = replace(campaign, faults=(*campaign.faults, *dict.fromkeys(undeclared.values())))
-    return check_prepared(campaign, prepared)
+    return check_prepared(campaign, leave_out(campaign, prepared, undeclared))
 
 
 def _campaign_at(path: Path, progress: Progress) -> Campaign:

@@ -129,12 +129,12 @@ def begun(
     wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
     # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
     choice = wanted.having(tuple(extra for extra in wanted.linear_extras if extra != ENGINE))
-    prepared = _without(campaign, prepare(campaign, progress) if changes else prepared, left_out)
+    prepared = leave_out(campaign, prepare(campaign, progress) if changes else prepared, left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
         campaign,
         prepared,
-        lambda known: _without(campaign, prepare(known, progress), left_out),
+        lambda known: leave_out(campaign, prepare(known, progress), left_out),
         lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, guess),
     )
     start = None if first is None else first.parameters
@@ -156,8 +156,22 @@ def _from_contact(way: Way) -> Way:
     return replace(way, decays=decays, summit=summit)
 
 
-def _without(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
-    """Leave drops out of what was prepared, by their recordings."""
+def leave_out(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
+    """Leave drops out of what was prepared.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    prepared
+        Its recordings, prepared.
+    left_out
+        By the names of the recordings why.
+
+    Returns
+    -------
+    Prepared
+    """
     named = {one.name: (drop, one) for drop, one in zip(campaign.drops, campaign.recordings, strict=True)}
     gone = [decay for decay in prepared.decays if decay.file in left_out]
     return prepared._replace(

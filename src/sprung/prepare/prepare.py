@@ -125,7 +125,7 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
         if isinstance(decay, Decay):
             decays.append(decay)
         else:
-            left_out.append((drop, recording, (*recording.faults, decay)))
+            left_out.append((drop, recording, tuple(dict.fromkeys((*recording.faults, decay)))))
     seen = [
         Seen(
             recording=recording,
@@ -164,7 +164,7 @@ def _alive(recordings: Sequence[Recording], drops: Sequence[Drop]) -> tuple[Reco
                 Fault(
                     "copy",
                     recording.name,
-                    f"the same samples as {original}; the drop is left out, since it tells nothing new",
+                    f"the same samples as {original}; the drop is left out",
                     "Name the right file for this drop, or remove it from the campaign.",
                 )
             ]
@@ -212,6 +212,9 @@ def _decay(
 ) -> Decay | Fault:
     where = recording.name
     if not recording.usable.any():
+        for fault in recording.faults:
+            if fault.code == "copy":  # which says already why nothing is left
+                return fault
         return Fault("missing", where, "no channel of this drop can be used; it is left out", "Record the drop again.")
     faults = list(recording.faults)
     landing = _landing(campaign, drop, recording, release, suspension, clipped, faults)

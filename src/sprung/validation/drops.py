@@ -40,7 +40,8 @@ class DropValidation:
         What is left of all channels, over the sensors' noise at rest, dimensionless.
     predicted, predicted_residual
         The last two, dimensionless, with the vehicle fitted to all other drops, only the initial state being this one's;
-        None where there are no others.
+        None where there are no others, the second also where the
+        residual of the fit is below rounding, as without any noise.
     unexpected
         Error of the prediction beyond that of the fit and what chance makes of it, as a part of the signal; 0 where it is
         within chance.
@@ -109,7 +110,7 @@ def validate_drops(
             fitted=float(np.sqrt(squares / energy)),
             residual=over_noise,
             predicted=None if foretold is None else float(np.sqrt(foretold.squares / energy)),
-            predicted_residual=None if foretold is None else over_noise * foretold.growth,
+            predicted_residual=None if foretold is None else _predicted_residual(over_noise, foretold),
             unexpected=0.0 if foretold is None else _unexpected(foretold, energy, coloured),
             apart=None if foretold is None else foretold.distance[0] / max(foretold.distance[1], 1),
             whiteness={channels[channel]: one for channel, one in left.items()},
@@ -119,6 +120,11 @@ def validate_drops(
             },
         )
     return found
+
+
+def _predicted_residual(residual: float, foretold: Prediction) -> float | None:
+    """Return the residual over the noise as predicted; None where that of the fit is below rounding."""
+    return residual * float(np.sqrt(foretold.squares / foretold.fitted)) if foretold.fitted > 0 else None
 
 
 def _unexpected(foretold: Prediction, energy: float, inflation: float) -> float:

@@ -94,6 +94,8 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
     wheelbase = _wheelbase(campaign)
     if wheelbase is None or _consistent(campaign, prepared, wheelbase) is not False:
         return campaign
+    if _one_drop_explains(campaign, prepared, wheelbase):
+        return campaign
     explaining = []
     for hypotheses in _HYPOTHESES:
         for one in hypotheses(campaign, wheelbase):
@@ -124,6 +126,20 @@ def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> boo
     if any(set(drop.wheels) != set(wheels) for drop, wheels in zip(campaign.drops, seen, strict=True)):
         return False
     return moves_as_stated(motion, places, seen, wheelbase)
+
+
+def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool:
+    """Say whether all is consistent once the wheels of one drop are as seen: fewer statements than those of several sensors.
+
+    Such a drop is named and corrected on its own. A mistake with several sensors that agree among themselves is supposed only
+    where several drops show it.
+    """
+    seen = [as_seen(*pair) for pair in zip(campaign.drops, FirstMotion.of(campaign, prepared).fell, strict=True)]
+    pairs = list(zip(campaign.drops, seen, strict=True))
+    if sum(set(drop.wheels) != set(wheels) for drop, wheels in pairs) != 1:
+        return False
+    drops = tuple(replace(drop, wheels=tuple(wheels)) for drop, wheels in pairs)
+    return _consistent(replace(campaign, drops=drops), prepared, wheelbase) is not False
 
 
 def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> CommonCause:
