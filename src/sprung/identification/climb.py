@@ -328,8 +328,11 @@ class Climb:
         return moved, now - self._weighted(u, residual, point.weights) - penalty
 
     def _weighted(self, u: Real, residual: Real, weights: Real) -> float:
+        squares = residual.sum(axis=0)
+        if not np.isfinite(squares).all():  # an unstable vehicle, which no step may reach
+            return np.inf
         prior = self.knowledge.prior(u).residual
-        return float(residual.sum(axis=0) @ weights + prior @ prior)
+        return float(squares @ weights + prior @ prior)
 
 
 def _evaluated(u: Real, place: Place | SteppedPlace, weights: Real, steps: int) -> Point:
