@@ -43,7 +43,7 @@ def settings(result: Result) -> Context:
     ]
     tables = []
     if fit.path:
-        headers = ("tried", "gain", "asked", "fitted", "taken")
+        headers = ("tried", "gain", "required", "fitted", "kept")
         rows = tuple(
             (
                 one.extra,
