@@ -13,6 +13,9 @@ from dataclasses import dataclass
 
 from sprung.display import shown
 
+_CANDIDATES = 10
+"""How many of the names that share most letters with a mistyped one are compared with it letter by letter."""
+
 
 class SprungError(Exception):
     """Base of every error that sprung raises on purpose."""
@@ -173,7 +176,17 @@ class Omissions:
 
     @contextmanager
     def noting(self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()) -> Iterator[None]:
-        """Note that something could not be drawn, where the block fails, and go on after it; some errors pass."""
+        """Note that something could not be drawn, where the block fails, and go on after it.
+
+        Parameters
+        ----------
+        what
+            The beginning of the sentence: what is missing.
+        done
+            What could not be done with it, as a participle.
+        unless
+            Errors that pass.
+        """
         try:
             yield
         except unless:
@@ -203,8 +216,25 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
         ``Did you mean 'wheels'?`` if one is close, otherwise the allowed words.
     """
     allowed = sorted(allowed)
-    close = difflib.get_close_matches(word.lower(), [name.lower() for name in allowed], n=1, cutoff=0.6)
+    close = difflib.get_close_matches(word.lower(), [name.lower() for name in allowed], n=_CANDIDATES, cutoff=0.6)
     if close:
-        meant = next(name for name in allowed if name.lower() == close[0])
+        # They come by their common letters, the most first, which does not tell exchanged letters from wrong ones.
+        nearest = min(close, key=lambda name: _typing_errors(word.lower(), name))
+        meant = next(name for name in allowed if name.lower() == nearest)
         return f"Did you mean '{meant}'?"
     return f"Allowed: {', '.join(allowed)}." if allowed else "Nothing is allowed here."
+
+
+def _typing_errors(written: str, meant: str) -> int:
+    """Count the letters left out, added, mistaken or exchanged with a neighbour (optimal string alignment distance)."""
+    before: list[int] = []
+    last = list(range(len(meant) + 1))
+    for i, letter in enumerate(written):
+        row = [i + 1]
+        for j, other in enumerate(meant):
+            errors = min(last[j + 1] + 1, row[j] + 1, last[j] + (letter != other))
+            if i and j and letter == meant[j - 1] and other == written[i - 1]:
+                errors = min(errors, before[j - 1] + 1)
+            row.append(errors)
+        before, last = last, row
+    return last[-1]

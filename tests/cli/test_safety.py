@@ -125,6 +125,14 @@ def test_a_pdf_that_fails_leaves_the_report(
     assert (tmp_path / "report.html").exists()
 
 
+@pytest.fixture(autouse=True)
+def interruptible() -> Iterator[None]:
+    """Let Ctrl-C act, which a shell without job control has ignored in what it runs in the background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def stopping(number: int) -> object:
     def stop(*_: object, **__: object) -> None:
         signal.raise_signal(number)

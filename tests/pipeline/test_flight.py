@@ -50,7 +50,7 @@ def test_where_the_decays_tell_too_little_the_fall_is_used(landed: sprung.Result
         narrower.append(after.std / before.std)
     assert np.median(narrower) < 0.7
     assert fallen.fit.inflation < 1.5
-    assert all(drop.start is not None and 0.4 < drop.start < 0.42 for drop in fallen.drops)  # released at 0.4 s
+    assert all(drop.used_from is not None and 0.4 < drop.used_from < 0.42 for drop in fallen.drops)  # released at 0.4 s
 
 
 def test_the_blocks_need_not_have_been_measured(campaign: sprung.Campaign, fallen: sprung.Result) -> None:
@@ -82,7 +82,7 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
     found = flights(prepared.decays, campaign.drops, prepared.seen)
     for one, decay, seen in zip(found, prepared.decays, prepared.seen, strict=True):
         assert one is not None
-        assert one.decay.events.why_start == FROM_RELEASE
+        assert one.decay.events.why_fit == FROM_RELEASE
         assert one.decay.end == pytest.approx(decay.end)
         np.testing.assert_array_equal(one.decay.values, seen.recording.values[:, -one.decay.samples :])
         assert one.since == pytest.approx(0.012)

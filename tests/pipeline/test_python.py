@@ -14,10 +14,10 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.errors import InputError, UnknownNameError
+from sprung.errors import InputError, UnknownNameError, did_you_mean
 from sprung.pipeline import Result
 from sprung.pipeline.options import model_options
-from sprung.vehicle import TABLE_1_CAR
+from sprung.vehicle import PARAMETERS, TABLE_1_CAR
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 SAVED = Path(__file__).resolve().parents[1] / "report"
@@ -111,6 +111,14 @@ def test_a_mistyped_name_is_told() -> None:
         result.parameters["ksr"]
     assert isinstance(caught.value, UnknownNameError)
     assert result.parameters.get("ksr") is None
+
+
+@pytest.mark.parametrize(
+    ("written", "meant"),
+    [("k_fs", "k_sf"), ("m_su", "m_s"), ("k_rt", "k_tr"), ("weelbase", "wheelbase"), ("M_S", "m_s")],
+)
+def test_exchanged_letters_are_one_typing_error(written: str, meant: str) -> None:
+    assert did_you_mean(written, (*PARAMETERS, "wheelbase")) == f"Did you mean '{meant}'?"
 
 
 def test_covariance_and_criteria_survive_saving(result: Result, campaign: sprung.Campaign, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ def found() -> Validation:
 
 def test_its_result_is_that_of_identify(found: Validation) -> None:
     made = sprung.simulate(TABLE_1_CAR, noise=0.02, seed=5, known={"total_mass": TABLE_1_CAR.total_mass})
-    assert found.result.to_json() == sprung.identify(made, tracks="shared", extras=()).to_json()
+    assert found.result.to_json() == sprung.identify(made, tracks="shared", extras=(), amplitude=True).to_json()
 
 
 def test_every_drop_is_validated(found: Validation) -> None:

@@ -111,4 +111,4 @@ def test_wheels_without_sensors_fall_too() -> None:
     result = sprung.identify(half)
     assert result.verdict.state == "accept"
     assert worst_score(result) < 4
-    assert np.all([drop.start is not None and drop.start < 0.65 for drop in result.drops])
+    assert np.all([drop.used_from is not None and drop.used_from < 0.65 for drop in result.drops])

@@ -10,7 +10,10 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Vehicle, static_wheel_loads
 from sprung.vehicle.ground import Ground
 
-CARS = st.sampled_from([TABLE_1_CAR, SCHOOL_BUS])
+UNEVEN = Vehicle.from_parameters(
+    TABLE_1_CAR.parameters | {"y_s": 0.03, "d_ksf": 800.0, "d_ksr": -500.0, "d_ktf": 2e4, "d_ktr": -3e4}
+)
+CARS = st.sampled_from([TABLE_1_CAR, SCHOOL_BUS, UNEVEN])
 LOADS = st.builds(
     lambda m, x, y: Load(name="load", items=(Item(mass=m, position=(x, y, 0.5)),)),
     st.floats(1, 300),
@@ -34,7 +37,7 @@ def test_wheel_loads_hold_the_weight_and_its_moments(vehicle: Vehicle, load: Loa
     assert vehicle.t_f2 is not None
     assert vehicle.t_r2 is not None
     moment = vehicle.t_f2 * (W[0] - W[1]) + vehicle.t_r2 * (W[2] - W[3])
-    assert moment == pytest.approx(STANDARD_GRAVITY * item.mass * y, abs=1e-6)
+    assert moment == pytest.approx(STANDARD_GRAVITY * (item.mass * y + vehicle.m_s * vehicle.y_s), abs=1e-6)
 
 
 @given(CARS, LOADS, st.lists(st.floats(0, 0.5), min_size=4, max_size=4))

@@ -53,7 +53,7 @@ def identify(
         _refuse_overwriting(folder, sprung.report.REPORT_FILES if report else sprung.report.RESULT_FILES)
     with working("reading the recordings") as progress:
         read = sprung.read(campaign, progress=progress)
-        saved = identify_and_save(read, folder, report, force, progress, profile=profile or (), fall=fall)
+        saved = identify_and_save(read, folder, report, force, progress, as_json, profile=profile or (), fall=fall)
     conclude(saved.result, saved.files, as_json)
 
 
@@ -67,7 +67,7 @@ def _refuse_overwriting(*folders_and_files: Any) -> None:
 
 
 def identify_and_save(
-    campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, **options: Any
+    campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, as_json: bool, **options: Any
 ) -> Any:
     """Identify a campaign and save the result at once; what decorates it comes after that and may fail, or be interrupted."""
     found = sprung.pipeline.identify_campaign(campaign, progress=progress, **options)
@@ -75,7 +75,7 @@ def identify_and_save(
     try:
         saved = sprung.report.save_result(found.result, folder, overwrite=force)
     except InputError:
-        say(sprung.report.text_of(sprung.report.result_view(found.result)))  # better seen than lost
+        _show(found.result, as_json)  # better seen than lost
         raise
     if not report:
         return saved
@@ -95,13 +95,19 @@ def conclude(result: Any, written: Sequence[Path], as_json: bool) -> None:
     """Print a result and leave with the status that belongs to its verdict."""
     for omission in result.omissions:
         complain(omission)
+    _show(result, as_json)
+    if not as_json:
+        say(f"\nWritten: {', '.join(map(str, written))}\n")
+    if result.verdict.state == "reject":
+        raise typer.Exit(REJECTED)
+
+
+def _show(result: Any, as_json: bool) -> None:
+    """Print a result."""
     if as_json:
         say_json(result.to_json())
     else:
         say(sprung.report.text_of(sprung.report.result_view(result)))
-        say(f"\nWritten: {', '.join(map(str, written))}\n")
-    if result.verdict.state == "reject":
-        raise typer.Exit(REJECTED)
 
 
 @app.command(epilog="Example: [bold]sprung report results --pdf[/bold]")
@@ -182,7 +188,7 @@ def demo(
             )
         written = sprung.write(campaign, folder, overwrite=force)
         read = sprung.read(written, progress=progress)
-        saved = identify_and_save(read, folder / "results", True, force, progress)
+        saved = identify_and_save(read, folder / "results", True, force, progress, as_json)
     conclude(saved.result, saved.files, as_json)
     if not as_json:
         truth = sprung.study.true_values(saved.result, sprung.study.DEMO_VEHICLE)

@@ -328,11 +328,9 @@ class Climb:
         return moved, now - self._weighted(u, residual, point.weights) - penalty
 
     def _weighted(self, u: Real, residual: Real, weights: Real) -> float:
-        squares = residual.sum(axis=0)
-        if not np.isfinite(squares).all():  # an unstable vehicle, which no step may reach
-            return np.inf
-        prior = self.knowledge.prior(u).residual
-        return float(squares @ weights + prior @ prior)
+        squares, prior = residual.sum(axis=0), self.knowledge.prior(u).residual
+        # A vehicle that runs away within the record is infinitely far from it.
+        return float(squares @ weights + prior @ prior) if np.isfinite(squares).all() else np.inf
 
 
 def _evaluated(u: Real, place: Place | SteppedPlace, weights: Real, steps: int) -> Point:

@@ -21,12 +21,12 @@ def canonical_basis(directions: Real) -> Real:
     Parameters
     ----------
     directions
-        Linearly independent, shape (parameter, direction).
+        Linearly independent, dimensionless, shape (parameter, direction).
 
     Returns
     -------
     ndarray
-        Each column positive in the coordinate that gave it, shape (parameter, direction).
+        Dimensionless, each column positive in the coordinate that gave it, shape (parameter, direction).
     """
     span = np.linalg.qr(directions)[0]
     left = span @ span.T

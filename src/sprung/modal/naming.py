@@ -105,14 +105,19 @@ def name_modes(
     if not groups:
         return ()
     # The body counts at its four corners, and an engine as much, of which it is a large part.
-    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])
-    scale = scale[: len(groups[0][0].shape)]
+    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])[: len(groups[0][0].shape)]
     shapes = [scale[:, None] * np.stack([mode.shape for mode in group], axis=1) for group in groups]
     best, name_of = -np.inf, dict[int, str]()
     for (hop, of_hop), (tramp, of_tramp) in product(_HOP.items(), _TRAMP.items()):
         names = (*_BODY, *hop, *tramp, _ENGINE)
-        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T, np.eye(len(scale) - 7))
-        alike = np.stack([similarity(shape, templates).mean(axis=0) for shape in shapes])
+        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T)
+        # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
+        alike = np.stack(
+            [
+                np.append(similarity(shape[:7], templates).mean(axis=0), similarity(shape, _alone(scale)).mean(axis=0))
+                for shape in shapes
+            ]
+        )
         rows, columns = linear_sum_assignment(alike, maximize=True)
         total = float(alike[rows, columns].sum())
         if total > best + _TIE:
@@ -122,6 +127,11 @@ def name_modes(
             found = zip(rows.tolist(), columns.tolist(), strict=True)
             name_of = {row: names[column] for row, column in found if like[row, column] >= LEAST_SIMILARITY}
     return tuple(replace(mode, name=name_of.get(i)) for i, group in enumerate(groups) for mode in group)
+
+
+def _alone(scale: Real) -> Real:
+    """Return the shapes in which nothing but one of the coordinates after the seventh moves, shape (coordinate, shape)."""
+    return np.eye(len(scale))[:, 7:]
 
 
 def modes_of(matrices: Matrices) -> tuple[Mode, ...]:

@@ -20,7 +20,7 @@ from sprung.pipeline.series import Recorded
 from sprung.pipeline.stand import leave_out
 from sprung.prepare import Decay, Events, Prepared, Seen, prepare
 from sprung.progress import Progress, silent
-from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document
+from sprung.recording import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document, require_plausible
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
 if TYPE_CHECKING:
@@ -121,6 +121,11 @@ class DropReport:
     clocks: tuple[ClockReport, ...] = ()
     name: str = ""
     title: str = ""
+
+    @property
+    def used_from(self) -> float | None:
+        """Where the fit begins to use the drop, s on the recording's own clock; without a fit where its decay begins."""
+        return self.start if self.fit_start is None else self.fit_start
 
     @property
     def label(self) -> str:
@@ -226,10 +231,12 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = s
     Raises
     ------
     InputError
-        If a path is given and there is nothing that can be judged.
+        If a path is given and there is nothing that can be judged, or the campaign states what cannot be.
     """
     if not isinstance(campaign, Campaign):
         campaign = _campaign_at(Path(campaign), progress)
+    else:
+        require_plausible(campaign)
     try:
         campaign, prepared, undeclared = examine(campaign, progress)
     except InputError as error:  # what makes identifying impossible is one more thing to be told of here

@@ -82,6 +82,11 @@ def other_quantities(derived: Mapping[str, Estimate]) -> dict[str, Estimate]:
     ----------
     derived
         By name.
+
+    Returns
+    -------
+    dict
+        By name.
     """
     return {name: found for name, found in derived.items() if name not in {**CHARACTERISTICS, **WHEEL_LOADS}}
 

@@ -45,10 +45,10 @@ def fit_campaign(
 ) -> Fitted:
     """Fit a campaign, as `identify` does before it judges; what is wrong with it is put right or left out, and named."""
     progress(Step("comparing the drops with the campaign file"))
-    campaign, _, undeclared = examine(campaign, progress)
+    campaign, prepared, undeclared = examine(campaign, progress)
 
     def begin(mended: Sequence[Hypothesis]) -> Stand:
-        return begun(campaign, tracks, extras, mended, progress, undeclared, start)
+        return begun(campaign, prepared, tracks, extras, mended, progress, undeclared, start)
 
     stand, mended = _with_statement(begin(()), begin)
     accused = tuple[Fault, ...]()

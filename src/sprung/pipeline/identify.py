@@ -141,6 +141,15 @@ def identify_campaign(
     ----------
     campaign, tracks, extras, fall, start, profile, progress
         As for `identify`.
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    InputError
+        As `identify` does.
     """
     tracks, extras = model_options(tracks, extras)
     begin = start_values(start)
@@ -162,6 +171,10 @@ def with_amplitudes(found: Identification, progress: Progress = silent) -> Resul
         From `identify_campaign`.
     progress
         As for `identify`.
+
+    Returns
+    -------
+    Result
     """
     fitted, result = found
     if result.verdict.state == "reject":

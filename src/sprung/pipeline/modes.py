@@ -68,8 +68,8 @@ def modes(
     ----------
     source
         A campaign, or the path of its file or folder: the modes of every load. Or a recording in any format sprung reads, or a
-        folder of nothing but recordings: the modes common to them. Or an array of shape (channel, time), or several: one free
-        decay each.
+        folder of nothing but recordings: the modes common to them. Or an array of shape (channel, time), or several, in any
+        unit: one free decay each.
     method
         One of `sprung.modal.METHODS`; ``ml``, the default, fits poles and shapes to all drops of a load at once and gives
         every number its uncertainty.

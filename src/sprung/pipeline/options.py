@@ -8,7 +8,7 @@ from typing import TypeAlias, get_args
 
 from sprung.errors import Problems, did_you_mean
 from sprung.progress import Progress, silent
-from sprung.recording import Campaign, read
+from sprung.recording import Campaign, read, require_plausible
 from sprung.vehicle import EXTRAS, Tracks
 
 CampaignSource: TypeAlias = Campaign | str | os.PathLike[str]
@@ -32,12 +32,13 @@ def campaign_from(source: CampaignSource, progress: Progress = silent) -> Campai
     Raises
     ------
     InputError
-        If the file or its recordings cannot be used, or the campaign is not complete.
+        If the file or its recordings cannot be used, or the campaign is not complete or states what cannot be.
     TypeError
         If it is neither.
     """
     if isinstance(source, Campaign):
         source.require_complete()
+        require_plausible(source)
         return source
     if isinstance(source, str | os.PathLike):
         return read(source, progress=progress)

@@ -108,6 +108,7 @@ class Stand(NamedTuple):
 
 def begun(
     campaign: Campaign,
+    prepared: Prepared,
     tracks: Tracks | None,
     extras: Sequence[str] | None,
     mended: Sequence[Hypothesis],
@@ -117,17 +118,18 @@ def begun(
 ) -> Stand:
     """Fit a campaign with what is wrong put right or left out, as far as matrices carry the vehicle.
 
-    Drops that are unusable for a known reason, by the names of their recordings, are left out from the start.
+    Drops that are unusable for a known reason, by the names of their recordings, are left out from the start. The campaign is
+    prepared again only where what is put right changes it.
     """
+    changes = [one for one in mended if one.drop is None]
     left_out = {**unusable, **{one.drop: one.fault for one in mended if one.drop is not None}}
-    for one in mended:
-        if one.drop is None:
-            changed = one.change(campaign)
-            campaign = replace(changed, faults=(*changed.faults, one.fault))
+    for one in changes:
+        changed = one.change(campaign)
+        campaign = replace(changed, faults=(*changed.faults, one.fault))
     wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
     # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
     choice = wanted.having(tuple(extra for extra in wanted.linear_extras if extra != ENGINE))
-    prepared = leave_out(campaign, prepare(campaign, progress), left_out)
+    prepared = leave_out(campaign, prepare(campaign, progress) if changes else prepared, left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
         campaign,

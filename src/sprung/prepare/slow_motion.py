@@ -88,7 +88,18 @@ class SlowMotion:
         return SlowMotion(padded[[-1 if channel is None else channel for channel in channels]])
 
     def beside(self, other: SlowMotion) -> tuple[float, float]:
-        """Return the logarithms of this drop's periods and size over those of another; NaN where the two are not alike."""
+        """Return the logarithms of this drop's periods and size over those of another; NaN where the two are not alike.
+
+        Parameters
+        ----------
+        other
+            Of a drop of the same wheels, with the same channels.
+
+        Returns
+        -------
+        tuple of float
+            Logarithms of the ratio of the periods and of the ratio of the amplitudes.
+        """
         end = min(
             _END, (other.values.shape[1] - 1) / _RATE / _STRETCHES[-1] - 0.05, self.values.shape[1] / _RATE - 0.05
         )

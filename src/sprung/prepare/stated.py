@@ -93,7 +93,20 @@ def _otherwise(drop: Drop, fell: Fell) -> set[Wheel]:
 
 
 def as_seen(drop: Drop, fell: Fell) -> tuple[Wheel, ...]:
-    """Give the wheels that fell: as the release tells it, of the others as the campaign says."""
+    """Return the wheels that fell: as the release tells it, of the others as the campaign says.
+
+    Parameters
+    ----------
+    drop
+        As the campaign has it.
+    fell
+        Which wheels fell, as far as the release tells it.
+
+    Returns
+    -------
+    tuple
+        Wheel stations.
+    """
     return tuple(wheel for wheel in WHEELS if fell.get(wheel, wheel in drop.wheels))
 
 

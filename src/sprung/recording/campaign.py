@@ -156,6 +156,11 @@ def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     ----------
     drops
         All of a campaign.
+
+    Returns
+    -------
+    tuple of str
+        In the same order.
     """
     firsts = [(f"{drop.files[0]} and {len(drop.files) - 1} more",) if drop.files[1:] else () for drop in drops]
     return _told_apart(

@@ -40,11 +40,24 @@ def check(draft: Draft[CampaignFile], problems: Problems) -> None:
     """
     _check_names(draft, problems)
     _check_units(draft, problems)
-    _check_body_sensors(draft, problems)
+    check_body_sensors(draft, problems)
     _check_loads(draft, problems)
-    check_sizes(draft, problems)
     _check_model(draft, problems)
     _check_drops(draft, problems)
+    check_quantities(draft, problems)
+
+
+def check_quantities(draft: Draft[CampaignFile], problems: Problems) -> None:
+    """Check every size by itself, and what several of them say together.
+
+    Parameters
+    ----------
+    draft
+        What was understood of the file.
+    problems
+        Takes up what is wrong.
+    """
+    check_sizes(draft, problems)
     known = _check_known(draft, problems)
     check_together(draft, known, problems)
     _check_sums(draft, known, problems)
@@ -102,8 +115,16 @@ def _check_units(draft: Draft[CampaignFile], problems: Problems) -> None:
             problems.add(draft.where("sensor", index, "unit"), f"'{sensor.unit}'", "a unit of acceleration", do)
 
 
-def _check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
-    """Bounce, pitch and roll are three unknowns: three sensors not on one line tell them apart."""
+def check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
+    """Check that the body's sensors tell bounce, pitch and roll apart: three unknowns, three sensors not on one line.
+
+    Parameters
+    ----------
+    draft
+        What was understood of the file.
+    problems
+        Takes up what is wrong.
+    """
     if not draft.complete("sensor") or _left_to_defaults(draft, "sensor"):
         return
     if any(sensor.on == "body" and sensor.position is None for sensor in draft.file.sensor):

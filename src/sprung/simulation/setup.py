@@ -12,7 +12,17 @@ from numpy.typing import NDArray
 
 from sprung.errors import Problems, did_you_mean
 from sprung.estimate import Known
-from sprung.recording import Campaign, Drop, Given, ModelChoice, Recording, known_quantities, recording_names
+from sprung.recording import (
+    Campaign,
+    Drop,
+    Given,
+    ModelChoice,
+    Recording,
+    check_statements,
+    implausible,
+    known_quantities,
+    recording_names,
+)
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
@@ -107,12 +117,28 @@ class Setup:
         names |= {load.name if isinstance(load, Load) else str(load.get("name")) for load in loads or ()}
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
+        stated = {"wheelbase": Known(vehicle.wheelbase)} | known_quantities(known or {}, "simulate: known", problems)
+        check_statements(
+            "simulate",
+            sensors=chosen_sensors,
+            loads=all_loads,
+            drops=chosen_drops,
+            known={name: quantity for name, quantity in stated.items() if name != "wheelbase"},
+            wheelbase=stated["wheelbase"],
+            heights=vehicle.heights,
+            whole=False,
+            problems=problems,
+        )
+        for name, value in vehicle.parameters.items():
+            beyond = implausible(name, value)
+            if beyond is not None:
+                problems.add(f"simulate: vehicle.{name}", f"{value:g}", *beyond)
         return cls(
             vehicle,
             all_loads,
             name_files(chosen_drops),
             Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems),
-            {"wheelbase": Known(vehicle.wheelbase)} | known_quantities(known or {}, "simulate: known", problems),
+            stated,
             record(ModelChoice, "model", model or {}, problems) or ModelChoice(),
         )
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
-    """Give stiffness, N/m, and damping, N s/m, of the tyre at each wheel station.
+    """Return stiffness and damping of the tyre at each wheel station, those of uneven axles too.
 
     Parameters
     ----------
@@ -30,8 +30,12 @@ def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
     dict
         By wheel station: stiffness, N/m, and damping, N s/m.
     """
-    front, rear = (vehicle.k_tf, vehicle.c_tf), (vehicle.k_tr, vehicle.c_tr)
-    return {"fl": front, "fr": front, "rl": rear, "rr": rear}
+    return {
+        "fl": (vehicle.k_tf + vehicle.d_ktf, vehicle.c_tf),
+        "fr": (vehicle.k_tf - vehicle.d_ktf, vehicle.c_tf),
+        "rl": (vehicle.k_tr + vehicle.d_ktr, vehicle.c_tr),
+        "rr": (vehicle.k_tr - vehicle.d_ktr, vehicle.c_tr),
+    }
 
 
 def static_wheel_loads(vehicle: Vehicle, load: Load = EMPTY, gravity: float = STANDARD_GRAVITY) -> Array:
