@@ -113,7 +113,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
         if drop.start is None:
             moments[-1] = "left out"
         rows.append([drop.label, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
-    title = "Drops, s on each recording's own clock; the decay is used from ... to"
+    title = "Drops, s on each recording's own clock; free decay from ... to"
     spare = ("length", "faults", "load", "lift-off", "landing", "release")
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)
 
