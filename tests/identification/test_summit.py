@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from sprung.identification import ascend, expected_gain, look_around
+from sprung.identification.climb import Climb
 from sprung.prepare import prepare
 from sprung.simulation import simulate
 from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, record_of
@@ -55,3 +59,14 @@ def test_the_gain_of_a_larger_model_is_known_before_it_is_fitted(apart: float) -
     expected = expected_gain(decays, large, campaign.sensors, known, start)
     gained = 2 * (ascend(decays, large, campaign.sensors, known, start=start).loglikelihood - fitted.loglikelihood)
     np.testing.assert_allclose(expected, gained, rtol=0.1)
+
+
+def test_a_step_to_an_unstable_vehicle_wins_nothing_and_warns_of_nothing() -> None:
+    """Its residuals overflow; times the weight of a channel that is left out, 0, they would be no number at all."""
+    climb = Climb.__new__(Climb)
+    prior = SimpleNamespace(residual=np.zeros(1))
+    object.__setattr__(climb, "knowledge", SimpleNamespace(prior=lambda _: prior))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert climb._weighted(np.zeros(1), np.array([[np.inf, np.inf]]), np.array([1.0, 0.0])) == np.inf
+        assert climb._weighted(np.zeros(1), np.array([[3.0, 2.0]]), np.array([1.0, 0.5])) == 4.0

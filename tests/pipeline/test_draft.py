@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import fields
+from datetime import date
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +21,7 @@ from sprung.pipeline.drafting.names import axis_named, load_named, part_named, s
 from sprung.pipeline.drafting.text import campaign_text
 from sprung.progress import Step
 from sprung.recording import Campaign
+from sprung.recording import TestRecord as Record
 from sprung.report import draft_view
 from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
@@ -283,6 +286,14 @@ def test_every_draft_explains_how_a_load_is_described() -> None:
     for lines, mass in (((head, name, first, second), 255), ((head, name, added), 470)):
         (load,) = tomllib.loads("\n".join(lines))["load"]
         assert Load(**load).mass == mass
+
+
+def test_every_draft_has_a_record_of_the_test_to_fill_in() -> None:
+    text = campaign_text(Draft(folder=Path(), name="car", sensors=(), drops=(), files=(), unreadable={}))
+    lines = text[text.index("# [test]") :].split("\n\n")[0].splitlines()
+    [record] = tomllib.loads("\n".join(line.removeprefix("# ") for line in lines)).values()
+    assert record.keys() == {field.name for field in fields(Record)}
+    assert record["date"] == date(2026, 11, 22)
 
 
 def test_subfolders_tell_the_load(tmp_path: Path, campaign: Campaign) -> None:

@@ -56,7 +56,7 @@ def test_a_level_that_settles_elsewhere_is_named_and_left_alone() -> None:
     prepared = prepare(replace(clean, recordings=(settled, *clean.recordings[1:])))
     (fault,) = prepared.decays[0].faults
     assert (fault.code, fault.where) == ("drift", "empty_bounce.csv: body_rl")
-    assert "its level walks by +0.3 m/s²" in fault.what
+    assert "baseline drift of +0.3 m/s²" in fault.what
     assert "nothing was changed" in fault.what
     assert np.isin(prepared.decays[0].values[2], values[2]).all()
 

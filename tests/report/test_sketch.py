@@ -16,7 +16,7 @@ from sprung.estimate import Known
 from sprung.recording import Campaign, ModelChoice
 from sprung.report import blank_sketch, sketch_sheet, vehicle_sketch
 from sprung.report.sketch import Disc, Drawing, Stroke, Words, drawing_svg
-from sprung.report.sketch.labels import Box, text_box
+from sprung.report.sketch.labels import Box, Label, place_labels, text_box
 from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle
 
 KNOWN = {"a": Known(1.25), "b": Known(1.51), "t_f": Known(0.74), "t_r": Known(0.70, 0.01)}
@@ -183,3 +183,15 @@ def test_names_are_escaped_and_shortened() -> None:
     assert "&lt;b&gt; &amp; " in svg
     assert "ddd…" in svg
     assert "\x07" not in svg
+
+
+def test_a_label_leaves_a_dimension_line_free_where_there_is_a_place_near() -> None:
+    label, frame = Label((100.0, 100.0), ("body_fl",), "sensor"), Box(0.0, 0.0, 200.0, 200.0)
+    line = ((125.0, 50.0), (125.0, 150.0))
+    [usual] = place_labels([label], (), frame)
+    [moved] = place_labels([label], (), frame, [line])
+    assert usual is not None
+    assert moved is not None
+    assert (usual.box.is_crossed(*line), moved.box.is_crossed(*line)) == (True, False)
+    everywhere = [((x, 0.0), (x, 200.0)) for x in np.arange(5.0, 200.0, 10.0).tolist()]
+    assert place_labels([label], (), frame, everywhere) != (None,)

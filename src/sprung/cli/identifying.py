@@ -194,8 +194,8 @@ def demo(
         truth = sprung.study.true_values(saved.result, sprung.study.DEMO_VEHICLE)
         say(f"\n{sprung.report.text_of(sprung.report.truth_view(truth))}")
         say(
-            f"\nThe recordings and what was known beforehand:     {written}\n"
-            f"Everything that was found, to look at:            {folder / 'results' / 'report.html'}\n"
-            f"and for other programs:                           {folder / 'results' / 'results.json'}\n"
-            f"Change something there and run again:             sprung identify {shlex.quote(str(written))}\n"
+            f"\nCampaign file:                 {written}\n"
+            f"Report:                        {folder / 'results' / 'report.html'}\n"
+            f"Results for other programs:    {folder / 'results' / 'results.json'}\n"
+            f"Edit the campaign file, then:  sprung identify {shlex.quote(str(written))}\n"
         )

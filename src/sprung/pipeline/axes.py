@@ -22,8 +22,8 @@ def axes_of(heights: Heights) -> str:
     """
     if not heights.known:
         return (
-            "I_xx and I_yy are about the axes on which the vehicle rolled and pitched, wherever these are, and hold what its "
-            "wheels do sideways: no heights are given"
+            "no heights are given; I_xx and I_yy refer to the actual roll and pitch axes and include the lateral motion of "
+            "the wheels"
         )
     axis = "it" if heights.roll_axis_height is None else f"an axis at {heights.roll_axis_height:g} m"
     at_wheels = heights.carried_at == "wheels" and heights.wheel_height is not None

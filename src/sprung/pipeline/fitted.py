@@ -98,7 +98,7 @@ def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
         return fitted
     decays, summit = told
     return fitted._replace(
-        why=f"{fitted.why}; what the flights that told the clocks tell of the vehicle is used too",
+        why=f"{fitted.why}; the flights that determined the clock offsets are fitted too",
         prepared=fitted.prepared._replace(decays=decays),
         summit=summit,
         fit=describe(summit, decays),

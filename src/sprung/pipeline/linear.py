@@ -51,7 +51,7 @@ def linear(way: Way, among: Sequence[str] = (SEPARATE, *LINEAR_EXTRAS)) -> Way:
         larger = tried.noted({extra: gain}, True, True)
         if enough and not against and extra in _WHOLLY and tried.errs:
             larger = linear(larger, [one for one in among if one not in _WHOLLY])
-            against = "it does not explain all of it, as it would if it were what is the matter" if larger.errs else ""
+            against = "it does not explain the whole misfit" if larger.errs else ""
         if enough and not against:
             way = larger
             refused.clear()

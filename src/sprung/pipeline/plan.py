@@ -114,7 +114,7 @@ def plan(
     )
     levels = setup.sensing.noise
     if not (levels > 0).all() and not any("noise" in problem.where for problem in problems):
-        do = "Without noise everything that can be told is told exactly: give that of your sensors."
+        do = "Without noise every uncertainty would be zero: give the noise of your sensors."
         problems.add("plan: noise", f"{float(levels.min())} m/s^2", "more than 0", do)
     if not (math.isfinite(duration) and duration > 0):
         problems.add("plan: duration", f"{duration} s", "a positive number", "Correct it.")

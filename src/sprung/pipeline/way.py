@@ -143,7 +143,7 @@ class Way:
         if not possible(extra, self.summit):
             return "the estimate is negative, which is not physical"
         if inflation > ERRS and size_of(extra, self.summit.parameters) < _MATTERS:
-            return "it is so small that it may stand for another error of the model"
+            return "it is too small to be told from other errors of the model"
         return ""
 
     def explains_little(self, begun: Summit, part: float) -> bool:

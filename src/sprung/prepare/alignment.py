@@ -58,7 +58,7 @@ def align(recording: Recording) -> Recording:
     ]
     together = merged(recording, [None if one is None else one.moment for one in told])
     if together.values.shape[1] < _SHORTEST * together.rate:
-        what = "what its loggers recorded has hardly a moment in common; the drop is left out"
+        what = "the recordings of its loggers overlap too little; the drop is left out"
         fault = Fault("clock", recording.name, what, "Name the files of one and the same drop, each of some seconds.")
         nothing = np.full_like(recording.values, np.nan)
         return replace(recording, values=nothing, faults=(*recording.faults, fault))

@@ -100,8 +100,12 @@ def steady(recording: Recording, release: Release | None, sensors: Sequence[Sens
         Fault(
             "drift",
             f"{recording.name}: {recording.channels[channel]}",
-            f"its level walks by {walked[channel]:+.2g} m/s² from before the release to the end"
-            + ("; the drift was taken off" if even[channel] else ", and not evenly; nothing was changed"),
+            f"baseline drift of {walked[channel]:+.2g} m/s² from before the release to the end"
+            + (
+                ", removed as a straight line"
+                if even[channel]
+                else ", which is not a straight line; nothing was changed"
+            ),
             "Let the sensor and the logger warm up before the test, and see that nothing strains the sensor's base.",
         )
         for channel in np.flatnonzero(seen).tolist()

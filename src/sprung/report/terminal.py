@@ -138,9 +138,7 @@ def fit_line(result: Result) -> RenderableType:
     )
     rejected = result.verdict.state == "reject"
     if fit.inflation > 1 and not rejected:
-        text += (
-            f"\nError bars are {fit.inflation**0.5:.2f} times as wide as white noise would make them{_because(fit)}."
-        )
+        text += f"\nUncertainties are {fit.inflation**0.5:.2f} times those of white noise{_because(fit)}."
     if rejected:
         return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""

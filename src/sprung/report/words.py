@@ -19,11 +19,11 @@ class VerdictWords(NamedTuple):
 
 
 _WORDS = {
-    "accept": VerdictWords("✓", "The numbers may be used.", "Nothing speaks against using them."),
+    "accept": VerdictWords("✓", "The numbers may be used.", "No reason against their use was found."),
     "doubtful": VerdictWords(
         "!",
         "The numbers may be used once these reasons are read.",
-        "Something speaks against using all of them as they stand.",
+        "Not all of them can be relied on without that.",
     ),
     "reject": VerdictWords(
         "✕",

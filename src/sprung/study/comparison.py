@@ -344,6 +344,8 @@ def _contradiction(first: Result, second: Result, name: str) -> str:
     units = [_unit(one, name, False) for one in (first, second)]
     if None not in units and units[0] != units[1]:
         return f"units {units[0]} and {units[1]}"
+    if "reject" in (first.verdict.state, second.verdict.state):
+        return ""  # nothing of it is compared
     if name in _ABOUT_AXES and first.fit.axes and second.fit.axes and first.fit.axes != second.fit.axes:
         return "about other axes: the campaigns give different heights"
     return ""
@@ -421,8 +423,8 @@ def _notes(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> Itera
     for label, one in zip(labels[1:], read[1:], strict=True):
         if one.fit.model != read[0].fit.model or one.fit.tracks != read[0].fit.tracks:
             yield (
-                f"{labels[0]} and {label} were fitted with other models ({_model(read[0])}; {_model(one)}): what one puts "
-                "down to an element that the other lacks, the other puts elsewhere; identify both with the same [model]"
+                f"{labels[0]} and {label} were fitted with other models ({_model(read[0])}; {_model(one)}): a term that "
+                "one of them lacks changes its other parameters; identify both with the same [model]"
             )
         if one.parameters == read[0].parameters and one.fit == read[0].fit:
             yield f"{labels[0]} and {label} are the same result"

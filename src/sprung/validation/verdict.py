@@ -165,7 +165,7 @@ def _unpredicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
     also = f", nor do they predict {', '.join(rest)}" if rest else ""
     yield (
         f"the other drops do not predict {worst}: the vehicle that they show misses it by {size}{also}; something was "
-        "different in it (load, tyre pressure, brake), or the vehicle does something that the model lacks"
+        "different in it (load, tyre pressure, brake), or the model lacks a property of the vehicle"
     )
 
 

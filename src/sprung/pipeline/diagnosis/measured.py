@@ -234,7 +234,7 @@ def _left_over(heard: Heard, walks: Real | None) -> Iterator[Meaning]:
         fault = Fault(
             "drift",
             heard.sensor.channel,
-            "its level walks, as the other channels show",
+            "baseline drift, as the other channels show",
             "Let the sensor and the logger warm up before the test, and see that nothing strains the sensor's base.",
         )
         yield Meaning("drift", lambda *_: fault, walks)

@@ -118,7 +118,7 @@ class WithoutDrop:
             by, step = float(tried[np.argmin(costs)]), step / (len(step) / 4)
         if abs(by) > _CLOCK_MATTERS:
             way = "fast" if by > 0 else "slow"
-            what = f"its clock runs {100 * abs(by):.1f} % too {way} beside the other drops; it is left out"
+            what = f"its clock runs {100 * abs(by):.1f} % too {way} compared with the other drops; it is left out"
             yield Fault("clock", self.decay.file, what, "Check the rate of this recording."), left([by])[0], 1
 
     def _one_channel(self, bench: Bench) -> Iterator[Hypothesis]:

@@ -63,7 +63,7 @@ def walking_slowly(decays: Sequence[Decay], summit: Summit, sensors: Sequence[Se
         Fault(
             "drift",
             sensors[channel].channel,
-            f"its level walks, by {_size(decays, slow[channel]):.2g} m/s² in a record; nothing was changed",
+            f"baseline drift of {_size(decays, slow[channel]):.2g} m/s² in a recording; nothing was changed",
             "Let the sensor and the logger warm up before the test, and see that nothing strains the sensor's base.",
         )
         for channel in np.flatnonzero(walks).tolist()

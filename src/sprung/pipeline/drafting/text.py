@@ -99,6 +99,13 @@ name      = {_quoted(name)}
 wheelbase = {_quoted(_WHEELBASE)}
 # cg_height = 0.9                    # optional, of the sprung mass, from the ground; left out, loads count as level with it
 # wheel_height, roll_axis_height     # optional, for the geometry of roll
+# identification = "..."             # optional, which specimen it is: registration, chassis number
+
+# [test]                             # optional, for the record: the report shows it, nothing is computed from it
+# date     = 2026-11-22              # without quotes
+# operator = "..."                   # who did the test
+# place    = "..."                   # where it was done
+# remarks  = "..."                   # tyre pressures, fuel, weather
 
 [known]                              # measured beforehand: a number (exact) or {{ value, std }}. Any parameter, or:
 total_mass = {_quoted(_MASS)}

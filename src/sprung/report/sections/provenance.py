@@ -43,7 +43,7 @@ def settings(result: Result) -> Context:
     ]
     tables = []
     if fit.path:
-        headers = ("tried", "gain", "asked", "fitted", "taken")
+        headers = ("tried", "gain", "required", "fitted", "kept")
         rows = tuple(
             (
                 one.extra,
@@ -54,7 +54,7 @@ def settings(result: Result) -> Context:
             )
             for one in fit.path
         )
-        title = "The way to the model: gain in twice the log-likelihood, and what is asked"
+        title = "Selection of model terms: gain in twice the log-likelihood, and the gain required"
         tables.append(Table(title, headers, rows, frozenset(headers[1:3])))
     if (setup := result.setup) is not None:
         model = setup.model
@@ -65,10 +65,13 @@ def settings(result: Result) -> Context:
             "fall": None if model.fall is None else "yes" if model.fall else "no",
         }
         pairs.append(
-            ("asked in the campaign file", "; ".join(f"{key}: {value or 'left open'}" for key, value in asked.items()))
+            ("set in the campaign file", "; ".join(f"{key}: {value or 'left open'}" for key, value in asked.items()))
         )
         pairs.append(
-            ("asked beside it", "; ".join(f"{key}: {value}" for key, value in setup.options.items()) or "nothing")
+            (
+                "options of this identification",
+                "; ".join(f"{key}: {value}" for key, value in setup.options.items()) or "nothing",
+            )
         )
         pairs.append(("software", ", ".join(f"{name} {number}" for name, number in setup.software.items())))
         files = tuple((one.name, f"{one.size}", one.sha256) for one in setup.files)
@@ -82,9 +85,9 @@ def _bars(result: Result) -> str:
     if result.verdict.state == "reject":
         return ""
     if fit.inflation <= 1:
-        return "as white noise makes them"
+        return "those of white noise"
     because = f", because of {fit.inflated_by}" if fit.inflated_by not in {None, "nothing"} else ""
-    return f"{fit.inflation**0.5:.2f} times as wide as white noise would make them{because}"
+    return f"{fit.inflation**0.5:.2f} times those of white noise{because}"
 
 
 def literature(result: Result) -> Context:

@@ -22,7 +22,7 @@ def spectra(result: Result) -> Context | None:
     """Show the spectra of every load, with the identified modes."""
     pictures = [spectra_picture(one, result.modes[one.load]) for one in decays_by_load(result)]
     lines = "" if result.verdict.state == "reject" else " Lines: the damped frequencies of the identified modes."
-    said = f"Spectra of the decays, in the mean over drops and sensors, beside those of the fitted vehicle.{lines}"
+    said = f"Spectra of the decays, in the mean over drops and sensors, and those of the fitted vehicle.{lines}"
     return {"said": said, "pictures": pictures} if pictures else None
 
 
@@ -36,8 +36,8 @@ def stabilisation(result: Result) -> Context | None:
         except InputError as error:
             notes += [f"{one.load}: no diagram can be drawn ({problem.found})." for problem in error.problems]
     said = (
-        "Models of growing order were fitted to the decays, without any vehicle in them: what vibrates stays where it is. "
-        "Lines stand where poles stay. Wheel modes that lie closer than the noise allows appear as one."
+        "State-space models of increasing order, fitted to the decays without a vehicle model. The poles of a mode keep their "
+        "frequency from order to order; a vertical line marks each. Wheel modes closer than the noise resolves appear as one."
     )
     return {"said": said, "pictures": pictures, "notes": notes} if pictures or notes else None
 

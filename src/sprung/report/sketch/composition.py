@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 from sprung.report.sketch.labels import LINE, Box, Label, Placed, place_labels, text_box
@@ -44,7 +45,9 @@ def _attempt(drawn: tuple[Frame, list[Shape], list[Label], float], marks: Marks)
     wanted = [*grouped_labels(marked), *labels]
     taken = [_box(part) for part in parts if isinstance(part, Words)]
     height = bottom + _BELOW
-    placed = place_labels(wanted, taken, Box(2.0, 2.0, WIDTH - 2.0, height - 2.0))
+    dimensions = [part for part in parts if isinstance(part, Stroke) and part.kind == "dimension"]
+    lines = [line for part in dimensions for line in pairwise(part.points)]
+    placed = place_labels(wanted, taken, Box(2.0, 2.0, WIDTH - 2.0, height - 2.0), lines)
     return _Attempt(parts, marked, wanted, placed, height)
 
 

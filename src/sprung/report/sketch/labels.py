@@ -1,11 +1,14 @@
-"""Places for labels beside their points: no label covers another, a point or a line that belongs to a label."""
+"""Places for labels beside their points: no label covers another, a point or a line that belongs to a label.
+
+Dimension lines are left free too where there is a place close to the point.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, takewhile
 
 from sprung.report.sketch.shapes import Kind, Point
 
@@ -33,6 +36,9 @@ _DIRECTIONS = (
     (-1, 0.5),
 )
 """From a point to its label, the preferred one first."""  # fmt: skip
+
+_CLOSE = 20.0
+"""Distance up to which a label goes to keep a dimension line free, units."""
 
 _NEAR = 10.0
 """Distance up to which a label needs no line to its point, units."""
@@ -146,7 +152,9 @@ def text_box(text: str, at: Point, anchor: str) -> Box:
     return Box(left, at[1] - 9.0, left + width, at[1] + 3.0)
 
 
-def place_labels(labels: Sequence[Label], taken: Iterable[Box], frame: Box) -> tuple[Placed | None, ...]:
+def place_labels(
+    labels: Sequence[Label], taken: Iterable[Box], frame: Box, lines: Sequence[tuple[Point, Point]] = ()
+) -> tuple[Placed | None, ...]:
     """Place labels one after the other, each as near to its point as it can be.
 
     Parameters
@@ -157,6 +165,8 @@ def place_labels(labels: Sequence[Label], taken: Iterable[Box], frame: Box) -> t
         What no label may cover.
     frame
         What no label may leave.
+    lines
+        What no label should cover.
 
     Returns
     -------
@@ -168,23 +178,30 @@ def place_labels(labels: Sequence[Label], taken: Iterable[Box], frame: Box) -> t
     leaders: list[tuple[Point, Point]] = []
     placed: list[Placed | None] = []
     for label in labels:
-        found = next(
-            (
-                place
-                for place in chain(_around(label), _anywhere(label, frame))
-                if place.box.within(frame)
-                and not any(place.box.overlaps(box) for box in (*texts, *points))
-                and not any(place.box.grown(1.0).is_crossed(*leader) for leader in leaders)
-                and (place.leader is None or not any(box.is_crossed(label.at, place.leader) for box in texts))
-            ),
-            None,
+        possible = (
+            place
+            for place in chain(_around(label), _anywhere(label, frame))
+            if place.box.within(frame)
+            and not any(place.box.overlaps(box) for box in (*texts, *points))
+            and not any(place.box.grown(1.0).is_crossed(*leader) for leader in leaders)
+            and (place.leader is None or not any(box.is_crossed(label.at, place.leader) for box in texts))
         )
+        found = _freest(possible, label.at, lines)
         placed.append(found)
         if found is not None:
             texts.append(found.box)
             if found.leader is not None:
                 leaders.append((label.at, found.leader))
     return tuple(placed)
+
+
+def _freest(possible: Iterator[Placed], point: Point, lines: Sequence[tuple[Point, Point]]) -> Placed | None:
+    """Take the first of the places close to a point that covers the fewest lines, or else the first of all."""
+    first = next(possible, None)
+    if first is None:
+        return None
+    close = takewhile(lambda place: math.dist(place.box.nearest(point), point) <= _CLOSE, possible)
+    return min((first, *close), key=lambda place: sum(place.box.is_crossed(*line) for line in lines))
 
 
 def _around(label: Label) -> Iterator[Placed]:
