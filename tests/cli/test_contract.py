@@ -226,6 +226,7 @@ def test_results_are_written_beside_the_campaign_unless_told(folder: Folder) -> 
     assert folder.listing() == sorted([*before, "results", *results])
 
 
+@pytest.mark.long
 def test_without_a_report_none_is_left(folder: Folder) -> None:
     """One of an earlier result would be read as this one's."""
     results = folder.path / "results"

@@ -66,6 +66,7 @@ def test_a_wide_terminal_says_what_a_parameter_means(one_drop: Identified) -> No
     assert [line.split() for line in narrow.splitlines() if said in line] == [["k_sf", *said.split()]]
 
 
+@pytest.mark.long
 def test_long_reasons_hang_below_their_dash(leafbus: Identified) -> None:
     _, _, verdict = leafbus.text.out.partition("Verdict: ")
     reasons = verdict.split("\n\n", maxsplit=1)[0].splitlines()[1:]
@@ -170,6 +171,7 @@ def test_a_pipe_that_closes(folder: Folder) -> None:
     assert (folder.path / "results" / "results.json").exists()
 
 
+@pytest.mark.long
 def test_a_terminal_that_knows_only_ascii(folder: Folder) -> None:
     text = process("identify", folder.path, "--no-report", PYTHONIOENCODING="ascii", PYTHONUTF8="0")
     assert (text.returncode, text.stderr) == (0, b"")

@@ -15,6 +15,9 @@ from sprung.recording.keys import KEYS
 from sprung.recording.schema import KNOWABLE
 from sprung.vehicle import PARAMETERS
 
+# Sphinx takes half a minute: `.ci/run` and `nox -s long` build the pages.
+pytestmark = pytest.mark.long
+
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 
 

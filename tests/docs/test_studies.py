@@ -124,6 +124,7 @@ def test_no_guess(tmp_path: Path) -> None:
         assert 0 < vehicle["worst_error_over_stated"] < 6
 
 
+@pytest.mark.long
 def test_differences(tmp_path: Path) -> None:
     page, numbers = study("differences.py", tmp_path, "--campaigns", "1")
     assert "Of a vehicle that nobody touched" in page

@@ -36,6 +36,7 @@ def test_a_frequency_that_falls_with_amplitude_is_followed() -> None:
 
 
 @pytest.mark.shared
+@pytest.mark.long
 def test_the_bolted_beam_is_softer_and_damps_more_at_large_amplitude(shared: Path) -> None:
     data = loadmat(shared / "data" / "real" / "HammerImpact.mat", squeeze_me=True, struct_as_record=False)["HIdata"]
     rate = 1 / float(np.diff(data.time).mean())

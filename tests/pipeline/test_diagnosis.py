@@ -199,7 +199,18 @@ MENDED = {
 }
 
 
-ALIKE = ("too much", "AC-coupled, hardly", "on another wheel", "two wheels", "two drops", "brake")
+ALIKE = (
+    *(
+        "too much",
+        "AC-coupled, hardly",
+        "AC-coupled, another corner",
+        "on another wheel",
+        "two wheels",
+        "two drops",
+        "brake",
+    ),
+    *("in one drop", "all drops", "passenger", "clock", "upside down, which rest does not tell"),
+)
 """What takes the same way as others do: looked at in the long set."""
 
 

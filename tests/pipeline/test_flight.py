@@ -53,6 +53,7 @@ def test_where_the_decays_tell_too_little_the_fall_is_used(landed: sprung.Result
     assert all(drop.used_from is not None and 0.4 < drop.used_from < 0.42 for drop in fallen.drops)  # released at 0.4 s
 
 
+@pytest.mark.long
 def test_the_blocks_need_not_have_been_measured(campaign: sprung.Campaign, fallen: sprung.Result) -> None:
     unmeasured = replace(campaign, drops=tuple(replace(drop, height=None) for drop in campaign.drops))
     found = sprung.identify(unmeasured)

@@ -52,6 +52,7 @@ LEAFBUS = SCHOOL_BUS.parameters | {"t_f": 0.5, "t_r": 0.5, "F_f": 1000.0, "F_r":
 """Of the MuJoCo recordings: the paper's Table 5 with half-distances of 0.5 m, and friction as their page says."""
 
 
+@pytest.mark.long
 def test_friction_is_found_without_being_asked_for(leafbus: sprung.Result) -> None:
     assert leafbus.fit.model == ("friction",)
     assert leafbus.verdict.state == "accept"
@@ -63,6 +64,7 @@ def test_friction_is_found_without_being_asked_for(leafbus: sprung.Result) -> No
 
 
 @pytest.mark.parametrize("name", [name for name in LEAFBUS if name not in ("t_f1", "t_r1", "t_f2", "t_r2")])
+@pytest.mark.long
 def test_leaf_springs_come_out(leafbus: sprung.Result, name: str) -> None:
     found = leafbus.parameters[name]
     assert found.value is not None

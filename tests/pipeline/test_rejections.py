@@ -78,6 +78,7 @@ def with_hard_stops() -> sprung.Campaign:
     return sprung.simulate(car, loads=[LOAD], drops=DROPS, noise=0.02, seed=1, rate=RATE)
 
 
+@pytest.mark.long
 def test_a_mass_on_a_spring_is_an_engine_on_its_mounts() -> None:
     """What hangs beside the body is a part of it by our names: mass, centre of gravity and inertia are those of both."""
     result = sprung.identify(with_a_loose_mass(150.0, 9.0, 0.08))

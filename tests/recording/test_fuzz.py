@@ -65,6 +65,7 @@ def test_any_file_is_read_or_refused_in_words(tmp_path: Path, name: str) -> None
     any_file()
 
 
+@pytest.mark.long
 def test_damage_may_end_only_the_process_of_its_own(tmp_path: Path) -> None:
     names = [name for name, reader in READERS.items() if reader.apart and not reader.missing]
     if not names:

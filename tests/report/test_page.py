@@ -375,6 +375,7 @@ def test_everything_is_reached_by_keyboard(opened: Any) -> None:
     assert {"a", "div", "summary", "button", "svg"} <= reached
 
 
+@pytest.mark.long
 def test_on_paper_no_page_is_a_third_empty(result: Result) -> None:
     weasyprint = pytest.importorskip("weasyprint")
     document = weasyprint.HTML(string=page_of(result, unfolded=True)).render()

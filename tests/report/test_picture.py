@@ -132,6 +132,7 @@ def test_without_a_library_that_sets_pages(odd: Result, monkeypatch: pytest.Monk
         sprung.report.pdf_of(odd)
 
 
+@pytest.mark.long
 def test_on_paper(odd: Result) -> None:
     pytest.importorskip("weasyprint")
     written = sprung.report.pdf_of(odd)

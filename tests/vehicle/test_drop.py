@@ -171,7 +171,7 @@ def integrated(vehicle: Vehicle, load: Load, start: Array, times: Array) -> Arra
     [
         (TABLE_1_CAR, EMPTY, WHEELS, 0.08),
         (SCHOOL_BUS, EMPTY, ("fl", "rl"), 0.06),
-        (with_changes(SCHOOL_BUS, **DAMPED_TYRES), EMPTY, WHEELS, 0.06),
+        pytest.param(with_changes(SCHOOL_BUS, **DAMPED_TYRES), EMPTY, WHEELS, 0.06, marks=pytest.mark.long),
         (with_changes(TABLE_1_CAR, c_tf=100.0, c_tr=100.0), SIDEBAG, ("fr",), 0.15),
     ],
     ids=["car", "bus, left wheels", "bus with tyre damping", "loaded car, one wheel"],
