@@ -26,6 +26,7 @@ def test_it_prints_and_writes_only_where_it_is_asked_to(folder: Folder, tmp_path
     assert drawn == {"amplitude.svg", *(f"{name}.svg" for name in written["validation"])}
 
 
+@pytest.mark.long
 def test_a_model_that_does_not_hold_is_rejected_with_numbers(tmp_path: Path) -> None:
     said = run("validate", linear_leafbus(tmp_path / "campaign"), "--json")
     assert said.status == 3

@@ -19,6 +19,7 @@ from outcomes import INJURIES, names_all, try_one
 import sprung
 from sprung.errors import Fault
 from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import SCHOOL_BUS
 
 STUDIES = Path(__file__).resolve().parents[2] / "docs" / "studies"
 CAR, SMALL, VAN, BUS, TRUCK = FLEET
@@ -58,7 +59,11 @@ def lines(recording: sprung.recording.Recording) -> list[list[str]]:
     return [["time", *recording.channels], *([f"{cell:.9g}" for cell in row] for row in columns)]
 
 
-@pytest.mark.parametrize("test", FLEET, ids=lambda test: test.vehicle.name)
+@pytest.mark.parametrize(
+    "test",
+    [pytest.param(test, marks=pytest.mark.long) if test.vehicle is SCHOOL_BUS else test for test in FLEET],
+    ids=[test.vehicle.name for test in FLEET],
+)
 def test_every_vehicle_of_the_fleet_is_found_and_accepted(test: DropTest) -> None:
     assert 5 <= len(test.drops) <= 10
     assert 200 <= test.rate <= 1000

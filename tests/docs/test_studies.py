@@ -113,6 +113,7 @@ def test_coloured(tmp_path: Path) -> None:
         assert case["coverage_percent"] > 50
 
 
+@pytest.mark.long
 def test_no_guess(tmp_path: Path) -> None:
     page, numbers = study("no_guess.py", tmp_path, "--campaigns", "2")
     assert "2 two-axle vehicles" in page

@@ -209,7 +209,7 @@ ALIKE = (
         "two drops",
         "brake",
     ),
-    *("in one drop", "all drops", "passenger", "clock", "upside down, which rest does not tell"),
+    *("in one drop", "all drops", "passenger", "clock", "silence", "upside down, which rest does not tell"),
 )
 """What takes the same way as others do: looked at in the long set."""
 

@@ -120,7 +120,7 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
 def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     extras = tuple(extra for extra in EXTRAS if extra in ("friction", "rebound", "progressive"))
     names, values = values_of(extras)
-    states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 80
+    states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 140
     if ground:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
