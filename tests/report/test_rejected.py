@@ -98,3 +98,11 @@ def test_it_is_compared_and_drawn_without(sound: Result, rejected: Result) -> No
 
 def test_a_result_that_is_not_rejected_stays_as_it_is(sound: Result) -> None:
     assert withhold_estimates(sound) is sound
+
+
+def test_its_reasons_say_nothing_that_only_the_rejected_fit_says() -> None:
+    """How well a fit determines its parameters is no reason where the fit itself does not hold."""
+    reasons = " ".join(stored_result("reject").verdict.reasons)
+    assert "does not explain the records" in reasons
+    assert "determine" not in reasons
+    assert "only known" not in reasons

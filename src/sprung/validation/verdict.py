@@ -104,10 +104,10 @@ def judge(
         *(unexplained if size <= UNUSABLE else ()),
         *_contradictions(fit),
         *_unpredicted(drops),
-        *_undetermined(fit, parameters),
     ]
-    if reject:
+    if reject:  # what else a fit says that does not hold, such as how well it determines a parameter, is no reason
         return Verdict("reject", (*reject, *doubt))
+    doubt += _undetermined(fit, parameters)
     if doubt:
         return Verdict("doubtful", tuple(doubt))
     explained = f"the model explains the records: its error is {_below(size)} of the signal in every channel"
