@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import time
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
@@ -191,4 +192,26 @@ def test_a_signal_before_the_command_begins(
     monkeypatch: pytest.MonkeyPatch, number: int, status: int, word: str
 ) -> None:
     monkeypatch.setattr(import_module("sprung.cli.app").Commands, "parse_args", stopping(number))
+    assert run("schema") == Run(status, "", f"sprung was {word}.\n")
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there, nothing can raise it once more")
+@pytest.mark.parametrize(
+    ("number", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
+)
+def test_a_signal_where_no_exception_can_be_passed_on(
+    monkeypatch: pytest.MonkeyPatch, number: int, status: int, word: str
+) -> None:
+    """As in a callback of Python's import system: the exception is lost there, and the program must stop all the same."""
+
+    class Callback:
+        def __del__(self) -> None:
+            signal.raise_signal(number)
+
+    def work() -> str:
+        Callback()
+        time.sleep(5.0)
+        return "{}"
+
+    monkeypatch.setattr("sprung.cli.measuring.sprung.schema_text", work)
     assert run("schema") == Run(status, "", f"sprung was {word}.\n")

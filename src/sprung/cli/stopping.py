@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from types import FrameType
+from typing import Any
 
 from sprung.cli.output import INTERRUPTED, TERMINATED, complain
 
@@ -17,20 +20,41 @@ class Terminated(KeyboardInterrupt):
 
 @contextmanager
 def stopping_like_ctrl_c() -> Iterator[None]:
-    """Let SIGTERM raise `Terminated` in the block, unless whoever started us wants it to be ignored."""
+    """Let SIGTERM raise `Terminated` in the block, unless whoever started us wants it to be ignored.
+
+    A signal that arrives while Python runs a callback of its own, such as one of its import system, raises where nothing can
+    pass the exception on: it is raised once more, a millisecond later.
+    """
     before = signal.getsignal(signal.SIGTERM)
     if threading.current_thread() is not threading.main_thread() or before not in {signal.SIG_DFL, _stop}:
         yield
         return
     signal.signal(signal.SIGTERM, _stop)
+    hook = sys.unraisablehook
+    sys.unraisablehook = partial(_stop_again, hook)
     try:
         yield
     finally:
+        sys.unraisablehook = hook
         signal.signal(signal.SIGTERM, before)
 
 
 def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (what a handler takes)
     raise Terminated
+
+
+def _stop_again(hook: Callable[[Any], object], lost: Any) -> None:
+    """Raise once more what stops the program, where it was lost; leave everything else to the hook that was there."""
+    if not isinstance(lost.exc_value, KeyboardInterrupt) or not hasattr(signal, "setitimer"):
+        hook(lost)
+        return
+    stop = type(lost.exc_value)
+
+    def again(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (what a handler takes)
+        raise stop
+
+    signal.signal(signal.SIGALRM, again)
+    signal.setitimer(signal.ITIMER_REAL, 1e-3)
 
 
 def was_stopped(stopped: KeyboardInterrupt) -> int:
