@@ -17,7 +17,8 @@ from sprung.recording import Campaign, Drop, ModelChoice, Recording, read, write
 from sprung.recording.comments import SECTIONS, meaning
 from sprung.recording.formats import split_unit
 from sprung.recording.ownership import MANIFEST
-from sprung.vehicle import EMPTY, Added, Item, Load, Sensor
+from sprung.simulation import simulate
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Added, Item, Load, Sensor
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -294,3 +295,9 @@ def test_a_read_only_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
 def test_names_that_lead_out_are_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(ValueError, match="leads out of the folder"):
         write_whole(tmp_path, {name: b""})
+
+
+@pytest.mark.parametrize("name", ["a\u2028b", "a\x85b", "a\u2029"])
+def test_a_name_may_hold_what_unicode_takes_for_the_end_of_a_line(name: str, tmp_path: Path) -> None:
+    made = simulate(TABLE_1_CAR, drops=[{"wheels": ["fl", "rl"]}], seed=1, duration=1.2)
+    assert read(write(replace(made, name=name), tmp_path)).name == name

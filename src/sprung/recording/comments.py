@@ -61,7 +61,8 @@ def commented(text: str) -> str:
 def _lines(text: str) -> Iterator[str]:
     section = ""
     seen: set[tuple[str, str]] = set()
-    for line in text.splitlines():
+    # A name may hold what Unicode takes for the end of a line, and TOML does not.
+    for line in text.removesuffix("\n").split("\n"):
         header = re.fullmatch(r"\[+([a-z]+)\]+", line)
         key = re.match(r"(\w+) *= ", line)
         if header is not None:
