@@ -20,7 +20,7 @@ from matplotlib import image
 import sprung
 from command_line import run
 from sprung.pipeline import Result
-from sprung.report import page_of, write_results
+from sprung.report import add_report, page_of, save_result
 
 WIDTHS = (390, 1000, 1440)
 
@@ -30,7 +30,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What `sprung demo` leaves in its results folder, as a path."""
     campaign = sprung.write(sprung.study.demo_campaign(), tmp_path_factory.mktemp("demo"))
     results = campaign.parent / "results"
-    write_results(sprung.identify(sprung.read(campaign), amplitude=True), results)
+    saved = save_result(sprung.identify(sprung.read(campaign), amplitude=True), results)
+    add_report(saved.result, results)
     return results
 
 

@@ -136,10 +136,9 @@ def _with_statement(
 ) -> tuple[Stand, tuple[Hypothesis, ...]]:
     """Correct the one statement about loads or masses that leaves nothing suspicious, being otherwise."""
     statement = _wrong_statement(stand)
-    other = None if statement is None else begin((statement,))
-    if statement is None or other is None or other.suspicion != "none":
-        return stand, ()
-    return other, (statement,)
+    if statement is not None and (corrected := begin((statement,))).suspicion == "none":
+        return corrected, (statement,)
+    return stand, ()
 
 
 def _wrong_statement(stand: Stand) -> Hypothesis | None:
@@ -147,28 +146,26 @@ def _wrong_statement(stand: Stand) -> Hypothesis | None:
     if stand.suspicion == "none":
         return None
     stand.way.progress(Step("looking for a wrong statement about loads and masses"))
-    choice = stand.way.choice
-    tracks: Tracks = "separate" if choice.open else choice.tracks
-    return wrong_statement(Bench.of(stand.campaign, stand.prepared.decays, tracks, choice.linear_extras))
+    return wrong_statement(_bench(stand, stand.prepared.decays))
 
 
 def _looked_at(stand: Stand) -> tuple[Hypothesis, ...]:
     """Look for what is wrong, where there is reason to, with the larger of the models that are open."""
-    suspicion, choice = stand.suspicion, stand.way.choice
+    suspicion, progress = stand.suspicion, stand.way.progress
     if suspicion == "none":
         return ()
-    progress = stand.way.progress
     progress(Step("looking for what is wrong"))
-    tracks: Tracks = "separate" if choice.open else choice.tracks
-
-    def bench(decays: Sequence[Decay]) -> Bench:
-        return Bench.of(stand.campaign, decays, tracks, choice.linear_extras)
-
     if suspicion == "contradicted":
-        return diagnose(bench(stand.way.decays), progress)
+        return diagnose(_bench(stand, stand.way.decays), progress)
     # A sensor that tells something wrong may have told the landing wrong. Without any, what is left may be too little.
-    safe = bench(without_looking_at_wheels(stand.campaign, stand.prepared.decays))
+    safe = _bench(stand, without_looking_at_wheels(stand.campaign, stand.prepared.decays))
     taken = diagnose(safe, progress)
     if safe.base.explained or any(not one.specific and one.fault.code != "drift" for one in taken):
-        return diagnose(bench(stand.prepared.decays), progress) or taken
+        return diagnose(_bench(stand, stand.prepared.decays), progress) or taken
     return taken
+
+
+def _bench(stand: Stand, decays: Sequence[Decay]) -> Bench:
+    """Return the fit against which faults are looked for, with the larger of the models that are open."""
+    choice = stand.way.choice
+    return Bench.of(stand.campaign, decays, "separate" if choice.open else choice.tracks, choice.linear_extras)

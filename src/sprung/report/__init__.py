@@ -14,7 +14,6 @@ from sprung.report.folder import (
     add_report,
     save_result,
     write_report,
-    write_results,
 )
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
@@ -92,6 +91,5 @@ __all__ = [
     "wire_car",
     "write_check",
     "write_report",
-    "write_results",
     "write_validation",
 ]

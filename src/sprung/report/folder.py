@@ -61,33 +61,6 @@ def save_result(result: Result, folder: Path, *, overwrite: bool = False) -> Sav
     return Saved(result, tuple(folder / name for name in reversed(files)))
 
 
-def write_results(result: Result, folder: Path, report: bool = True, *, overwrite: bool = False) -> Saved:
-    """Write a result into a folder, and then its report, which may fail without harm to the result.
-
-    Parameters
-    ----------
-    result
-        From `sprung.identify`.
-    folder
-        Made if it does not exist. An earlier result of sprung's is replaced, with its report.
-    report
-        Whether to write report.html too.
-    overwrite
-        Whether files that sprung did not write, or that were changed since, are replaced too.
-
-    Returns
-    -------
-    Saved
-
-    Raises
-    ------
-    InputError
-        If such files would be overwritten, with their list, or the folder cannot be written.
-    """
-    saved = save_result(result, folder, overwrite=overwrite)
-    return add_report(saved.result, folder, overwrite=overwrite) if report else saved
-
-
 def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Saved:
     """Write the report beside a result that is saved; what of it cannot be drawn is named in results.json too.
 
