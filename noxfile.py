@@ -43,7 +43,7 @@ def rounding(session: nox.Session, kernel: str, threads: str) -> None:
     """Run what is compared word by word as another processor would round it."""
     session.install(".[dev,all]")
     environment = {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": threads}
-    compared = ("tests/report", "tests/test_examples.py", "tests/docs", "tests/modal", "tests/identification")
+    compared = ("tests/report", "tests/test_examples.py", "tests/docs", "tests/modal", "tests/estimation")
     session.run("pytest", *(session.posargs or compared), env=environment)
 
 

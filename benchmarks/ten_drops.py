@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.estimate import Known
-from sprung.identification import Fit, Summit, ascend, ascend_stepped, fit_jointly
-from sprung.pipeline.choice import choose_model
-from sprung.prepare import Decay, prepare
+from sprung.estimation import FitResult, FitStatistics, fit_jointly, fit_linear, fit_nonlinear
+from sprung.preprocess import FreeDecay, prepare
+from sprung.selection.structure import choose_model
 from sprung.vehicle import TABLE_1_CAR, LinearModel, NonlinearModel, Sensor, Vehicle
 
 Real = NDArray[np.float64]
@@ -41,11 +41,11 @@ class Task:
     campaign
         As recorded: where the decays begin is not said.
     decays, models, sensors, known
-        As for `sprung.identification.fit_jointly`.
+        As for `sprung.estimation.fit_jointly`.
     """
 
     campaign: sprung.Campaign
-    decays: tuple[Decay, ...]
+    decays: tuple[FreeDecay, ...]
     models: Mapping[str, LinearModel]
     sensors: tuple[Sensor, ...]
     known: Mapping[str, Known]
@@ -60,8 +60,8 @@ class Task:
         """All records below each other, shape (drop · channel, time)."""
         return np.concatenate([decay.values for decay in self.decays])
 
-    def fit(self, starts: int) -> Fit:
-        """Fit as `sprung` does: from starts of its own, to the error bars."""
+    def fit(self, starts: int) -> FitStatistics:
+        """FitStatistics as `sprung` does: from starts of its own, to the error bars."""
         return fit_jointly(self.decays, self.models, self.sensors, self.known, starts=starts)
 
 
@@ -105,28 +105,26 @@ class FrictionTask:
     """
 
     campaign: sprung.Campaign
-    decays: tuple[Decay, ...]
+    decays: tuple[FreeDecay, ...]
     models: Mapping[str, NonlinearModel]
     sensors: tuple[Sensor, ...]
     known: Mapping[str, Known]
-    linear: Summit
+    linear: FitResult
 
     @property
     def names(self) -> tuple[str, ...]:
         """The parameters."""
         return next(iter(self.models.values())).names
 
-    def fit(self) -> Summit:
-        """Fit as `sprung` does, from the linear fit on."""
+    def fit(self) -> FitResult:
+        """FitStatistics as `sprung` does, from the linear fit on."""
         start = self.linear.parameters
         start |= {f"F_{axle}": 0.002 * start[f"k_s{axle}"] for axle in "fr"}
         start |= {f"s_{axle}": 10 * start[f"k_s{axle}"] for axle in "fr"}
-        return ascend_stepped(
-            self.decays, self.models, self.sensors, self.known, start=start, states=self.linear.states
-        )
+        return fit_nonlinear(self.decays, self.models, self.sensors, self.known, start=start, states=self.linear.states)
 
     @cached_property
-    def found(self) -> Summit:
+    def found(self) -> FitResult:
         """Where it ends."""
         return self.fit()
 
@@ -139,5 +137,5 @@ def ten_rubbing_drops() -> FrictionTask:
     choice = choose_model(campaign, "shared", ("friction",))
     plain = choice.having(())
     decays = tuple(replace(decay, values=decay.values[:, :SAMPLES]) for decay in prepare(campaign).decays)
-    linear = ascend(decays, plain.models, campaign.sensors, plain.known)
+    linear = fit_linear(decays, plain.models, campaign.sensors, plain.known)
     return FrictionTask(campaign, decays, choice.stepped, campaign.sensors, choice.known, linear)

@@ -14,7 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import sprung
-from sprung.recording import Campaign
+from sprung.campaign import Campaign
 from sprung.vehicle import SCHOOL_BUS, Vehicle
 
 HERE = Path(__file__).parent

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from sprung.cli import main
-from sprung.recording.ownership import MANIFEST
+from sprung.files.ownership import MANIFEST
 
 SEDAN = Path(__file__).resolve().parent / "data" / "sedan"
 LEAFBUS = SEDAN.with_name("leafbus")

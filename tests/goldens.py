@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 import sprung
+from sprung.campaign import Campaign
 from sprung.errors import Fault
 from sprung.estimate import Known
-from sprung.recording import Campaign
 
 STORED = Path(__file__).parent / "report"
 DATA = Path(__file__).parent / "data"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.recording import Campaign
+from sprung.campaign import Campaign
 
 NEUTRAL = tuple(f"ch{i}" for i in range(1, 9))
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hypothesis import strategies as st
 
 from sprung.errors import InputError
-from sprung.recording.formats.registry import Format
+from sprung.formats.registry import Format
 
 
 class Spoiling(NamedTuple):

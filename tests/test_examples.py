@@ -30,7 +30,7 @@ def test_docstrings(name: str) -> None:
 
 
 def test_there_are_examples() -> None:
-    for name in ("sprung.pipeline.identify", "sprung.units", "sprung.simulation.drops"):
+    for name in ("sprung.analysis.identify", "sprung.units", "sprung.simulation.drops"):
         assert examples_of(name)
 
 

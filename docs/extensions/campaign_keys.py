@@ -9,9 +9,9 @@ from typing import Any
 
 import tomli_w
 
-from sprung.recording.keys import EXAMPLES, UNIT
-from sprung.recording.published import campaign_schema
-from sprung.recording.schema import VehicleFileSchema
+from sprung.campaign.keys import EXAMPLES, UNIT
+from sprung.campaign.published import campaign_schema
+from sprung.campaign.schema import VehicleFileSchema
 from sprung.report import drawing_svg, vehicle_sketch
 from sprung.report.style import alone_style
 from sprung.study import demo_campaign

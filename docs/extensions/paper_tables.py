@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from functools import cache
 
-from sprung.study import ModalValues, PaperReproduction, reproduce
-from sprung.study.printed import TABLE_3
+from sprung.paper import ModalValues, PaperReproduction, reproduce
+from sprung.paper.printed import TABLE_3
 
 
 @cache

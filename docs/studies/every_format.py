@@ -48,7 +48,7 @@ class Signals:
 
 
 @dataclass(frozen=True)
-class Way:
+class ModelSearch:
     """A way of writing a recording.
 
     Attributes
@@ -235,24 +235,24 @@ def iso_mme(signals: Signals, path: Path) -> Path:
 
 
 WAYS = {
-    "CSV, 17 digits": Way(csv),
-    "CSV, 9 digits": Way(partial(csv, digits=9), off=5e-9),
-    "MAT 5, struct": Way(mat5),
-    "MAT 5, timetable": Way(partial(mat5, struct_=timetable_of)),
-    "MAT 7, struct": Way(partial(mat5, packed=True)),
-    "MAT 7.3, struct": Way(mat73, "h5py"),
-    "HDF5": Way(hdf5, "h5py"),
-    "HDF5, packed": Way(hdf5_packed, "h5py"),
-    "Parquet": Way(parquet, "pyarrow"),
-    "TDMS": Way(tdms, "nptdms"),
-    "MDF4": Way(mdf4, "asammdf"),
-    "MDF4, packed": Way(partial(mdf4, compression=2), "asammdf"),
-    "UFF 58b": Way(uff, "pyuff"),
-    "UFF 58, text": Way(partial(uff, binary=0), "pyuff", off=5e-12),
-    "WAV, 64 bit floats": Way(wav, nameless=True),
-    "WAV, 32 bit floats": Way(partial(wav, kind=np.float32), off=2.0**-24, nameless=True),
-    "RPC, 16 bit integers": Way(rpc, "rpc3", off=1 / 32752),
-    "RPC, 32 bit floats": Way(partial(rpc, kind=float), "rpc3", off=2.0**-24),
-    "ISO-MME": Way(iso_mme),
+    "CSV, 17 digits": ModelSearch(csv),
+    "CSV, 9 digits": ModelSearch(partial(csv, digits=9), off=5e-9),
+    "MAT 5, struct": ModelSearch(mat5),
+    "MAT 5, timetable": ModelSearch(partial(mat5, struct_=timetable_of)),
+    "MAT 7, struct": ModelSearch(partial(mat5, packed=True)),
+    "MAT 7.3, struct": ModelSearch(mat73, "h5py"),
+    "HDF5": ModelSearch(hdf5, "h5py"),
+    "HDF5, packed": ModelSearch(hdf5_packed, "h5py"),
+    "Parquet": ModelSearch(parquet, "pyarrow"),
+    "TDMS": ModelSearch(tdms, "nptdms"),
+    "MDF4": ModelSearch(mdf4, "asammdf"),
+    "MDF4, packed": ModelSearch(partial(mdf4, compression=2), "asammdf"),
+    "UFF 58b": ModelSearch(uff, "pyuff"),
+    "UFF 58, text": ModelSearch(partial(uff, binary=0), "pyuff", off=5e-12),
+    "WAV, 64 bit floats": ModelSearch(wav, nameless=True),
+    "WAV, 32 bit floats": ModelSearch(partial(wav, kind=np.float32), off=2.0**-24, nameless=True),
+    "RPC, 16 bit integers": ModelSearch(rpc, "rpc3", off=1 / 32752),
+    "RPC, 32 bit floats": ModelSearch(partial(rpc, kind=float), "rpc3", off=2.0**-24),
+    "ISO-MME": ModelSearch(iso_mme),
 }
 """Every way but one: integers of a WAV file are parts of a full scale of 1 g, which a vehicle at rest would fill."""

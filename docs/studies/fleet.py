@@ -11,8 +11,8 @@ from at_the_bound import SMALL_CAR, VAN
 from campaigns import AXLES, WEIGHING, Measure, ballast, white
 
 import sprung
+from sprung.campaign import Drop
 from sprung.estimate import Known
-from sprung.recording import Drop
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Sensor, Vehicle, Wheel, quantity
 
 OFFSET = 0.05

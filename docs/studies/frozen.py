@@ -80,7 +80,8 @@ def differences(campaign: FrozenCampaign, then: Frozen, now: Frozen) -> Iterator
         if old is None or new is None or (old[0] is None) != (new[0] is None):
             yield f"{name}: {old} was frozen, now {new}"
         elif (distance := distance_of(campaign, old, new)) > 1:
-            yield f"{name}: {old[0]:.9g} ± {old[1]:.4g} was frozen, now {new[0]:.9g} ± {new[1]:.4g}; {distance:.2g} times too far"
+            was, now_ = (f"{value:.9g} ± {std:.4g}" for value, std in (old, new))
+            yield f"{name}: {was} was frozen, now {now_}; {distance:.2g} times too far"
 
 
 def distance_of(campaign: FrozenCampaign, old: Sequence[float | None], new: Sequence[float | None]) -> float:

@@ -30,7 +30,7 @@ from damage import spoilt
 from readers import LONGEST, READERS, Broken, Reader, sound_files, tried
 
 import sprung
-from sprung.recording.formats.refusals import allowance
+from sprung.formats.refusals import allowance
 
 Arc: TypeAlias = tuple[CodeType, int, int]
 
@@ -154,7 +154,7 @@ def _say(*words: str) -> None:
 
 
 @dataclass
-class Tally:
+class ResidualTable:
     """What came of one reader: how often what was said, and the first file of every failure by its reason."""
 
     counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("read", "refused", "kept", "broken"), 0))
@@ -167,10 +167,10 @@ class Tally:
             self.failures.setdefault(words[2][:120], []).append(words[1])
 
 
-def watch(name: str, folder: Path, seconds: float, seed: int) -> Tally:
+def watch(name: str, folder: Path, seconds: float, seed: int) -> ResidualTable:
     """Try a reader in processes of their own, one after another where they die."""
     folder.mkdir(parents=True)
-    tally, end = Tally(), time.monotonic() + seconds
+    tally, end = ResidualTable(), time.monotonic() + seconds
     for again in range(sys.maxsize):
         left = end - time.monotonic()
         if left < 1 and again:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.recording.formats import read_table
+from sprung.formats import read_table
 
 Real = NDArray[np.float64]
 

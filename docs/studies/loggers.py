@@ -11,8 +11,8 @@ from pages import VERDICTS, arguments, figures, run, table, tell, write
 from wireless import wireless
 
 import sprung
-from sprung.pipeline import Result
-from sprung.pipeline.fitted import fit_campaign
+from sprung.analysis.fitted import fit_campaign
+from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 
 NOISE, APART, WANTED, LATE = 0.02, 0.5, 1.2, 0.3e-3

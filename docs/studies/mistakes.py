@@ -10,7 +10,7 @@ from fleet import DropTest
 from injuries import Act, Injured, Injury
 
 import sprung
-from sprung.recording import Drop
+from sprung.campaign import Drop
 from sprung.vehicle import WHEELS, Item, Load, Sensor, Vehicle
 
 Place = tuple[float, float, float]

@@ -19,9 +19,9 @@ from campaigns import AXLES, WEIGHING, Case, Real, Trial
 from numpy.typing import NDArray
 from pages import VERDICTS, arguments, figures, run, table, tell, write
 
-from sprung.identification import ascend
-from sprung.pipeline.fitted import fit_campaign
-from sprung.pipeline.identify import result_of
+from sprung.analysis.fitted import fit_campaign
+from sprung.analysis.identify import result_of
+from sprung.estimation import fit_linear
 from sprung.vehicle import Vehicle
 
 MASS = (400.0, 16_000.0)
@@ -120,7 +120,7 @@ def search(case: Case, number: int) -> Search:
     fitted = fit_campaign(case.campaign(number))
     choice, fit = fitted.choice, fitted.fit
     truth = {name: float(getattr(case.vehicle, name)) for name in fit.names}
-    from_truth = ascend(fitted.prepared.decays, choice.models, fitted.campaign.sensors, choice.known, start=truth)
+    from_truth = fit_linear(fitted.prepared.decays, choice.models, fitted.campaign.sensors, choice.known, start=truth)
     poles = np.linalg.eigvals(case.vehicle.matrices().state)
     result = result_of(fitted)
     return Search(

@@ -37,11 +37,11 @@ from every_format import (
 )
 from scipy.io import savemat
 
+from sprung.campaign import read, read_vehicle
+from sprung.campaign.signals import column_of, recording_of
 from sprung.errors import InputError
-from sprung.recording import Table, read, read_table, read_vehicle
-from sprung.recording.formats import from_sep005
-from sprung.recording.formats.refusals import allowance
-from sprung.recording.signals import column_of, recording_of
+from sprung.formats import Table, from_sep005, read_table
+from sprung.formats.refusals import allowance
 from sprung.vehicle import Sensor
 
 LONGEST = 5.0

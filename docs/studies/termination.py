@@ -25,7 +25,7 @@ from car import CAR
 
 import sprung
 from sprung.errors import InputError
-from sprung.recording.ownership import MANIFEST
+from sprung.files.ownership import MANIFEST
 
 MINE = {"notes.txt": b"written by the user\n", "results/report.pdf": b"printed by the user\n"}
 """Files of the user's, in the folder that a command writes into and in the one for results."""

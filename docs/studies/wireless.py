@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
+from sprung.campaign import Campaign, Recording, merged
 from sprung.estimate import Known
-from sprung.recording import Campaign, Recording, merged
 from sprung.simulation import default_sensors
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
 

@@ -15,25 +15,21 @@ from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from sprung import pipeline as pipeline
+    from sprung import analysis as analysis
+    from sprung import campaign as campaign
+    from sprung import files as files
+    from sprung import paper as paper
     from sprung import plot as plot
-    from sprung import recording as recording
     from sprung import report as report
     from sprung import study as study
-    from sprung.pipeline import (
-        Result,
-        check,
-        draft,
-        identify,
-        is_recordings,
-        load,
-        modes,
-        plan,
-        validate,
-    )
-    from sprung.recording import Campaign, Drop, read, schema_text, to_sep005, write
+    from sprung.analysis import identify
+    from sprung.campaign import Campaign, Drop, read, schema_text, to_sep005, write
+    from sprung.checking import check
+    from sprung.drafting import draft
+    from sprung.modal_survey import is_recordings, modes
+    from sprung.results import Result, load
     from sprung.simulation import simulate
-    from sprung.study import Comparison, compare
+    from sprung.study import Comparison, compare, plan, validate
     from sprung.vehicle import Load, Sensor, Vehicle
 
 __all__ = [
@@ -63,29 +59,29 @@ __all__ = [
 __version__ = version("sprung")
 
 _HOME = {
-    "Campaign": "recording",
+    "Campaign": "campaign",
     "Comparison": "study",
-    "Drop": "recording",
+    "Drop": "campaign",
     "Load": "vehicle",
-    "Result": "pipeline",
+    "Result": "results",
     "Sensor": "vehicle",
     "Vehicle": "vehicle",
-    "check": "pipeline",
+    "check": "checking",
     "compare": "study",
-    "draft": "pipeline",
-    "identify": "pipeline",
-    "is_recordings": "pipeline",
-    "load": "pipeline",
-    "modes": "pipeline",
-    "plan": "pipeline",
-    "read": "recording",
-    "schema_text": "recording",
+    "draft": "drafting",
+    "identify": "analysis",
+    "is_recordings": "modal_survey",
+    "load": "results",
+    "modes": "modal_survey",
+    "plan": "study",
+    "read": "campaign",
+    "schema_text": "campaign",
     "simulate": "simulation",
-    "to_sep005": "recording",
-    "validate": "pipeline",
-    "write": "recording",
+    "to_sep005": "campaign",
+    "validate": "study",
+    "write": "campaign",
 }
-_ROOMS = ("pipeline", "plot", "recording", "report", "study")
+_ROOMS = ("analysis", "campaign", "files", "paper", "plot", "report", "study")
 
 
 def __getattr__(name: str) -> Any:

@@ -11,7 +11,7 @@ import pytest
 
 import sprung
 from command_line import SEDAN, Folder, Identified, Run, run
-from sprung.recording.ownership import MANIFEST
+from sprung.files.ownership import MANIFEST
 
 COMMANDS = (
     "demo",
@@ -303,8 +303,8 @@ def test_demo(tmp_path: Path) -> None:
 
 
 def test_paper(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = sprung.study.reproduce(noise_levels=(0.0, 0.02), seeds=1)
-    monkeypatch.setattr(sprung.study, "reproduce", lambda **_: made)  # once is enough, it takes seconds
+    made = sprung.paper.reproduce(noise_levels=(0.0, 0.02), seeds=1)
+    monkeypatch.setattr(sprung.paper, "reproduce", lambda **_: made)  # once is enough, it takes seconds
     said = run("paper", "--json")
     assert (said.status, said.err) == (0, "")
     assert said.json.keys() == {"table2", "table3", "bus", "misprints", "noise"}

@@ -15,10 +15,10 @@ import pytest
 
 import sprung
 from command_line import DROPS, Folder, Identified, Run, copy_sedan, run
-from sprung.recording.ownership import MANIFEST
+from sprung.files.ownership import MANIFEST
 from sprung.study import demo_campaign
 
-IDENTIFY = import_module("sprung.pipeline.identify")  # the function of the same name hides it
+IDENTIFY = import_module("sprung.analysis.identify")  # the function of the same name hides it
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -180,7 +180,7 @@ def ignored() -> Iterator[None]:
 
 @pytest.mark.usefixtures("ignored")
 def test_who_wants_sigterm_ignored_gets_it_ignored(one_drop_folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sprung.recording.reading.check", stopping(signal.SIGTERM))
+    monkeypatch.setattr("sprung.campaign.reading.check", stopping(signal.SIGTERM))
     assert run("check", one_drop_folder.path, "--no-drawings").status == 0
 
 

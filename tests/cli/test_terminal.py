@@ -141,7 +141,7 @@ def raising(error: BaseException) -> object:
 @pytest.mark.parametrize("options", [(), ("--json",)])
 def test_ctrl_c(folder: Folder, monkeypatch: pytest.MonkeyPatch, options: tuple[str, ...]) -> None:
     before = folder.listing()
-    monkeypatch.setattr(sprung.pipeline, "identify_campaign", raising(KeyboardInterrupt()))
+    monkeypatch.setattr(sprung.analysis, "identify_campaign", raising(KeyboardInterrupt()))
     said = run("identify", folder.path, *options)
     assert (said.status, said.out, said.err) == (130, "", "sprung was interrupted.\n")
     assert folder.listing() == before
@@ -150,7 +150,7 @@ def test_ctrl_c(folder: Folder, monkeypatch: pytest.MonkeyPatch, options: tuple[
 @pytest.mark.parametrize("error", [RuntimeError("boom"), IndexError(), OSError(5, "disk on fire"), MemoryError()])
 def test_a_defect_of_ours_asks_for_a_report(folder: Folder, monkeypatch: pytest.MonkeyPatch, error: Exception) -> None:
     before = folder.listing()
-    monkeypatch.setattr(sprung.pipeline, "identify_campaign", raising(error))
+    monkeypatch.setattr(sprung.analysis, "identify_campaign", raising(error))
     said = run("identify", folder.path, "--json")
     assert (said.status, said.out) == (1, "")
     assert "defect of sprung, not of your input" in said.err

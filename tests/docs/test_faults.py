@@ -54,7 +54,7 @@ def spoilt_channel(name: str, test: DropTest = SMALL, seed: int = 0) -> list[tup
     return [(before.values[channel], after.values[channel]) for before, after in pairs]
 
 
-def lines(recording: sprung.recording.Recording) -> list[list[str]]:
+def lines(recording: sprung.campaign.Recording) -> list[list[str]]:
     columns = np.vstack([recording.time, recording.values]).T
     return [["time", *recording.channels], *([f"{cell:.9g}" for cell in row] for row in columns)]
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import sprung
-from sprung.recording.keys import KEYS
-from sprung.recording.schema import KNOWABLE
+from sprung.campaign.keys import KEYS
+from sprung.campaign.schema import KNOWABLE
 from sprung.vehicle import PARAMETERS
 
 # Sphinx takes half a minute: `.ci/run` and `nox -s long` build the pages.

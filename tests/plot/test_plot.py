@@ -15,10 +15,10 @@ from matplotlib.axes import Axes
 
 import sprung
 from sprung import plot
+from sprung.assessment import Verdict
+from sprung.campaign import Campaign
 from sprung.errors import InputError
-from sprung.pipeline import Result
-from sprung.recording import Campaign
-from sprung.validation import Verdict
+from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 
 mpl.use("Agg")

@@ -13,7 +13,7 @@ import pytest
 
 import sprung
 from command_line import copy_sedan
-from sprung.pipeline import Check
+from sprung.checking import Check
 from sprung.report import check_page
 
 CONTRAST = """() => {

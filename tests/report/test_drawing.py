@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import sprung
-from sprung.pipeline import Check
-from sprung.recording import Campaign
+from sprung.campaign import Campaign
+from sprung.checking import Check
 from sprung.report import (
     Band,
     Curve,

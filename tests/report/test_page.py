@@ -19,8 +19,8 @@ from matplotlib import image
 
 import sprung
 from command_line import run
-from sprung.pipeline import Result
 from sprung.report import add_report, page_of, save_result
+from sprung.results import Result
 
 WIDTHS = (390, 1000, 1440)
 

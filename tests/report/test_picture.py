@@ -14,13 +14,13 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import sprung
+from sprung.campaign import Campaign
 from sprung.errors import InputError
-from sprung.pipeline import Result
-from sprung.recording import Campaign
 from sprung.report import Band, Curve, Panel, Picture, Points, Rule, page_of, svg_of
 from sprung.report.axis import Axis, room, round_ticks
 from sprung.report.legend import WIDTH
 from sprung.report.picture import labelled_together
+from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 
 HERE = Path(__file__).parent

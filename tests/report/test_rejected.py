@@ -11,12 +11,12 @@ import pytest
 
 import sprung
 from goldens import stored_result
+from sprung.assessment import Verdict
 from sprung.errors import InputError
-from sprung.pipeline import Result
-from sprung.pipeline.withholding import withhold_estimates
 from sprung.report import page_of, result_view, text_of
+from sprung.results import Result
+from sprung.results.withholding import withhold_estimates
 from sprung.tables import value_cells
-from sprung.validation import Verdict
 
 REASON = "the model does not explain the records: in wheel_fl its error is 7.0 % of the signal"
 

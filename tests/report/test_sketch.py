@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 
 import sprung
+from sprung.campaign import Campaign, ModelChoice
 from sprung.estimate import Known
-from sprung.recording import Campaign, ModelChoice
-from sprung.report import blank_sketch, sketch_sheet, vehicle_sketch
-from sprung.report.sketch import Disc, Drawing, Stroke, Words, drawing_svg
+from sprung.report import Disc, Drawing, Stroke, Words, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
 from sprung.report.sketch.labels import Box, Label, place_labels, text_box
 from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle
 

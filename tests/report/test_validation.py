@@ -10,8 +10,8 @@ from rich.console import Console
 
 import sprung
 from layouts import check_view_is_whole
-from sprung.pipeline import Validation
 from sprung.report import Curve, amplitude_pictures, draw_validation, motion_picture, text_of, validation_view
+from sprung.study import Validation
 from sprung.vehicle import TABLE_1_CAR
 
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from numpy.typing import NDArray
 from scipy.stats import chi2, norm
 
-from sprung.recording import Drop
+from sprung.campaign import Drop
 from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import TABLE_1_CAR

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from sprung.campaign import Drop, ModelChoice
 from sprung.errors import InputError
 from sprung.estimate import Known
-from sprung.recording import Drop, ModelChoice
 from sprung.simulation import default_drops, default_sensors, simulate
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import (

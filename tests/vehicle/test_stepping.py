@@ -15,14 +15,14 @@ from sprung.vehicle import (
     NonlinearModel,
     Stepper,
     Vehicle,
-    forces_beside,
     free_decay,
     ground_forces,
+    nonlinear_elements,
     parameter_names,
     record_of,
     seven_degrees_of_freedom,
 )
-from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, Felt, ForceLaw
+from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ElementInput, ForceLaw
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
 
 def model_of(extras: tuple[str, ...], load: Load = EMPTY, ground: bool = False) -> NonlinearModel:
     names, _ = values_of(extras)
-    forces = forces_beside("separate", extras) + (ground_forces(extras) if ground else ())
+    forces = nonlinear_elements("separate", extras) + (ground_forces(extras) if ground else ())
     return NonlinearModel.of(seven_degrees_of_freedom("separate", extras), forces, names, load)
 
 
@@ -84,8 +84,8 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
     matrices, rows, state = CAR.matrices(), model_of(extras).forces.rows, some_states(1, 3)[0]
     values = values_of(extras)[1]
     G = rows.at(values)
-    kinds = [force.law.name for force in forces_beside("separate", extras)]
-    axles = [force.parameters[0][-1] for force in forces_beside("separate", extras)]
+    kinds = [force.law.name for force in nonlinear_elements("separate", extras)]
+    axles = [force.parameters[0][-1] for force in nonlinear_elements("separate", extras)]
     order = [i for law in dict.fromkeys(kinds) for i, kind in enumerate(kinds) if kind == law]
     kinds, axles = [kinds[i] for i in order], [axles[i] for i in order]
 
@@ -161,7 +161,7 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
 def test_laws_tell_their_own_derivatives(law: ForceLaw, parameters: tuple[float, ...]) -> None:
     random = np.random.default_rng(2)
     travel, rate, way = 0.01 * random.standard_normal((3, 3, 50))
-    felt = Felt(travel, rate, way, law.remembers * random.uniform(-0.9, 0.9, (3, 50)))
+    felt = ElementInput(travel, rate, way, law.remembers * random.uniform(-0.9, 0.9, (3, 50)))
     p = np.array(parameters)[:, None] * np.ones(50)
     answer = law.answer(p, felt)
     e = 1e-9
@@ -188,7 +188,7 @@ def test_laws_tell_their_own_derivatives(law: ForceLaw, parameters: tuple[float,
 def test_friction_slides_at_its_force_and_holds_at_its_stiffness() -> None:
     """Dahl: far along one way the force is F; over ways much shorter than F/s it is a spring of s."""
     p = np.array([[100.0], [2e5]])
-    far = Felt(*(np.array([value]) for value in (0.1, 0.0, 0.1, -1.0)))
+    far = ElementInput(*(np.array([value]) for value in (0.1, 0.0, 0.1, -1.0)))
     assert FRICTION.answer(p, far).force[0] == pytest.approx(100.0)
-    near = Felt(*(np.array([value]) for value in (1e-7, 0.0, 1e-7, 0.0)))
+    near = ElementInput(*(np.array([value]) for value in (1e-7, 0.0, 1e-7, 0.0)))
     assert FRICTION.answer(p, near).force[0] == pytest.approx(2e5 * 1e-7, rel=1e-3)

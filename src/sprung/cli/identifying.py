@@ -54,15 +54,13 @@ def identify(
     with working("reading the recordings") as progress:
         read = sprung.read(campaign, progress=progress)
         saved = identify_and_save(read, folder, report, force, progress, as_json, profile=profile or (), fall=fall)
-    conclude(saved.result, saved.files, as_json)
+    to_estimates(saved.result, saved.files, as_json)
 
 
 def _refuse_overwriting(*folders_and_files: Any) -> None:
     """Refuse files that sprung did not write or that were changed since, in folder after folder, before the work is done."""
     each = zip(folders_and_files[::2], folders_and_files[1::2], strict=True)
-    if problems := [
-        problem for folder, files in each for problem in sprung.recording.overwriting_problems(folder, files)
-    ]:
+    if problems := [problem for folder, files in each for problem in sprung.files.overwriting_problems(folder, files)]:
         raise InputError(problems)
 
 
@@ -70,7 +68,7 @@ def identify_and_save(
     campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, as_json: bool, **options: Any
 ) -> Any:
     """Identify a campaign and save the result at once; what decorates it comes after that and may fail, or be interrupted."""
-    found = sprung.pipeline.identify_campaign(campaign, progress=progress, **options)
+    found = sprung.analysis.identify_campaign(campaign, progress=progress, **options)
     progress(Step("writing results.json and series.npz"))
     try:
         saved = sprung.report.save_result(found.result, folder, overwrite=force)
@@ -80,7 +78,7 @@ def identify_and_save(
     if not report:
         return saved
     try:
-        result = sprung.pipeline.with_amplitudes(found, progress)
+        result = sprung.analysis.with_amplitudes(found, progress)
         progress(Step("drawing the report"))
         return sprung.report.add_report(result, folder, overwrite=force)
     except KeyboardInterrupt:
@@ -91,7 +89,7 @@ def identify_and_save(
         raise
 
 
-def conclude(result: Any, written: Sequence[Path], as_json: bool) -> None:
+def to_estimates(result: Any, written: Sequence[Path], as_json: bool) -> None:
     """Print a result and leave with the status that belongs to its verdict."""
     for omission in result.omissions:
         complain(omission)
@@ -184,12 +182,12 @@ def demo(
         campaign = sprung.study.demo_campaign()
         if not force:
             _refuse_overwriting(
-                folder, sprung.recording.campaign_files(campaign), folder / "results", sprung.report.REPORT_FILES
+                folder, sprung.campaign.campaign_files(campaign), folder / "results", sprung.report.REPORT_FILES
             )
         written = sprung.write(campaign, folder, overwrite=force)
         read = sprung.read(written, progress=progress)
         saved = identify_and_save(read, folder / "results", True, force, progress, as_json)
-    conclude(saved.result, saved.files, as_json)
+    to_estimates(saved.result, saved.files, as_json)
     if not as_json:
         truth = sprung.study.true_values(saved.result, sprung.study.DEMO_VEHICLE)
         say(f"\n{sprung.report.text_of(sprung.report.truth_view(truth))}")

@@ -238,7 +238,7 @@ def new(
 def paper(as_json: Json = False) -> None:
     """Show the paper's tables beside ours, its misprints, and where its method breaks."""
     with working("reproducing the paper") as progress:
-        reproduction = sprung.study.reproduce(progress=progress)
+        reproduction = sprung.paper.reproduce(progress=progress)
     if as_json:
         say_json(reproduction.document())
     else:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.identification import NO_INFORMATION, RANK, Fit, Unidentifiable, canonical_basis, conclude
+from sprung.estimation import NO_INFORMATION, RANK, FitStatistics, Unidentifiable, canonical_basis, to_estimates
 from sprung.planning.subject import Subject
 from sprung.vehicle import LOAD_MASS
 
@@ -93,17 +93,17 @@ class Bound:
             return ()
         eigenvalues, directions = self._directions
         silenced = canonical_basis(directions[:, eigenvalues < NO_INFORMATION])
-        named = conclude(self._expected(silenced), self.subject.known).unidentifiable
+        named = to_estimates(self._expected(silenced), self.subject.known).unidentifiable
         found = tuple(one for one in named if set(one.parameters) & set(silent))
         left = tuple(name for name in silent if not any(name in one.parameters for one in found))
         if left:
             found += (Unidentifiable(left, "these drops leave as much doubt of it as its own size"),)
         return found
 
-    def _expected(self, undetermined: Real) -> Fit:
+    def _expected(self, undetermined: Real) -> FitStatistics:
         """Give the fit that is to be expected of the test."""
         subject = self.subject
-        return Fit(
+        return FitStatistics(
             names=subject.names,
             values=subject.values,
             slopes=subject.slopes,

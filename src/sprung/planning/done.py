@@ -7,13 +7,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from sprung.estimate import Known
-from sprung.identification import Fit
+from sprung.estimation import FitStatistics
 from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
 from sprung.vehicle import LEVEL, Heights, Sensor, Tracks, Vehicle
 
 
 def subject_of_fit(
-    fit: Fit,
+    fit: FitStatistics,
     tracks: Tracks,
     extras: tuple[str, ...],
     known: Mapping[str, Known],
@@ -48,7 +48,7 @@ def subject_of_fit(
     return Subject(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
 
 
-def campaign_of_fit(subject: Subject, fit: Fit, drops: Sequence[PlannedDrop]) -> PlannedTest:
+def campaign_of_fit(subject: Subject, fit: FitStatistics, drops: Sequence[PlannedDrop]) -> PlannedTest:
     """Take the drops that a fit has used, with what they have told.
 
     Parameters

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimate import Known
-from sprung.identification import Coordinates, Knowledge, Likelihood
-from sprung.prepare import Decay, no_rest
+from sprung.estimation import Coordinates, Likelihood, PriorsAndConstraints
+from sprung.preprocess import FreeDecay, no_rest
 from sprung.vehicle import (
     LOAD_MASS,
     PARAMETERS,
@@ -119,28 +119,28 @@ class Subject:
         )
 
     @cached_property
-    def knowledge(self) -> Knowledge:
+    def priors(self) -> PriorsAndConstraints:
         """What is known beforehand, in the coordinates of the fit: an extra counts in parts of a spring or damper rate."""
-        return Knowledge(Coordinates.beside(self.names, self.vehicle.parameters), self.known)
+        return PriorsAndConstraints(Coordinates.beside(self.names, self.vehicle.parameters), self.known)
 
     @cached_property
     def u(self) -> Real:
         """The coordinates, shape (parameter,)."""
-        return self.knowledge.coordinates.of(self.values)
+        return self.priors.coordinates.of(self.values)
 
     @cached_property
     def slopes(self) -> Real:
         """Derivative of each value by its coordinate, shape (parameter,)."""
-        return self.knowledge.coordinates.slopes(self.u)
+        return self.priors.coordinates.slopes(self.u)
 
     @cached_property
     def free(self) -> Real:
         """Directions of the coordinates that exact knowledge leaves free, shape (parameter, direction)."""
-        return self.knowledge.free(self.u)
+        return self.priors.free(self.u)
 
     def of_statements(self, statements: Mapping[str, Known]) -> Real:
         """Give the information in uncertain statements; shape (direction, direction)."""
-        slopes = Knowledge(self.knowledge.coordinates, statements).prior(self.u).slopes @ self.free
+        slopes = PriorsAndConstraints(self.priors.coordinates, statements).prior(self.u).slopes @ self.free
         return slopes.T @ slopes
 
     def of_drops(self, drops: Sequence[PlannedDrop], rate: float | None = None) -> Real:
@@ -181,7 +181,7 @@ class Subject:
         information: Real = seen.T @ told @ seen / self.inflation
         return information
 
-    def _decay(self, drop: PlannedDrop, load: str, rate: float) -> Decay:
+    def _decay(self, drop: PlannedDrop, load: str, rate: float) -> FreeDecay:
         fall = drop_from_blocks(self.vehicle, drop.load, drop.wheels, drop.height, duration=self.duration)
         first = math.ceil(fall.decay_start * rate)
         samples = int(self.duration * rate) - first
@@ -191,7 +191,7 @@ class Subject:
             raise InputError([Problem(where, found, f"{_SHORTEST} s", "Lower the blocks, or record for longer.")])
         names = tuple(self.vehicle.parameters)
         rows = Rows.of([sensor.row for sensor in self.sensors], names).at(list(self.vehicle.parameters.values()))
-        return Decay(
+        return FreeDecay(
             name=load,
             file=load,
             load=load,

@@ -6,10 +6,11 @@ from collections.abc import Iterable, Sequence
 
 from matplotlib.axes import Axes
 
+from sprung.checking import Check
 from sprung.errors import InputError, Problem
-from sprung.pipeline import Check, Result
 from sprung.plot.drawing import chosen, drawn
 from sprung.report import channels_picture, motion_picture, near_picture, whole_picture
+from sprung.results import Result
 
 
 def fit(

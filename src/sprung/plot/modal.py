@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
 from sprung.modal import Diagram, stabilisation_diagram
-from sprung.pipeline import LoadModes, Result
+from sprung.modal_survey import LoadModes
 from sprung.plot.drawing import chosen, drawn, single
 from sprung.report import (
     BODY_EDGES,
@@ -21,6 +21,7 @@ from sprung.report import (
     stability_picture,
     wire_car,
 )
+from sprung.results import Result
 
 
 def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | None = None) -> tuple[Axes, ...]:

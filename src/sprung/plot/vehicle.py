@@ -7,9 +7,10 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
-from sprung.pipeline import Result, Validation, other_quantities
 from sprung.plot.drawing import chosen, drawn, matrix, single
 from sprung.report import amplitude_pictures, parameters_picture
+from sprung.results import Result, other_quantities
+from sprung.study import Validation
 
 
 def parameters(result: Result, *, axes: Axes | None = None) -> Axes:

@@ -7,14 +7,7 @@ from sprung.report.comparison import comparison_view
 from sprung.report.decays import LoadDecays, decays_by_load
 from sprung.report.draft import draft_view
 from sprung.report.drawing import draw_check, write_check
-from sprung.report.folder import (
-    REPORT_FILES,
-    RESULT_FILES,
-    Saved,
-    add_report,
-    save_result,
-    write_report,
-)
+from sprung.report.folder import REPORT_FILES, RESULT_FILES, Saved, add_report, save_result, write_report
 from sprung.report.layout import text_of
 from sprung.report.modal import modes_view
 from sprung.report.page import drawn_page, page_of
@@ -22,18 +15,18 @@ from sprung.report.palette import LIGHT
 from sprung.report.paper import paper_view
 from sprung.report.paper_copy import pdf_of
 from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
-from sprung.report.pictures import (
-    amplitude_pictures,
-    channels_picture,
-    motion_picture,
-    near_picture,
-    parameters_picture,
-    spectra_picture,
-    stability_picture,
-    whole_picture,
-)
+from sprung.report.pictures.amplitudes import amplitude_pictures
+from sprung.report.pictures.channels import channels_picture
+from sprung.report.pictures.motions import motion_picture
+from sprung.report.pictures.parameters import parameters_picture
+from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.pictures.spectra import spectra_picture
+from sprung.report.pictures.stability import stability_picture
 from sprung.report.plan import plan_view
-from sprung.report.sketch import VehicleSketch, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
+from sprung.report.sketch.shapes import Disc, Drawing, Stroke, Words
+from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
+from sprung.report.sketch.sketch import VehicleSketch, vehicle_sketch
+from sprung.report.sketch.svg import drawing_svg
 from sprung.report.svg import svg_of
 from sprung.report.terminal import result_view
 from sprung.report.truth import truth_view
@@ -48,6 +41,8 @@ __all__ = [
     "STRUTS",
     "Band",
     "Curve",
+    "Disc",
+    "Drawing",
     "LoadDecays",
     "Mark",
     "Panel",
@@ -55,7 +50,9 @@ __all__ = [
     "Points",
     "Rule",
     "Saved",
+    "Stroke",
     "VehicleSketch",
+    "Words",
     "add_report",
     "amplitude_pictures",
     "blank_sketch",

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from sprung.identification import ModeEstimate
+from sprung.estimation import ModeEstimate
 from sprung.report.car import BODY_EDGES, STRUTS, WireCar
 from sprung.report.picture import Real
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal import leading_entry
-from sprung.pipeline import Result
 from sprung.report.picture import Real
+from sprung.results import Result
 
 _DECK, _ROOF, _HUB = 0.3, 0.62, 0.13
 """Heights of the wire car, parts of its wheelbase: nothing in a result tells a vehicle's outline."""

@@ -12,8 +12,8 @@ from typing import NamedTuple
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.pipeline import ChannelReport, Check, DropReport
-from sprung.recording import Missing
+from sprung.campaign import Missing
+from sprung.checking import ChannelReport, Check, DropReport
 from sprung.report.layout import figures, hanging, laid_out
 from sprung.report.terminal import fault_list
 from sprung.tables import Table

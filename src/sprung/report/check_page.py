@@ -11,13 +11,15 @@ from typing import NamedTuple
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
 
+from sprung.checking import Check, DropReport, Recorded
 from sprung.errors import Fault
-from sprung.pipeline import Check, DropReport, Recorded
 from sprung.report.check import channels_table, drops_table, missing_items
 from sprung.report.palette import DARK, LIGHT
 from sprung.report.picture import Picture
-from sprung.report.pictures import near_picture, whole_picture
-from sprung.report.sketch import Drawing, drawing_svg, vehicle_sketch
+from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.sketch.shapes import Drawing
+from sprung.report.sketch.sketch import vehicle_sketch
+from sprung.report.sketch.svg import drawing_svg
 from sprung.report.style import role_rules
 from sprung.report.svg import svg_of
 

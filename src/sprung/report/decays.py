@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.pipeline import Result, Series
+from sprung.results import Result, Series
 
 Real = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.pipeline import Draft
+from sprung.drafting import Draft
 from sprung.report.layout import hanging, table
 
 _TOLD = 5

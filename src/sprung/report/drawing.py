@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path, PurePath
 
-from sprung.pipeline import Check, DropReport
-from sprung.recording import write_whole
+from sprung.checking import Check, DropReport
+from sprung.files import atomic_write
 from sprung.report.check_page import CHECK_FILE, check_page
-from sprung.report.pictures import near_picture, whole_picture
+from sprung.report.pictures.recordings import near_picture, whole_picture
 from sprung.report.sheet import sheet
 
 
@@ -76,7 +76,7 @@ def write_check(
         If such files would be overwritten, or the folder cannot be written.
     """
     files = ({CHECK_FILE: check_page(check)} if page else {}) | (draw_check(check) if drawings else {})
-    write_whole(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
+    atomic_write(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
     return tuple(folder / name for name in files)
 
 

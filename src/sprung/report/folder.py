@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sprung.errors import InputError, Omissions
-from sprung.pipeline import Result, load
-from sprung.recording import write_whole
+from sprung.files import atomic_write
 from sprung.report.page import FILE, drawn_page
 from sprung.report.paper_copy import PDF_FILE, pdf_of
+from sprung.results import Result, load
 
 RESULT_FILES = ("results.json", "series.npz")
 """What programs read; the report can be made from it."""
@@ -57,7 +57,7 @@ def save_result(result: Result, folder: Path, *, overwrite: bool = False) -> Sav
         If such files would be overwritten, with their list, or the folder cannot be written.
     """
     files = result.files()
-    write_whole(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
+    atomic_write(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
     return Saved(result, tuple(folder / name for name in reversed(files)))
 
 
@@ -84,7 +84,7 @@ def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Save
         omissions.add(missing)
     result = replace(result, omissions=omissions.sentences)
     files = ({FILE: page.encode()} if page else {}) | result.files()
-    write_whole(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
+    atomic_write(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
     return Saved(result, tuple(folder / name for name in reversed(files)))
 
 
@@ -118,6 +118,6 @@ def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) ->
     if pdf:
         with omissions.noting("The report for paper", "written", unless=(InputError,)):
             files[PDF_FILE] = pdf_of(result)
-    write_whole(folder, files, overwrite=overwrite)
+    atomic_write(folder, files, overwrite=overwrite)
     written = tuple(folder / name for name in files)
     return Saved(replace(result, omissions=omissions.sentences), written)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.pipeline import DropReport, Recorded
+from sprung.checking import DropReport, Recorded
 from sprung.report.layout import figures
 
 Real = NDArray[np.float64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from sprung.pipeline import Result
+from sprung.results import Result
 
 
 @dataclass(frozen=True)

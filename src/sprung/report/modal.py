@@ -11,7 +11,7 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.modal import Diagram
-from sprung.pipeline import LoadModes
+from sprung.modal_survey import LoadModes
 from sprung.report.layout import figures, hanging, laid_out, table
 from sprung.report.terminal import fault_list
 from sprung.tables import with_std

@@ -10,16 +10,17 @@ from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
 
 from sprung.errors import Omissions
-from sprung.pipeline import Result
 from sprung.report import sections
 from sprung.report.embedded import figure_json
 from sprung.report.palette import DARK, LIGHT
 from sprung.report.picture import Picture
 from sprung.report.sections.context import Context
-from sprung.report.sketch import Drawing, drawing_svg
+from sprung.report.sketch.shapes import Drawing
+from sprung.report.sketch.svg import drawing_svg
 from sprung.report.style import alone_style, role_rules
 from sprung.report.svg import lower, svg_of
 from sprung.report.words import facts_of, record_of, verdict_words
+from sprung.results import Result
 
 FILE = "report.html"
 """The report's name beside results.json."""

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from sprung.paper import Misprint, ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow
 from sprung.report.layout import hanging, table
-from sprung.study import Misprint, ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow
 
 
 def paper_view(reproduction: PaperReproduction) -> RenderableType:

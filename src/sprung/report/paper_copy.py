@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 
 from sprung.errors import InputError, Problem
-from sprung.pipeline import Result
 from sprung.report.page import page_of
+from sprung.results import Result
 
 PDF_FILE = "report.pdf"
 """The name of the report for paper."""

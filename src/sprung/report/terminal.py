@@ -9,7 +9,10 @@ from rich.text import Text
 
 from sprung.errors import Fault
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import (
+from sprung.report.layout import hanging, laid_out, table
+from sprung.report.plan import next_line
+from sprung.report.words import record_of
+from sprung.results import (
     FitReport,
     Result,
     characteristics_tables,
@@ -19,9 +22,6 @@ from sprung.pipeline import (
     parameters_table,
     ratios_table,
 )
-from sprung.report.layout import hanging, laid_out, table
-from sprung.report.plan import next_line
-from sprung.report.words import record_of
 from sprung.tables import unit_text
 
 COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}

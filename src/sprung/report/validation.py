@@ -8,15 +8,16 @@ from pathlib import Path
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.pipeline import Validation
-from sprung.recording import write_whole
+from sprung.assessment import DropValidation, ModeAmplitude, Trace
+from sprung.files import atomic_write
 from sprung.report.drawing import file_names
 from sprung.report.layout import figures, hanging, laid_out
-from sprung.report.pictures import amplitude_pictures, motion_picture
+from sprung.report.pictures.amplitudes import amplitude_pictures
+from sprung.report.pictures.motions import motion_picture
 from sprung.report.sheet import sheet
 from sprung.report.terminal import fault_list, verdict_view
+from sprung.study import Validation
 from sprung.tables import Table
-from sprung.validation import DropValidation, ModeAmplitude, Trace
 
 COLUMNS = (
     "/noise: residual over the sensors' noise. Predicted: by the vehicle fitted to all other drops. Least white: largest "
@@ -193,5 +194,5 @@ def write_validation(
         If such files would be overwritten, or the folder cannot be written.
     """
     files = {name: text.encode() for name, text in drawings.items()} | validation.files()
-    write_whole(folder, files, overwrite=overwrite)
+    atomic_write(folder, files, overwrite=overwrite)
     return tuple(folder / name for name in files)

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from sprung.pipeline import Result
+from sprung.results import Result
 from sprung.tables import percent_text
 
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from sprung.campaign import Campaign, Drop, Given, ModelChoice
 from sprung.errors import Problems
-from sprung.recording import Campaign, Drop, Given, ModelChoice
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from sprung.campaign import Campaign, Drop, Given, ModelChoice
 from sprung.errors import Problems
-from sprung.recording import Campaign, Drop, Given, ModelChoice
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, coordinates, decays_with_forces, forces_beside, free_decay
+from sprung.vehicle import Load, Sensor, Vehicle, coordinates, decays_with_forces, free_decay, nonlinear_elements
 
 
 def free_decays(
@@ -82,7 +82,7 @@ def free_decays(
     samples = round(duration * rate)
     begun = [(load, state) for load in setup.loads for state in starts[load.name]]
     drops = [Drop(load=load.name, start=0.0) for load, _ in begun]
-    if forces_beside(vehicle.tracks, vehicle.extras):
+    if nonlinear_elements(vehicle.tracks, vehicle.extras):
         loads_of, states_of = [load for load, _ in begun], np.array([state for _, state in begun])
         motions = decays_with_forces(vehicle, loads_of, states_of, 1 / rate, samples)
     else:

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
+from sprung.campaign import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
-from sprung.recording import Campaign, Drop, Given, ModelChoice, read_vehicle
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Block, Load, Sensor, Vehicle, drop_from_blocks, drops_with_forces, forces_beside
+from sprung.vehicle import Block, Load, Sensor, Vehicle, drop_from_blocks, drops_with_forces, nonlinear_elements
 
 DEFAULT_HEIGHT = 0.05
 """Height of the blocks where a drop does not say, m."""
@@ -128,7 +128,7 @@ def simulate(
             )
             accelerations.append(fall.motion(1 / rate, after, first).acceleration)
     problems.raise_if_any()
-    if forces_beside(vehicle.tracks, vehicle.extras):
+    if nonlinear_elements(vehicle.tracks, vehicle.extras):
         progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
         blocks = [Block(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)

@@ -11,8 +11,8 @@ from typing import Any, TypeVar, cast
 
 from pydantic import ValidationError
 
+from sprung.campaign import Drop
 from sprung.errors import Problems
-from sprung.recording import Drop
 from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel, problems_of_record, record_of
 
 Record = TypeVar("Record")

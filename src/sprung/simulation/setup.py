@@ -10,9 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Known
-from sprung.recording import (
+from sprung.campaign import (
     Campaign,
     Drop,
     Given,
@@ -23,6 +21,8 @@ from sprung.recording import (
     known_quantities,
     recording_names,
 )
+from sprung.errors import Problems, did_you_mean
+from sprung.estimate import Known
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle

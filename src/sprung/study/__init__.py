@@ -2,11 +2,11 @@
 
 from sprung.study.comparison import Compared, Comparison, Difference, Quantity, Told, compare
 from sprung.study.demo import DEMO_VEHICLE, demo_campaign
-from sprung.study.misprints import Misprint
-from sprung.study.paper import ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow, reproduce
+from sprung.study.plan import plan
 from sprung.study.scatter import Scatter
 from sprung.study.significance import Joint
 from sprung.study.truth import TrueValue, true_values
+from sprung.study.validate import Validation, validate
 
 __all__ = [
     "DEMO_VEHICLE",
@@ -14,18 +14,14 @@ __all__ = [
     "Comparison",
     "Difference",
     "Joint",
-    "Misprint",
-    "ModalValues",
-    "ModeRow",
-    "NoisePoint",
-    "PaperReproduction",
-    "ParameterRow",
     "Quantity",
     "Scatter",
     "Told",
     "TrueValue",
+    "Validation",
     "compare",
     "demo_campaign",
-    "reproduce",
+    "plan",
     "true_values",
+    "validate",
 ]

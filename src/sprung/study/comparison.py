@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from sprung.display import shown
 from sprung.errors import Problems
 from sprung.estimate import NORMAL_95
-from sprung.pipeline import Result, load
+from sprung.results import Result, load
 from sprung.study.scatter import Scatter, scatters, told_by
 from sprung.study.significance import Joint, holm, joint, two_sided
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Literal
 
+from sprung.campaign import Campaign
 from sprung.estimate import Known
-from sprung.recording import Campaign
 from sprung.simulation import simulate
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import SCHOOL_BUS, WHEELS, Sensor, Wheel

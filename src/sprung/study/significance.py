@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.stats import chi2, norm
 
 from sprung.display import shown
-from sprung.pipeline import Result
+from sprung.results import Result
 
 Real = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from sprung.display import shown
 from sprung.estimate import Estimate
-from sprung.pipeline import Result
+from sprung.results import Result
 from sprung.vehicle import Vehicle
 
 

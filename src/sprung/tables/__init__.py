@@ -3,4 +3,11 @@
 from sprung.tables.cells import percent_text, unit_text, value_cells, with_std
 from sprung.tables.table import Table, escaped
 
-__all__ = ["Table", "escaped", "percent_text", "unit_text", "value_cells", "with_std"]
+__all__ = [
+    "Table",
+    "escaped",
+    "percent_text",
+    "unit_text",
+    "value_cells",
+    "with_std",
+]

@@ -1,32 +1,28 @@
 """The only room that knows the equations of motion: parameters, elements, matrices, loads, sensors, exact response."""
 
-from sprung.vehicle.characteristics import (
-    CHARACTERISTICS,
-    WHEEL_LOADS,
-    Characteristic,
-    characteristic,
-    wheel_loads,
-)
+from sprung.vehicle.characteristics import CHARACTERISTICS, WHEEL_LOADS, Characteristic, characteristic, wheel_loads
 from sprung.vehicle.derived import DERIVED, quantity
-from sprung.vehicle.drop import Event, Fall, Piece, drop_from_blocks
+from sprung.vehicle.drop import Event, Fall, LinearSegment, drop_from_blocks
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
     Element,
     Force,
+    Law,
     Tracks,
-    forces_beside,
     ground_forces,
     half_distances,
+    nonlinear_elements,
     seven_degrees_of_freedom,
 )
 from sprung.vehicle.examples import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.ground import static_wheel_loads, tyre_rates
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.laws import Felt
+from sprung.vehicle.laws import ElementInput
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
 from sprung.vehicle.nonlinear import Forces, NonlinearModel
+from sprung.vehicle.nonlinear_simulation import Block, decays_with_forces, drops_with_forces
 from sprung.vehicle.parameters import (
     EXTRA_PARAMETERS,
     LOAD_MASS,
@@ -40,10 +36,9 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.record import UNKNOWN_KEY, problems_of_record, record, record_of
 from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
-from sprung.vehicle.rough import Block, decays_with_forces, drops_with_forces
 from sprung.vehicle.rows import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
 from sprung.vehicle.sensor import Sensor
-from sprung.vehicle.stepping import Changes, Path, Stepper
+from sprung.vehicle.stepping import Sensitivities, Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
@@ -68,32 +63,33 @@ __all__ = [
     "Added",
     "Block",
     "CarriedAt",
-    "Changes",
     "Characteristic",
     "Element",
+    "ElementInput",
     "Event",
     "Fall",
-    "Felt",
     "Finite",
     "Force",
     "Forces",
     "Heights",
     "Item",
+    "Law",
     "LinearModel",
+    "LinearSegment",
     "Load",
     "Matrices",
     "Motion",
     "NonlinearModel",
     "NotNegative",
     "Parameter",
-    "Path",
-    "Piece",
     "Positive",
     "Row",
     "Rows",
+    "Sensitivities",
     "Sensor",
     "Stepper",
     "Tracks",
+    "Trajectory",
     "Vehicle",
     "Wheel",
     "affine_response",
@@ -103,11 +99,11 @@ __all__ = [
     "decays_with_forces",
     "drop_from_blocks",
     "drops_with_forces",
-    "forces_beside",
     "free_decay",
     "ground_forces",
     "half_distances",
     "half_sine_bump",
+    "nonlinear_elements",
     "parameter_names",
     "problems_of_record",
     "quantity",

@@ -53,7 +53,7 @@ class Event(NamedTuple):
     """What it does."""
 
 
-class Piece(NamedTuple):
+class LinearSegment(NamedTuple):
     """One linear piece of the motion: Ẏ = generator Y with Y = {X, Ẋ, 1}."""
 
     start: float
@@ -83,7 +83,7 @@ class Fall:
         Up to when the motion is known, s after the release; infinite once no wheel can lift off any more.
     """
 
-    pieces: tuple[Piece, ...]
+    pieces: tuple[LinearSegment, ...]
     events: tuple[Event, ...]
     until: float
 
@@ -213,11 +213,11 @@ def drop_from_blocks(
     # A tenth of the fastest time constant: within it a response has one extremum at most.
     step = 0.1 / float(np.abs(np.linalg.eigvals(ground.matrices.state)).max())
 
-    pieces: list[Piece] = []
+    pieces: list[LinearSegment] = []
     time = 0.0
     while len(pieces) < _MOST_EVENTS:
         contact = np.array([phase == "contact" for phase in phases])
-        pieces.append(Piece(time, Y, ground.generator(contact)))
+        pieces.append(LinearSegment(time, Y, ground.generator(contact)))
         change = _next_change(ground, pieces[-1], phases, step, duration)
         if isinstance(change, float):
             return Fall(tuple(pieces), tuple(events), change)
@@ -231,7 +231,7 @@ def drop_from_blocks(
 
 
 def _next_change(
-    ground: Ground, piece: Piece, phases: list[Phase], step: float, duration: float
+    ground: Ground, piece: LinearSegment, phases: list[Phase], step: float, duration: float
 ) -> tuple[float, Array, int, Phase] | float:
     """Find the next change of a wheel's phase: time, Y, wheel and new phase; without one, until when that is known."""
     rows = {"force": ground.force, "compression": ground.compression}

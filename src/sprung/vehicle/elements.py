@@ -133,7 +133,7 @@ def seven_degrees_of_freedom(
     return (*_elements(_Places(tracks, extras), extras), *_of_heights(heights))
 
 
-def forces_beside(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[Force, ...]:
+def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[Force, ...]:
     """List the forces that no matrix carries.
 
     Parameters

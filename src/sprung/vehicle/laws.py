@@ -20,7 +20,7 @@ _SHORTEST = 1e-7
 """m over which a friction of no force is taken to build up: any length does, and none may be zero."""
 
 
-class Felt(NamedTuple):
+class ElementInput(NamedTuple):
     """What elements feel over a step of time; all of one shape.
 
     Attributes
@@ -39,7 +39,7 @@ class Felt(NamedTuple):
     memory: Array
 
 
-class Answer(NamedTuple):
+class ElementForce(NamedTuple):
     """What a law makes of a travel; each of the travel's shape.
 
     Attributes
@@ -89,8 +89,8 @@ class ForceLaw:
 
     name: str
     remembers: bool
-    answer: Callable[[Array, Felt], Answer]
-    sensitivity: Callable[[Array, Felt], Sensitivity]
+    answer: Callable[[Array, ElementInput], ElementForce]
+    sensitivity: Callable[[Array, ElementInput], Sensitivity]
 
 
 def _reach(parameters: Array) -> tuple[Array, Array]:
@@ -100,7 +100,7 @@ def _reach(parameters: Array) -> tuple[Array, Array]:
     return np.maximum(reach, _SHORTEST), reach > _SHORTEST
 
 
-def _friction(parameters: Array, felt: Felt) -> Answer:
+def _friction(parameters: Array, felt: ElementInput) -> ElementForce:
     # Along a way in one direction the memory m of Dahl's law, dm/dx = (1 - m sign(x'))/reach, goes to that sign exponentially.
     force, (reach, _) = parameters[0], _reach(parameters)
     sign = np.sign(felt.way)
@@ -108,10 +108,10 @@ def _friction(parameters: Array, felt: Felt) -> Answer:
     new = sign + (felt.memory - sign) * kept
     slope = (1.0 - felt.memory * sign) * kept / reach
     nothing = np.zeros_like(felt.travel)
-    return Answer(force * new, new, nothing, nothing, force + nothing, slope, kept)
+    return ElementForce(force * new, new, nothing, nothing, force + nothing, slope, kept)
 
 
-def _friction_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+def _friction_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
     (force, stiffness), (reach, free) = parameters, _reach(parameters)
     sign = np.sign(felt.way)
     far = np.abs(felt.way) / reach
@@ -121,65 +121,67 @@ def _friction_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
     return Sensitivity(by_force, np.stack([by_reach * np.sign(force) / stiffness, -by_reach * reach / stiffness]))
 
 
-def _rebound(parameters: Array, felt: Felt) -> Answer:
+def _rebound(parameters: Array, felt: ElementInput) -> ElementForce:
     ratio, damping = parameters
     nothing = np.zeros_like(felt.travel)
     up = np.maximum(felt.rate, 0.0)
     more = (ratio - 1.0) * damping
-    return Answer(more * up, felt.memory, nothing, more * (felt.rate > 0), nothing, nothing, nothing)
+    return ElementForce(more * up, felt.memory, nothing, more * (felt.rate > 0), nothing, nothing, nothing)
 
 
-def _rebound_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+def _rebound_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
     ratio, damping = parameters
     up = np.maximum(felt.rate, 0.0)
     force = np.stack([damping * up, (ratio - 1.0) * up])
     return Sensitivity(force, np.zeros_like(force))
 
 
-def _progressive(parameters: Array, felt: Felt) -> Answer:
+def _progressive(parameters: Array, felt: ElementInput) -> ElementForce:
     per_metre, spring = parameters
     nothing = np.zeros_like(felt.travel)
     rise = per_metre * spring
-    return Answer(-0.5 * rise * felt.travel**2, felt.memory, -rise * felt.travel, nothing, nothing, nothing, nothing)
+    return ElementForce(
+        -0.5 * rise * felt.travel**2, felt.memory, -rise * felt.travel, nothing, nothing, nothing, nothing
+    )
 
 
-def _progressive_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+def _progressive_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
     per_metre, spring = parameters
     square = -0.5 * felt.travel**2
     force = np.stack([spring * square, per_metre * square])
     return Sensitivity(force, np.zeros_like(force))
 
 
-def _stop(parameters: Array, felt: Felt) -> Answer:
+def _stop(parameters: Array, felt: ElementInput) -> ElementForce:
     stiffness, gap = parameters
     nothing = np.zeros_like(felt.travel)
     into = np.maximum(-felt.travel - gap, 0.0)
-    return Answer(-stiffness * into, felt.memory, stiffness * (into > 0), nothing, nothing, nothing, nothing)
+    return ElementForce(-stiffness * into, felt.memory, stiffness * (into > 0), nothing, nothing, nothing, nothing)
 
 
-def _stop_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+def _stop_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
     stiffness, gap = parameters
     into = np.maximum(-felt.travel - gap, 0.0)
     force = np.stack([-into, stiffness * (into > 0)])
     return Sensitivity(force, np.zeros_like(force))
 
 
-def _pull(parameters: Array, felt: Felt) -> Array:
+def _pull(parameters: Array, felt: ElementInput) -> Array:
     """Give what a tyre that held fast to the ground would pull with, N: by its damping as well where that is a parameter."""
     stiffness, *damping = parameters
     pull: Array = stiffness * felt.travel + sum((each * felt.rate for each in damping), np.zeros_like(felt.travel))
     return np.maximum(pull, 0.0)
 
 
-def _lifted(parameters: Array, felt: Felt) -> Answer:
+def _lifted(parameters: Array, felt: ElementInput) -> ElementForce:
     stiffness, *damping = parameters
     pull, nothing = _pull(parameters, felt), np.zeros_like(felt.travel)
     off = pull > 0
     by_rate = -sum(damping, np.zeros_like(stiffness)) * off
-    return Answer(-pull, felt.memory, -stiffness * off, by_rate, nothing, nothing, nothing)
+    return ElementForce(-pull, felt.memory, -stiffness * off, by_rate, nothing, nothing, nothing)
 
 
-def _lifted_sensitivity(parameters: Array, felt: Felt) -> Sensitivity:
+def _lifted_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
     off = _pull(parameters, felt) > 0
     force = np.stack([-felt.travel * off, -felt.rate * off][: len(parameters)])
     return Sensitivity(force, np.zeros_like(force))

@@ -18,7 +18,7 @@ from scipy.linalg import expm
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.elements import Element, Force
 from sprung.vehicle.heights import LEVEL, Heights
-from sprung.vehicle.laws import Answer, Felt, ForceLaw, Sensitivity
+from sprung.vehicle.laws import ElementForce, ElementInput, ForceLaw, Sensitivity
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices, Rows
 from sprung.vehicle.rows import coordinates
@@ -67,14 +67,14 @@ class Forces(NamedTuple):
         """How many forces."""
         return len(self.rows.affine)
 
-    def answer(self, values: Array, felt: Felt) -> Answer:
+    def answer(self, values: Array, felt: ElementInput) -> ElementForce:
         """Give all forces at parameter values; the last axis of what is felt is that of the forces."""
         parts = [law.answer(values[at], _of(felt, own)) for law, own, at in self.laws]
         if len(parts) == 1:
             return parts[0]
-        return Answer(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
+        return ElementForce(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
 
-    def sensitivity(self, values: Array, felt: Felt) -> Sensitivity:
+    def sensitivity(self, values: Array, felt: ElementInput) -> Sensitivity:
         """Give the derivatives of forces and memories by the parameters, from what is felt; shape (..., force, parameter)."""
         force = np.zeros((*felt.travel.shape, len(values)))
         remembered = np.zeros_like(force)
@@ -87,8 +87,8 @@ class Forces(NamedTuple):
         return Sensitivity(force, remembered)
 
 
-def _of(felt: Felt, own: slice) -> Felt:
-    return Felt(*(each[..., own] for each in felt))
+def _of(felt: ElementInput, own: slice) -> ElementInput:
+    return ElementInput(*(each[..., own] for each in felt))
 
 
 class Step(NamedTuple):

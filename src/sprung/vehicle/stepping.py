@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.laws import Answer, Felt
+from sprung.vehicle.laws import ElementForce, ElementInput
 from sprung.vehicle.nonlinear import Forces, NonlinearModel, Step
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ _CHUNK = 128
 """Steps whose matrices are made at once: what they take stays in a processor's cache."""
 
 
-class Path(NamedTuple):
+class Trajectory(NamedTuple):
     """Motions, step by step; the first axis is time.
 
     Attributes
@@ -45,7 +45,7 @@ class Path(NamedTuple):
     memories: Array
 
 
-class Changes(NamedTuple):
+class Sensitivities(NamedTuple):
     """What unknowns do to motions over some steps; unknowns are the parameters, then states and memories at the start.
 
     Attributes
@@ -99,7 +99,7 @@ class Stepper:
         """The rows of the forces, shape (force, coordinate)."""
         return self.forces.rows.at(self.values)
 
-    def follow(self, states: Array, memories: Array, steps: int) -> Path:
+    def follow(self, states: Array, memories: Array, steps: int) -> Trajectory:
         """Follow motions from where they start.
 
         Parameters
@@ -126,7 +126,7 @@ class Stepper:
         whole[:, 2 * n : 2 * n + count, -1] += self.offsets
         after = self.steps.after[at]
         yields = (feel @ self.steps.after)[at]
-        path = Path(
+        path = Trajectory(
             np.empty((steps + 1, len(at), 2 * n)),
             np.empty((steps + 1, len(at), count)),
             np.zeros((steps + 1, len(at), count)),
@@ -134,7 +134,7 @@ class Stepper:
         path.states[0] = states
         path.memories[0][:, self.forces.remembering] = memories
         travel = states[:, :n] @ rows.T + self.offsets
-        at_rest = Felt(travel, states[:, n:] @ rows.T, np.zeros_like(travel), path.memories[0])
+        at_rest = ElementInput(travel, states[:, n:] @ rows.T, np.zeros_like(travel), path.memories[0])
         path.forces[0] = self.forces.answer(values, at_rest).force
         now = np.ones((len(at), 2 * n + count + 1))
         # What a force does to its own travel and rate: what it does to the others' within a step is less still.
@@ -148,7 +148,7 @@ class Stepper:
                 for correction in range(_CORRECTIONS):
                     felt = ahead[:, 2 * n :] + np.matmul(yields, force[:, :, None])[:, :, 0]
                     there = felt[:, :count]
-                    found = self.forces.answer(values, Felt(there, felt[:, count:], there - travel, memory))
+                    found = self.forces.answer(values, ElementInput(there, felt[:, count:], there - travel, memory))
                     if correction < _CORRECTIONS - 1:
                         along, over = _slopes(found)
                         force = force + (found.force - force) / (1.0 - along * own_travel - over * own_rate)
@@ -156,7 +156,7 @@ class Stepper:
                 path.states[k + 1] = ahead[:, : 2 * n] + np.matmul(after, found.force[:, :, None])[:, :, 0]
         return path
 
-    def changes(self, path: Path) -> Iterator[Changes]:
+    def changes(self, path: Trajectory) -> Iterator[Sensitivities]:
         """Say what every unknown does to motions.
 
         Parameters
@@ -184,19 +184,19 @@ class Stepper:
                     if first + k < steps - 1:
                         own = matrices[k] @ own
                         own[..., :parameters] += drive[k]
-            yield Changes(first, followed[:, :, :state], self._of_forces(path, first, followed))
+            yield Sensitivities(first, followed[:, :, :state], self._of_forces(path, first, followed))
 
-    def _answers(self, path: Path, first: int, last: int) -> tuple[Answer, Felt]:
+    def _answers(self, path: Trajectory, first: int, last: int) -> tuple[ElementForce, ElementInput]:
         """Give the answers of the steps that end at each of first..last, and what they answered."""
         X, V = np.split(path.states, 2, axis=-1)
         travel, rate = X[first:last] @ self._travel.T + self.offsets, V[first:last] @ self._travel.T
         earlier = np.arange(first, last) - 1
         earlier[earlier < 0] = 0
         way = travel - (X[earlier] @ self._travel.T + self.offsets)
-        asked = Felt(travel, rate, way, path.memories[earlier])
+        asked = ElementInput(travel, rate, way, path.memories[earlier])
         return self.forces.answer(self.values, asked), asked
 
-    def _of_forces(self, path: Path, first: int, followed: Array) -> Array:
+    def _of_forces(self, path: Trajectory, first: int, followed: Array) -> Array:
         """Give what the unknowns do to the forces, from what they do to states and memories."""
         last, parameters = first + len(followed), len(self.values)
         answer, asked = self._answers(path, first, last)
@@ -218,7 +218,7 @@ class Stepper:
         """Give what turns X into the change of the travels with the parameters: shape (force, n, parameter) as a stack."""
         return np.ascontiguousarray(np.moveaxis(self.forces.rows.slopes, 1, 2))
 
-    def _linearised(self, path: Path, first: int, last: int) -> tuple[Array, Array]:
+    def _linearised(self, path: Trajectory, first: int, last: int) -> tuple[Array, Array]:
         """Give what the steps from first to last - 1 make of small changes of {x, memory}, and what parameters add.
 
         Returns
@@ -299,7 +299,7 @@ class Stepper:
         return found
 
 
-def _slopes(answer: Answer) -> tuple[Array, Array]:
+def _slopes(answer: ElementForce) -> tuple[Array, Array]:
     """Give the derivatives of forces by travel, their memory following, and by rate."""
     return answer.by_travel + answer.by_memory * answer.memory_by_travel, answer.by_rate
 

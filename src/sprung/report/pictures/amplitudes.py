@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.assessment import ModeAmplitude
 from sprung.report.axis import Axis, room
 from sprung.report.picture import Curve, Mark, Panel, Picture, Points, Role, Rule
-from sprung.validation import ModeAmplitude
 
 Real = NDArray[np.float64]
 

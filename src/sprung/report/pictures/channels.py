@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sprung.pipeline import Series
 from sprung.report.axis import Axis
 from sprung.report.picture import Panel, Picture
 from sprung.report.pictures.motions import compared
+from sprung.results import Series
 
 
 def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Picture:

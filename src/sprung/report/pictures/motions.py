@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.pipeline import Series
+from sprung.assessment import MOTIONS, DropValidation
 from sprung.report.axis import Axis, room
 from sprung.report.picture import Curve, Panel, Picture, Rule
-from sprung.validation import MOTIONS, DropValidation
+from sprung.results import Series
 
 Real = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sprung.pipeline import DropReport, Recorded
+from sprung.checking import DropReport, Recorded
 from sprung.report.axis import Axis
 from sprung.report.lanes import Lane, lanes_of
 from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule

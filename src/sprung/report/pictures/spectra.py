@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.identification import ModeEstimate
+from sprung.estimation import ModeEstimate
 from sprung.report.axis import Axis
 from sprung.report.decays import LoadDecays
 from sprung.report.picture import Curve, Panel, Picture, Rule, labelled_together

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 
+from sprung.checking import DropReport
 from sprung.errors import Fault
-from sprung.pipeline import DropReport, Result
 from sprung.report.check import drops_table
-from sprung.report.pictures import (
-    motion_picture,
-    near_picture,
-    whole_picture,
-)
+from sprung.report.pictures.motions import motion_picture
+from sprung.report.pictures.recordings import near_picture, whole_picture
 from sprung.report.sections.context import Context
 from sprung.report.validation import COLUMNS, validation_table
+from sprung.results import Result
 
 
 def recordings(result: Result, unfolded: bool) -> Context:

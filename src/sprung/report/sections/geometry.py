@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from sprung.pipeline import Result
 from sprung.report.sections.context import Context
-from sprung.report.sketch import vehicle_sketch
+from sprung.report.sketch.sketch import vehicle_sketch
+from sprung.results import Result
 
 
 def geometry(result: Result) -> Context | None:

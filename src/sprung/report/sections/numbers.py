@@ -8,13 +8,10 @@ import numpy as np
 from markupsafe import Markup
 
 from sprung.estimate import Estimate, round_by_uncertainty
-from sprung.pipeline import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
-from sprung.report.pictures import (
-    half_width,
-    limits_percent,
-)
+from sprung.report.pictures.parameters import half_width, limits_percent
 from sprung.report.sections.context import Context
 from sprung.report.words import symbol as parts_of
+from sprung.results import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
 from sprung.tables import Table, unit_text, value_cells
 
 _CLOSE = 0.9

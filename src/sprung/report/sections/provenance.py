@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from sprung.pipeline import Result
 from sprung.report.literature import literature_of
 from sprung.report.sections.context import Context
+from sprung.results import Result
 from sprung.tables import Table
 
 _NOT_KEPT = "An older sprung wrote this result, without what is shown here: identify the campaign again."

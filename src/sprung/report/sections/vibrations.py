@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from sprung.errors import InputError
 from sprung.modal import stabilisation_diagram
-from sprung.pipeline import Result, modes_table
 from sprung.report.animation import cars_of, wire_json
 from sprung.report.car import wire_car
 from sprung.report.decays import decays_by_load
-from sprung.report.pictures import (
-    amplitude_pictures,
-    spectra_picture,
-    stability_picture,
-)
+from sprung.report.pictures.amplitudes import amplitude_pictures
+from sprung.report.pictures.spectra import spectra_picture
+from sprung.report.pictures.stability import stability_picture
 from sprung.report.sections.context import Context
 from sprung.report.validation import AMPLITUDES, amplitude_table
+from sprung.results import Result, modes_table
 from sprung.tables import Table
 
 

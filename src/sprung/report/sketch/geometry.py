@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from sprung.campaign import Campaign
 from sprung.estimate import round_by_uncertainty
-from sprung.pipeline import Result
-from sprung.recording import Campaign
+from sprung.results import Result
 from sprung.vehicle import EMPTY, Load, Sensor
 
 _FINEST = 0.01

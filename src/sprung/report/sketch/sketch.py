@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from sprung.pipeline import Result
-from sprung.recording import Campaign
+from sprung.campaign import Campaign
 from sprung.report.sketch.geometry import Geometry, geometry_of
 from sprung.report.sketch.shapes import Drawing
 from sprung.report.sketch.views import plan_view, side_view
+from sprung.results import Result
 
 
 @dataclass(frozen=True, eq=False)

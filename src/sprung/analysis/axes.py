@@ -1,0 +1,62 @@
+"""Axes: about which of them the inertias that were found are, and what they are about others."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sprung.estimate import NORMAL_95, Estimate
+from sprung.estimation import FitStatistics
+from sprung.vehicle import Heights
+
+ABOUT_ROLL_AXIS = "I_xx_roll_axis"
+"""Name of the sprung mass's roll inertia about the axis of roll, among the derived quantities."""
+
+
+def axes_of(heights: Heights) -> str:
+    """Say about which axes I_xx and I_yy are.
+
+    Parameters
+    ----------
+    heights
+        How high things are, as far as it was measured.
+    """
+    if not heights.known:
+        return (
+            "no heights are given; I_xx and I_yy refer to the actual roll and pitch axes and include the lateral motion of "
+            "the wheels"
+        )
+    axis = "it" if heights.roll_axis_height is None else f"an axis at {heights.roll_axis_height:g} m"
+    at_wheels = heights.carried_at == "wheels" and heights.wheel_height is not None
+    carried = f"at its wheels ({heights.wheel_height:g} m)" if at_wheels else "at the axis of roll"
+    return (
+        f"I_xx and I_yy are about the centre of gravity of the sprung mass ({heights.cg_height:g} m above the ground); the "
+        f"body rolls about {axis} and is carried {carried}"
+    )
+
+
+def about_roll_axis(fit: FitStatistics, heights: Heights) -> dict[str, Estimate]:
+    """Give the sprung mass's roll inertia about the axis of roll, where that is another than the centre of gravity's.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    heights
+        How high things are.
+
+    Returns
+    -------
+    dict
+        `ABOUT_ROLL_AXIS` with its estimate, or nothing.
+    """
+    if heights.cg_arm == 0 or not {"I_xx", "m_s"} <= set(fit.names):
+        return {}
+    gradient = np.zeros(len(fit.names))
+    gradient[fit.names.index("I_xx")] = 1.0
+    gradient[fit.names.index("m_s")] = heights.cg_arm**2
+    value = float(gradient @ fit.values)
+    std = fit.spread(gradient * fit.slopes, value)
+    if std is None:
+        return {ABOUT_ROLL_AXIS: Estimate(None, None, None, "kg m^2", "unidentifiable")}
+    interval = (value - NORMAL_95 * std, value + NORMAL_95 * std)
+    return {ABOUT_ROLL_AXIS: Estimate(value, std, interval, "kg m^2", "estimated", "curvature")}

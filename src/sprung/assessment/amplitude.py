@@ -1,0 +1,151 @@
+"""Frequency and damping of the body's modes against amplitude: from the records alone, and from the fitted vehicle.
+
+A linear vehicle has one frequency and one damping ratio whatever the amplitude; with dry friction the frequency rises as the
+motion dies, which is what the paper saw in figures 7 to 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.assessment.bodies import BodyMotion, body_rows
+from sprung.assessment.sliding import Trace, follow_mode
+from sprung.display import shown
+from sprung.estimation import FitStatistics
+from sprung.modal import Mode, modes_of
+from sprung.progress import Progress, counted, silent
+from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, free_decay
+
+Real = NDArray[np.float64]
+
+_STEP = 0.0025
+"""s from one sample of the simulated decay to the next."""
+
+_DROPS = 2
+"""Drops of which a mode is followed, at the most: those in which it is the largest part of the motion."""
+
+_LARGE_PART = 0.5
+"""Part of the body's motion that a mode must be in all of them but the first."""
+
+_WAVES = 8.0
+"""Periods of a simulated decay."""
+
+_TRIES, _LARGER, _REACHED = 6, 1.4, 0.9
+"""How many times a simulated decay is begun, each time so much larger, until it reaches this part of the measured ones."""
+
+
+@shown
+@dataclass(frozen=True, eq=False)
+class ModeAmplitude:
+    """One mode of the body against amplitude.
+
+    Attributes
+    ----------
+    mode
+        Its name.
+    frequency, damping_ratio
+        Of the fitted vehicle without any force that no matrix carries, Hz.
+    records
+        From the records alone, one for each drop that shows it.
+    simulated
+        From what the fitted vehicle makes of these drops: dry friction lets a mode depend on what else moves.
+    model
+        From a free decay of the fitted vehicle in this mode alone, begun where the records begin.
+    load
+        On the vehicle in those drops.
+    """
+
+    mode: str
+    frequency: float
+    damping_ratio: float
+    records: tuple[Trace, ...]
+    simulated: tuple[Trace, ...]
+    model: Trace
+    load: str = EMPTY.name
+
+
+def mode_amplitudes(
+    fit: FitStatistics,
+    model: LinearModel | NonlinearModel,
+    sensors: Sequence[Sensor],
+    motions: Sequence[BodyMotion],
+    progress: Progress = silent,
+) -> tuple[ModeAmplitude, ...]:
+    """Follow the modes of the body through the decays of one load.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    model
+        The fitted vehicle's equations of motion with this load, over the fit's parameters.
+    sensors
+        The sensors.
+    motions
+        Of the drops with this load.
+    progress
+        Called with each mode that is begun.
+
+    Returns
+    -------
+    tuple of ModeAmplitude
+        The modes of the body that vibrate and that the sensors tell, lowest first.
+    """
+    linear = model.linear if isinstance(model, NonlinearModel) else model
+    matrices = linear.matrices(fit.values)
+    modes = [mode for mode in modes_of(matrices) if mode.pole.imag != 0]
+    rows = body_rows(fit, sensors)
+    told = [one for one in motions if np.isfinite(one.measured).all()]
+    found = []
+    of_body = [i for i, mode in enumerate(modes) if mode.name is not None and mode.name.startswith("body ") and told]
+    for which in counted(progress, "following the modes of the body through the decays", of_body):
+        mode = modes[which]
+        shares = [_share(one, modes, which, rows) for one in told]
+        best = sorted(range(len(told)), key=lambda i: -shares[i])[:_DROPS]
+        noise = told[best[0]].noise
+        largest = float(np.abs(rows @ mode.shape[:3]).max())
+        traces, simulations = [], []
+        for one in (told[i] for i in best if i == best[0] or shares[i] > _LARGE_PART):
+            rate = (len(one.time) - 1) / float(one.time[-1] - one.time[0])
+            traces.append(follow_mode(one.name, one.measured, rate, one.noise, modes, which, largest))
+            least = float(traces[-1].amplitude.min(initial=np.inf))
+            simulations.append(follow_mode(one.name, one.simulated, rate, one.noise, modes, which, largest, least))
+        seen = np.concatenate([trace.amplitude for trace in traces])
+        if seen.size:
+            begin = float(seen.max()) / largest
+            for _ in range(_TRIES):
+                decay = _decay(model, fit.values, mode, begin)
+                simulated = follow_mode("", decay, 1 / _STEP, noise, modes, which, largest, float(seen.min()))
+                # Friction takes most of a large motion within its first period, before the middle of the first window.
+                if simulated.amplitude.max(initial=0.0) > _REACHED * seen.max():
+                    break
+                begin *= _LARGER
+            of_drops = tuple(traces), tuple(simulations)
+            found.append(ModeAmplitude(str(mode.name), mode.frequency, mode.damping_ratio, *of_drops, simulated))
+    return tuple(found)
+
+
+def _share(motion: BodyMotion, modes: Sequence[Mode], which: int, rows: Real) -> float:
+    """Give the part of the motion of the body's sensors that is in one mode of the body."""
+    body = [i for i, mode in enumerate(modes) if mode.name is not None and mode.name.startswith("body ")]
+    shapes = np.column_stack([(modes[i].shape[:3] * modes[i].pole ** 2).real for i in body])
+    parts = np.linalg.pinv(shapes) @ motion.measured
+    energies = np.sum((rows @ shapes) ** 2, axis=0) * np.sum(parts**2, axis=1)
+    return float(energies[body.index(which)] / energies.sum())
+
+
+def _decay(model: LinearModel | NonlinearModel, values: Real, mode: Mode, amplitude: float) -> Real:
+    """Let the vehicle vibrate freely from the shape of a mode: accelerations of the body, shape (3, time)."""
+    samples = int(_WAVES / mode.frequency / _STEP)
+    begin = amplitude * np.concatenate([mode.shape, mode.pole * mode.shape]).real
+    if isinstance(model, LinearModel):
+        return free_decay(model.matrices(values), begin, _STEP, samples).acceleration[:3]
+    stepper = Stepper.of([model], [_STEP], np.zeros(1, dtype=np.int64), values)
+    path = stepper.follow(begin[None], np.zeros((1, len(model.forces.remembering))), samples - 1)
+    inputs = np.concatenate([path.states[:, 0], path.forces[:, 0], np.ones((samples, 1))], axis=1)
+    accelerations: Real = (inputs @ model.accelerations(values)[0].T).T[:3]
+    return accelerations

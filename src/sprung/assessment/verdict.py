@@ -1,0 +1,191 @@
+"""The verdict: whether the numbers may be used, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+from types import MappingProxyType
+from typing import Literal
+
+import numpy as np
+
+from sprung.assessment.drops import DropValidation
+from sprung.assessment.residuals import Misfit
+from sprung.display import shown
+from sprung.estimate import Estimate
+from sprung.estimation import FitStatistics
+from sprung.tables import escaped
+
+State = Literal["accept", "doubtful", "reject"]
+"""What a verdict may be: see `Verdict`."""
+
+EXPLAINED = 0.01
+"""Model error, as a part of a channel's signal, below which the model explains the records."""
+
+UNUSABLE = 0.04
+"""Model error above which the numbers must not be used: parameters then err by ten times as much and more."""
+
+COARSE = 0.25
+"""Relative standard uncertainty above which a parameter is hardly determined."""
+
+CONTRADICTION = 4.0
+"""Standard uncertainties by which a known quantity may miss what the recordings say."""
+
+
+SLIGHTEST = 0.0005
+"""Error of a prediction, as a part of a drop's signal, that nobody has to know of."""
+
+ALONE, _FAR, _FEW = 10.0, 25.0, 3
+"""How many times further from the others than these are a drop must be to stand alone, how far at least (five standard errors
+in every direction), and among how many others that shows."""
+
+_NO_DROPS: Mapping[str, DropValidation] = MappingProxyType({})
+
+
+@shown
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether the numbers may be used.
+
+    Attributes
+    ----------
+    state
+        ``accept``: the model explains the records and every parameter is determined; ``doubtful``: usable once the
+        reasons are read; ``reject``: the numbers must not be used.
+    reasons
+        In sentences, the gravest first.
+    """
+
+    state: State
+    reasons: tuple[str, ...]
+
+    def _repr_html_(self) -> str:
+        """Show it in a notebook."""
+        reasons = "".join(f"<li>{escaped(reason)}</li>\n" for reason in self.reasons)
+        return f"<p>Verdict: <strong>{self.state}</strong></p>\n<ul>\n{reasons}</ul>\n"
+
+
+def judge(
+    fit: FitStatistics,
+    misfit: Misfit,
+    parameters: Mapping[str, Estimate],
+    channels: Sequence[str],
+    accused: Sequence[str] = (),
+    drops: Mapping[str, DropValidation] = _NO_DROPS,
+) -> Verdict:
+    """Come to a verdict.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    misfit
+        How far the model is from the records.
+    parameters
+        The estimates.
+    channels
+        Channel names.
+    accused
+        What is probably wrong with the campaign file or an instrument.
+    drops
+        How well each drop is explained, and predicted by the others, by its name.
+
+    Returns
+    -------
+    Verdict
+    """
+    worst = int(np.argmax(misfit.relative))
+    size = float(misfit.relative[worst])
+    unexplained = list(_unexplained(size, float(misfit.ratio[worst]), channels[worst]))
+    reject = [*(unexplained if size > UNUSABLE else ()), *_no_fit(fit, parameters)]
+    doubt = [
+        *accused,
+        *(unexplained if size <= UNUSABLE else ()),
+        *_contradictions(fit),
+        *_unpredicted(drops),
+    ]
+    if reject:  # what else a fit says that does not hold, such as how well it determines a parameter, is no reason
+        return Verdict("reject", (*reject, *doubt))
+    doubt += _undetermined(fit, parameters)
+    if doubt:
+        return Verdict("doubtful", tuple(doubt))
+    explained = f"the model explains the records: its error is {_below(size)} of the signal in every channel"
+    return Verdict("accept", (explained, *_predicted(drops), "every parameter is determined"))
+
+
+def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
+    if size > EXPLAINED:
+        beyond = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
+        yield (
+            f"the model does not explain the records: in {channel} its error is {100 * size:.1f} % of the "
+            f"signal{beyond}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
+        )
+
+
+def _no_fit(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Iterator[str]:
+    if not fit.converged:
+        yield (
+            f"the fit did not converge in {fit.iterations} steps: the records do not belong to this model, or the campaign "
+            "file describes another vehicle, load or sensor placement"
+        )
+    if not any(estimate.status == "estimated" for estimate in parameters.values()) and any(
+        estimate.status == "unidentifiable" for estimate in parameters.values()
+    ):
+        yield "nothing is determined: these recordings do not show a vehicle vibrating freely"
+
+
+def _contradictions(fit: FitStatistics) -> Iterator[str]:
+    for name, size in fit.contradictions.items():
+        if abs(size) > CONTRADICTION:
+            yield (
+                f"the recordings contradict the known {name} by {abs(size):.1f} standard uncertainties: check it, its "
+                "unit and uncertainty, and the loads"
+            )
+
+
+def _unpredicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
+    apart = {name: drop.apart for name, drop in drops.items() if drop.apart is not None}
+    usual = {name: median(far for other, far in apart.items() if other != name) for name in apart if len(apart) > _FEW}
+    alone = {name for name in usual if apart[name] > max(ALONE * usual[name], _FAR)}
+    missed = {
+        name: drop.unexpected
+        for name, drop in drops.items()
+        if drop.unexpected > (SLIGHTEST if name in alone else EXPLAINED)
+    }
+    if not missed:
+        return
+    worst = max(missed, key=missed.__getitem__)
+    error, residual = drops[worst].predicted or 0.0, drops[worst].predicted_residual or 0.0
+    size = f"{100 * error:.1f} % of its signal, {residual:.1f} times the noise"
+    if 2 * len(missed) > len(drops):
+        yield f"the drops do not predict each other: the vehicle that the others show misses {worst} by {size}"
+        return
+    rest = sorted(missed.keys() - {worst})
+    also = f", nor do they predict {', '.join(rest)}" if rest else ""
+    yield (
+        f"the other drops do not predict {worst}: the vehicle that they show misses it by {size}{also}; something was "
+        "different in it (load, tyre pressure, brake), or the model lacks a property of the vehicle"
+    )
+
+
+def _predicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
+    found = [(drop.predicted, drop.predicted_residual) for drop in drops.values()]
+    errors = [(error, residual) for error, residual in found if error is not None and residual is not None]
+    if errors:
+        error, residual = (max(each) for each in zip(*errors, strict=True))
+        at_worst = f"to {100 * error:.1f} % of its signal, {residual:.2f} times the noise, at worst"
+        yield f"each drop is predicted by the others, {at_worst}"
+
+
+def _undetermined(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Iterator[str]:
+    names = [name for name, estimate in parameters.items() if estimate.status == "unidentifiable"]
+    if names:
+        yield f"these drops do not determine {', '.join(names)}"
+    for name, estimate in parameters.items():
+        if estimate.std is not None and estimate.std > COARSE * fit.size(name):
+            yield f"{name} is only known to {100 * estimate.std / fit.size(name):.0f} %"
+
+
+def _below(size: float) -> str:
+    return f"below {max(100 * size, 0.1):.1f} %"

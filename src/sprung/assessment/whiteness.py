@@ -1,0 +1,107 @@
+"""What is left of each channel in each drop: how large, and whether it is like noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import fftconvolve
+
+from sprung.assessment.sensors import moments, sensor_noise
+from sprung.display import shown
+from sprung.estimation import FitStatistics, residual_records
+from sprung.preprocess import FreeDecay
+
+Real = NDArray[np.float64]
+
+_SPAN = 0.25
+"""s over which residuals are correlated with themselves: a quarter of a period of a body mode."""
+
+
+@shown
+@dataclass(frozen=True, slots=True)
+class Remainder:
+    """What is left of one channel in one drop.
+
+    Attributes
+    ----------
+    residual
+        m/s² root-mean-square.
+    over_noise
+        The ratio of that and the sensor's noise: at rest where a recording shows it, else what is left in all drops.
+    correlation, lag
+        The largest correlation of residuals with themselves within a quarter of a second, and how far they are apart, s.
+    colour
+        By how many standard deviations all these correlations together are more than those of white noise: Ljung and Box,
+        Biometrika 65 (1978) 297.
+    """
+
+    residual: float
+    over_noise: float
+    correlation: float
+    lag: float
+    colour: float
+
+
+def noise_of_sensors(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Real:
+    """Give the noise of each sensor at rest, where a recording shows it, and not more than a fit leaves.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    decays
+        What was fitted.
+
+    Returns
+    -------
+    ndarray
+        m/s² root-mean-square, shape (channel,).
+    """
+    seen = sensor_noise(decays, moments(residual_records(fit.fitted, decays)))
+    variance = seen.variance + seen.added
+    at_rest = np.where((seen.samples > 0) & (seen.variance > 0), np.sqrt(variance), np.inf)
+    return np.minimum(at_rest, fit.noise)
+
+
+def remainders(fit: FitStatistics, decays: Sequence[FreeDecay], noise: Real) -> tuple[dict[int, Remainder], ...]:
+    """Say what is left of each channel in each drop.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    decays
+        What was fitted.
+    noise
+        Of each sensor, m/s², shape (channel,).
+
+    Returns
+    -------
+    tuple of dict
+        For each drop, by the position of the channel; without channels that are left out.
+    """
+    return tuple(
+        {
+            int(channel): _remainder(record[channel], decay.rate, float(noise[channel]))
+            for channel in np.flatnonzero(decay.usable)
+        }
+        for decay, record in zip(decays, residual_records(fit.fitted, decays), strict=True)
+    )
+
+
+def _remainder(values: Real, rate: float, noise: float) -> Remainder:
+    count, size = len(values), float(np.sqrt(np.mean(values**2)))
+    lags = np.arange(1, min(max(int(_SPAN * rate), 1), count // 4) + 1)
+    correlations = fftconvolve(values, values[::-1])[count - 1 + lags] / max(count * size**2, np.finfo(float).tiny)
+    portmanteau = count * (count + 2) * float(np.sum(correlations**2 / (count - lags)))
+    largest = int(np.abs(correlations).argmax())
+    return Remainder(
+        residual=size,
+        over_noise=size / noise,
+        correlation=float(correlations[largest]),
+        lag=float(lags[largest] / rate),
+        colour=float((portmanteau - len(lags)) / np.sqrt(2 * len(lags))),
+    )

@@ -1,0 +1,257 @@
+"""What the parts of a campaign file must say together."""
+
+from __future__ import annotations
+
+import math
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sprung.campaign.plausibility import LIMITS, implausible
+from sprung.campaign.schema import KNOWABLE, CampaignFile, VehicleFileSchema
+from sprung.campaign.sizes import SMALLEST, check_sizes, check_together
+from sprung.errors import Problems, did_you_mean
+from sprung.estimate import Known
+from sprung.units import acceleration_factor
+from sprung.vehicle import EXTRAS, PARAMETERS, Sensor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from sprung.campaign.understanding import Draft
+
+CONTRADICTION = 4.0
+"""Two statements contradict each other from this many combined standard uncertainties on."""
+
+ROUNDING = 1e-6
+"""By how much, relatively, numbers given as exact may differ."""
+
+
+def check(draft: Draft[CampaignFile], problems: Problems) -> None:
+    """Check everything that needs no recording.
+
+    Parameters
+    ----------
+    draft
+        What was understood of the file.
+    problems
+        Takes up what is wrong.
+    """
+    _check_names(draft, problems)
+    _check_units(draft, problems)
+    check_body_sensors(draft, problems)
+    _check_loads(draft, problems)
+    _check_model(draft, problems)
+    _check_drops(draft, problems)
+    check_quantities(draft, problems)
+
+
+def check_quantities(draft: Draft[CampaignFile], problems: Problems) -> None:
+    """Check every size by itself, and what several of them say together.
+
+    Parameters
+    ----------
+    draft
+        What was understood of the file.
+    problems
+        Takes up what is wrong.
+    """
+    check_sizes(draft, problems)
+    known = _check_known(draft, problems)
+    check_together(draft, known, problems)
+    _check_sums(draft, known, problems)
+
+
+def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
+    """Nothing may be named twice."""
+    file = draft.file
+    named: dict[tuple[str, str], list[tuple[str, str, object]]] = {
+        ("sensor", "channel"): [("channel", sensor.channel, sensor.logger) for sensor in file.sensor],
+        ("load", "name"): [("name", load.name, None) for load in file.load],
+        # "./a.csv" is "a.csv"; one file may hold several drops, each in its window.
+        ("drop", "file"): [
+            ("files" if drop.files else "file", ", ".join(str(PurePath(one)) for one in drop.recordings), drop.window)
+            for drop in file.drop
+        ],
+        ("drop", "name"): [("name", drop.name or "", None) for drop in file.drop],
+    }
+    remedies = {("drop", "file"): "Each drop has its own recording, or its own window of one."}
+    for (section, kind), entries in named.items():
+        first: dict[tuple[str, object], int] = {}
+        for index, (key, name, beside) in zip(draft.numbered(section), entries, strict=True):
+            if not name or first.setdefault((name, beside), index) == index:
+                continue
+            found = f"'{name}', which {section}[{first[name, beside] + 1}] has too"
+            expected = f"a {key} of its own for every {section}"
+            problems.add(
+                draft.where(section, index, key),
+                found,
+                expected,
+                remedies.get((section, kind), "Rename one, or remove it."),
+            )
+
+
+def refused_unit(sensor: Sensor) -> str | None:
+    """Give the reason why a sensor's own unit cannot be; None where it can.
+
+    Parameters
+    ----------
+    sensor
+        The sensor.
+    """
+    try:
+        acceleration_factor("m/s^2" if sensor.unit is None else sensor.unit)
+    except ValueError as error:
+        return str(error)
+    return None
+
+
+def _check_units(draft: Draft[CampaignFile], problems: Problems) -> None:
+    for index, sensor in zip(draft.numbered("sensor"), draft.file.sensor, strict=True):
+        reason = refused_unit(sensor)
+        if reason is not None:
+            do = reason.rpartition("acceleration. ")[2]
+            problems.add(draft.where("sensor", index, "unit"), f"'{sensor.unit}'", "a unit of acceleration", do)
+
+
+def check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
+    """Check that the body's sensors tell bounce, pitch and roll apart: three unknowns, three sensors not on one line.
+
+    Parameters
+    ----------
+    draft
+        What was understood of the file.
+    problems
+        Takes up what is wrong.
+    """
+    if not draft.complete("sensor") or _left_to_defaults(draft, "sensor"):
+        return
+    if any(sensor.on == "body" and sensor.position is None for sensor in draft.file.sensor):
+        return  # said already
+    placed = [
+        sensor.position[:2] for sensor in draft.file.sensor if sensor.on == "body" and sensor.position is not None
+    ]
+    if any(not LIMITS["x"].hold(length) for position in placed for length in position):
+        return  # said already, and what they span is not worth saying
+    if len(placed) < 3:
+        found, do = f"{len(placed)} sensors on the body", 'Add [[sensor]] entries with on = "body".'
+        problems.add(draft.where("sensor"), found, "at least 3, to tell bounce, pitch and roll apart", do)
+        return
+    across = np.linalg.svd(np.array(placed) - np.mean(placed, axis=0), compute_uv=False)
+    if across[1] <= 0.01 * across[0]:
+        found = "body sensors that all sit on one line, seen from above"
+        do = "Correct their x and y; if they are right, pitch cannot be told from roll: move a sensor off the line."
+        problems.add(draft.where("sensor"), found, "at least 3 that span an area", do)
+
+
+def _left_to_defaults(draft: Draft[CampaignFile], section: str) -> bool:
+    """Say whether a vehicle file leaves its sensors or drops to the simulation."""
+    return isinstance(draft.file, VehicleFileSchema) and section not in draft.document
+
+
+def _check_drops(draft: Draft[CampaignFile], problems: Problems) -> None:
+    if not draft.file.drop and draft.complete("drop") and not _left_to_defaults(draft, "drop"):
+        problems.add(draft.where("drop"), "no drops", "at least one [[drop]]", "Add a [[drop]] for each recording.")
+
+
+def _check_loads(draft: Draft[CampaignFile], problems: Problems) -> None:
+    if ("load",) in draft.lost:
+        return
+    written = draft.document.get("load", [])
+    names = {"empty"} | {entry.get("name") for entry in written if isinstance(entry, dict)}
+    for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
+        if drop.load and drop.load not in names and ("load" in draft.document or draft.complete("load")):
+            do = did_you_mean(drop.load, [name for name in names if isinstance(name, str)])
+            problems.add(draft.where("drop", index, "load"), f"'{drop.load}'", "'empty' or the name of a [[load]]", do)
+
+
+def _check_model(draft: Draft[CampaignFile], problems: Problems) -> None:
+    model = draft.file.model
+    for key, names in (("extras", model.extras or ()), ("forbid", model.forbid)):
+        for name in names:
+            if name not in EXTRAS:
+                where, expected = draft.where("model", key), f"any of {', '.join(EXTRAS)}"
+                problems.add(where, f"'{name}'", expected, did_you_mean(name, EXTRAS))
+    for name in sorted(set(model.extras or ()) & set(model.forbid)):
+        do = "Take it out of one of the two."
+        problems.add(draft.where("model", "forbid"), f"'{name}', which extras asks for", "an extra not in extras", do)
+    apart = [name for name in ("t_f1", "t_f2", "t_r1", "t_r2") if name in draft.file.known]
+    if model.tracks == "shared" and apart:
+        found = f'"shared", and {apart[0]} in [known]'
+        do = f'Give {apart[0][:-1]} instead of {apart[0]}, or tracks = "separate".'
+        problems.add(draft.where("model", "tracks"), found, "t_f and t_r, which springs and dampers share", do)
+
+
+def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, Known]:
+    """Give what is known and possible: the wheelbase too."""
+    known: dict[str, Known] = {}
+    for name, measured in draft.file.known.items():
+        where = draft.where("known", name)
+        if name not in KNOWABLE:
+            do = "Write it under [vehicle]." if name == "wheelbase" else did_you_mean(name, KNOWABLE)
+            problems.add(where, f"the unknown quantity '{name}'", "the name of a parameter, or of a weighed mass", do)
+            continue
+        unit, meaning, positive = "kg", name.replace("_", " "), True
+        if name in PARAMETERS:
+            unit, meaning, positive = PARAMETERS[name].unit, PARAMETERS[name].meaning, PARAMETERS[name].positive
+        beyond = implausible(name, measured.value)
+        if measured.value < 0 or (measured.value < SMALLEST and positive):
+            sign = "positive" if positive else "not negative"
+            problems.add(where, f"{measured.value:g}", f"a {sign} number: the {meaning} in {unit}", "Correct it.")
+        elif beyond is not None:
+            expected, do = beyond
+            problems.add(where, f"{measured.value:g}", f"{expected}: the {meaning}", do)
+        else:
+            known[name] = measured.known
+    wheelbase = draft.file.vehicle.wheelbase
+    if wheelbase is not None:
+        where, length = draft.where("vehicle", "wheelbase"), wheelbase.value
+        beyond = implausible("wheelbase", length)
+        if length < SMALLEST:
+            expected = "a positive number: front axle to rear axle in m"
+            problems.add(where, f"{length:g}", expected, "Correct it.")
+        elif beyond is not None:
+            problems.add(where, f"{length:g}", *beyond)
+        else:
+            known["wheelbase"] = wheelbase.known
+    return known
+
+
+def contradict(one: Known, other: Known) -> bool:
+    """Say whether two statements about one quantity cannot both hold.
+
+    Parameters
+    ----------
+    one, other
+        The statements.
+    """
+    allowed = CONTRADICTION * math.hypot(one.std, other.std)
+    return abs(one.value - other.value) > max(allowed, ROUNDING * abs(other.value))
+
+
+def _sum(parts: Iterable[Known]) -> Known:
+    parts = tuple(parts)
+    return Known(sum(part.value for part in parts), math.hypot(*(part.std for part in parts)))
+
+
+def _said(known: Known) -> str:
+    return f"{known.value:.10g}" if known.exact else f"{known.value:.10g} ± {known.std:.3g}"
+
+
+def _check_sums(draft: Draft[CampaignFile], known: Mapping[str, Known], problems: Problems) -> None:
+    """Two axles make a vehicle: in weight and in length."""
+    parameters = getattr(draft.file, "parameters", {})
+    lengths = {name: Known(parameters[name]) if name in parameters else known.get(name) for name in ("a", "b")}
+    masses = {name: known.get(name) for name in ("front_axle_mass", "rear_axle_mass")}
+    for section, name, unit, parts in (("known", "total_mass", "kg", masses), ("vehicle", "wheelbase", "m", lengths)):
+        given = {part: value for part, value in parts.items() if value is not None}
+        if name not in known or not given:
+            continue
+        whole, together = known[name], _sum(given.values())
+        # With one part alone the other is missing: then only a whole that is too small is a contradiction.
+        if contradict(whole, together) and (len(given) == len(parts) or whole.value < together.value):
+            found = f"{_said(whole)} {unit}, but {' + '.join(given)} = {_said(together)} {unit}"
+            expected = f"the sum of {' and '.join(parts)}, to within their uncertainty"
+            do = "Correct one of them, or say how sure they are: { value = ..., std = ... }."
+            problems.add(draft.where(section, name), found, expected, do)

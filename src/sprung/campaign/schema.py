@@ -1,0 +1,92 @@
+"""The campaign file and the vehicle file, key by key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from sprung.campaign.campaign import Drop, ModelChoice, TestRecord
+from sprung.estimate import Known
+from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
+
+SCHEMA = 1
+"""The schema that this version reads and writes."""
+
+KNOWABLE = (*PARAMETERS, *(name for name in DERIVED if name != "wheelbase"))
+"""What ``[known]`` may hold; the wheelbase has its place in ``[vehicle]``."""
+
+
+class Measured(BaseModel):
+    """A number, or { value = ..., std = ... }."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    value: Finite
+    """SI."""
+    std: NotNegative = 0.0
+    """Standard uncertainty; 0 means exact."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _number(cls, given: object) -> object:
+        return {"value": given} if isinstance(given, int | float) and not isinstance(given, bool) else given
+
+    @property
+    def known(self) -> Known:
+        """The same as the record of the estimate room."""
+        return Known(self.value, self.std)
+
+
+class VehicleSection(BaseModel):
+    """``[vehicle]``: what is measured on the vehicle with a tape."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    name: str | None = Field(default=None, min_length=1)
+    """For people to read; the folder's name where it is left out."""
+    identification: str | None = Field(default=None, min_length=1)
+    """Chassis number, registration or test number, for the record."""
+    wheelbase: Measured | None = None
+    """Front axle to rear axle, m."""
+    cg_height: Positive | None = None
+    """Of the sprung mass's centre of gravity above the ground, m; left out, loads count as level with it."""
+    wheel_height: Positive | None = None
+    """Of the wheel centres above the ground, m."""
+    roll_axis_height: Finite | None = None
+    """Of the axis about which the body rolls, above the ground, m."""
+
+    @property
+    def heights(self) -> Heights:
+        """The same as the record of the vehicle room."""
+        return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
+
+
+class CampaignFile(BaseModel):
+    """campaign.toml."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    number: int = Field(default=SCHEMA, alias="schema")
+    """Version of the keys in this file."""
+    vehicle: VehicleSection = VehicleSection()
+    """What is measured on the vehicle with a tape."""
+    test: TestRecord = TestRecord()
+    """When, where and by whom the vehicle was tested."""
+    known: Mapping[str, Measured] = Field(default_factory=dict)
+    """Measured beforehand: any parameter, or a weighed mass; the names are those of `KNOWABLE`."""
+    model: ModelChoice = ModelChoice()
+    """What the model has; what is left out, sprung decides and says why."""
+    sensor: tuple[Sensor, ...] = ()
+    """One accelerometer each."""
+    load: tuple[Load, ...] = ()
+    """One known load each; the load `empty` always exists."""
+    drop: tuple[Drop, ...] = ()
+    """One release off the blocks each."""
+
+
+class VehicleFileSchema(CampaignFile):
+    """VEHICLE.toml of ``sprung simulate``: a campaign file with the vehicle's parameters and without recordings."""
+
+    parameters: Mapping[str, Finite] = Field(default_factory=dict)
+    """By the names of `sprung.vehicle.PARAMETERS`, SI."""

@@ -1,0 +1,244 @@
+"""From the columns of a file to a recording: one clock, the campaign's channels, m/s², positive up."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sprung.campaign.recording import Recording
+from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
+from sprung.formats import MOST_MISSING, SLOWEST, RegularTimeBase, Table, fill_gaps, regularise_time_base, split_unit
+from sprung.units import acceleration_factor
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import NDArray
+
+    from sprung.vehicle import Sensor
+
+LARGEST = 1e6
+"""m/s²: no accelerometer reads more; loggers write such numbers where they have none."""
+
+_LATEST, _SHORTEST = 1e12, 1e-9
+"""s: no clock shows more, and no sample follows another sooner."""
+
+
+def column_of(table: Table, channel: str) -> tuple[int, ...]:
+    """Find a sensor's columns: of just that name, or else of that name with a unit behind it.
+
+    Parameters
+    ----------
+    table
+        The file's columns.
+    channel
+        As the campaign file has it, with or without the unit that the file appends.
+
+    Returns
+    -------
+    tuple of int
+        Indices of the columns: one, or none, or several that the name does not tell apart.
+    """
+    wanted = split_unit(channel)
+    exact = tuple(i for i, column in enumerate(zip(table.channels, table.units, strict=True)) if column == wanted)
+    return exact or tuple(i for i, name in enumerate(table.channels) if name == channel.strip())
+
+
+def own_unit(sensor: Sensor, written: str | None) -> str:
+    """Give the unit of a channel: the sensor's, otherwise what the file says, otherwise m/s².
+
+    Parameters
+    ----------
+    sensor
+        The sensor.
+    written
+        What the file says; None where it says nothing.
+    """
+    return sensor.unit or written or "m/s^2"
+
+
+def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recording:
+    """Make the recording of one drop.
+
+    Parameters
+    ----------
+    table
+        What its file holds.
+    sensors
+        The campaign's, in the order of the channels.
+    name
+        The file's, as the campaign names it.
+
+    Returns
+    -------
+    Recording
+        Its faults name what was missing and was filled in, and the channels left out.
+
+    Raises
+    ------
+    InputError
+        If the clock does not run forward or is too slow, a needed cell holds text or a unit is none of acceleration;
+        all problems at once.
+    """
+    problems = Problems()
+    faults: list[Fault] = []
+    left_out: list[Fault] = []
+    done: dict[str, list[str]] = {}
+    full_scale: list[float | None] = []
+    with problems.collecting():
+        _refuse_backward(table, name)
+    raw: dict[int, NDArray[np.float64]] = {}
+    needed = [column[0] for sensor in sensors if len(column := column_of(table, sensor.channel)) == 1]
+    table = _where_all_reach(table, needed)
+    with problems.collecting():
+        raw = dict(zip(needed, table.take(needed), strict=True))
+    problems.raise_if_any()
+    values = np.full((len(sensors), table.samples), np.nan)
+    for sensor, row in zip(sensors, values, strict=True):
+        with problems.collecting():
+            found = _channel(table, raw, sensor, sensors, name)
+            if isinstance(found, Fault):
+                left_out.append(found)
+                full_scale.append(None)
+            else:
+                row[:], step, factor = found
+                done.setdefault(step, []).append(sensor.channel)
+                full_scale.append(None if sensor.range is None else sensor.range * factor)
+    del raw
+    problems.raise_if_any()
+
+    count = values.shape[1]
+    samples = _evened(table, values, name)
+    useless = np.isnan(samples.values).all() and bool(samples.faults)
+    if samples.rate < SLOWEST and not useless:
+        raise InputError([_too_slow(samples.rate, name)])
+    if useless:
+        faults, left_out = [*samples.faults], []
+    else:
+        wheres = [f"{name}: {sensor.channel}" for sensor in sensors]
+        mended = fill_gaps(
+            samples.values, samples.lost, samples.rate, wheres, lambda sample: table.place(int(samples.origin[sample]))
+        )
+        samples = samples._replace(values=mended.values, start=samples.start + mended.first / samples.rate)
+        faults = [*samples.faults, *left_out, *mended.faults]
+        left_out += mended.left_out
+        if np.isnan(samples.values).all():
+            do = "Check the logger and its cables, and the channel names in the campaign file."
+            left_out.append(Fault("missing", name, "no channel of it is usable; the drop is left out", do))
+            faults.append(left_out[-1])
+    history = (
+        f"read {count} samples at {samples.rate:.6g} Hz, from {samples.start:.6g} s on",
+        *table.notes,
+        *(f"{', '.join(channels)}: {step}" for step, channels in done.items()),
+        *(f"{fault.where}: {f'left out ({fault.code})' if fault in left_out else fault.what}" for fault in faults),
+    )
+    return Recording(
+        name=name,
+        channels=tuple(sensor.channel for sensor in sensors),
+        values=samples.values,
+        start=samples.start,
+        rate=samples.rate,
+        history=history,
+        faults=tuple(faults),
+        full_scale=tuple(full_scale),
+        shares=_shares(table, sensors),
+    )
+
+
+def _shares(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
+    """Give the samples that were taken for each one that is there, of each channel; nothing where all have one clock."""
+    columns = [column_of(table, sensor.channel)[:1] for sensor in sensors]
+    slower = [
+        table.resampled[column[0]].share if column and column[0] in table.resampled else 1.0 for column in columns
+    ]
+    return tuple(slower) if min(slower, default=1.0) < 1 else ()
+
+
+def _where_all_reach(table: Table, needed: Sequence[int]) -> Table:
+    """Leave out the few samples at the ends that columns of another clock do not reach."""
+    reach = [table.resampled[column] for column in needed if column in table.resampled]
+    reach = [one for one in reach if one.last - one.first >= (1 - MOST_MISSING) * table.samples]
+    first, last = max((one.first for one in reach), default=0), min((one.last for one in reach), default=table.samples)
+    return table.part(first, last) if last - first < table.samples else table
+
+
+def _channel(
+    table: Table, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
+) -> tuple[NDArray[np.float64], str, float] | Fault:
+    """Give one sensor's samples, NaN where one is missing, what was done to them and the unit; or why it is left out."""
+    where, columns = f"{file}: {sensor.channel}", column_of(table, sensor.channel)
+    if not columns:
+        what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
+        unclaimed = set(table.channels) - {split_unit(other.channel)[0] for other in sensors}
+        meant = f" {did_you_mean(sensor.channel, unclaimed)}".replace("Allowed:", "It also has:") if unclaimed else ""
+        return Fault("missing", where, what, f"Check the sensor's cable and the logger's channel names.{meant}")
+    if len(columns) > 1:
+        found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."
+        raise InputError([Problem(where, found, "one column per channel", do)])
+    column = columns[0]
+    samples, unit = raw[column], own_unit(sensor, table.units[column])
+    if not np.isfinite(samples).all() and (problem := table.spoilt(column)) is not None:
+        raise InputError([problem])
+    if not np.isfinite(samples).any():
+        do = "Check the sensor's cable and the logger, or export the recording again."
+        return Fault("missing", where, "every sample is missing; the channel is left out of this drop", do)
+    try:
+        factor = acceleration_factor(unit)
+    except ValueError:
+        do = 'Give the sensor a unit in the campaign file, such as unit = "g", if that is what the numbers are.'
+        raise InputError([Problem(where, f"the unit '{unit}'", "a unit of acceleration", do)]) from None
+    no_number = ~(np.abs(samples) <= LARGEST / factor)
+    if no_number.all():
+        first = f"the first {samples[0]:.4g} {unit}"
+        what = f"every sample reads more than any accelerometer can, {first}; the channel is left out of this drop"
+        return Fault("missing", where, what, "Check the sensor's cable and its unit.")
+    source = (
+        ""
+        if sensor.unit
+        else ", as the file says"
+        if table.units[column]
+        else ", as neither the file nor the campaign names a unit"
+    )
+    step = f"read in {unit}{source}" + (f", times {factor:g} to m/s²" if factor != 1 else "")
+    sign = -1.0 if sensor.direction == "down" else 1.0
+    step += ", turned from down to up" if sign < 0 else ""
+    return sign * factor * np.where(no_number, np.nan, samples), step, factor
+
+
+def _refuse_backward(table: Table, file: str) -> None:
+    time = table.time
+    if len(time) < 2:
+        found, do = "a single sample" if len(time) else "no samples", "Export it again."
+        raise InputError([Problem(file, found, "the samples of a whole drop", do)])
+    far = np.flatnonzero(~(np.abs(time) <= _LATEST))
+    if far.size:
+        where, found = f"{file}: {table.place(int(far[0]))}", f"the time {time[far[0]]:.9g} s"
+        raise InputError([Problem(where, found, "the time of a sample, in s", "Export the recording again.")])
+    backward = np.flatnonzero(~(np.diff(time) > 0)) + 1
+    if backward.size:
+        first = int(backward[0])
+        again = f" (the first of {backward.size} such places)" if backward.size > 1 else ""
+        found = f"the time {time[first]:.9g} s after {time[first - 1]:.9g} s{again}"
+        do = "Remove the repeated part, or export the time with more digits."
+        raise InputError(
+            [Problem(f"{file}: {table.place(first)}", found, "a time that increases from line to line", do)]
+        )
+    usual = float(np.median(np.diff(time)))
+    if usual < _SHORTEST:
+        found, do = f"{usual:.3g} s from one sample to the next", "See that the time is in s, or name its unit."
+        raise InputError([Problem(file, found, f"steps of {_SHORTEST:g} s or more", do)])
+
+
+def _evened(table: Table, values: NDArray[np.float64], file: str) -> RegularTimeBase:
+    if isinstance(table.clock, np.ndarray):
+        return regularise_time_base(table.clock, values, table.place, file)
+    count = values.shape[1]
+    return RegularTimeBase(values, 0.0, table.clock, np.zeros(count, dtype=bool), np.arange(count))
+
+
+def _too_slow(rate: float, file: str) -> Problem:
+    do = "Record at 200 Hz or more."
+    if 1e3 * rate >= SLOWEST:
+        do += " If the time is written in ms, name its column 'time [ms]'; if it only counts samples, give it in s."
+    return Problem(file, f"{rate:.4g} samples per second", f"at least {SLOWEST:g}, to see wheels hop", do)

@@ -1,0 +1,286 @@
+"""From what each recording shows to the campaign's sensors and drops: all recordings speak together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import permutations
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.drafting.channel import Channel
+from sprung.drafting.loggers import called, together
+from sprung.drafting.look import Look
+from sprung.drafting.names import load_named, part_named, station_named, wheels_named
+from sprung.drafting.records import DraftDrop, DraftSensor
+from sprung.preprocess import FoundDrop, Place, slower_drops, tell_wheels, wheel_score
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import WHEELS, Wheel
+
+Real = NDArray[np.float64]
+
+_STILL = 8.0
+"""Largest reading over the noise at rest, in any drop, below which a channel is no sensor on the vehicle."""
+
+_CLEARLY = 2.0
+"""By how much more a corner of the body falls with its own wheels than with the others."""
+
+_TAKEN_EMPTY = "the name of the file tells no load: taken to be empty"
+
+_PROPOSED = "loaded"
+"""What the load is called of drops that show one."""
+
+_SHORT = 20.0
+"""s: a recording with one drop, no longer than this, needs no window."""
+
+
+def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftDrop, ...], Mapping[str, str]]:
+    """Tell sensors and drops from all recordings together.
+
+    Parameters
+    ----------
+    looks
+        At each recording; at least one of them holds a drop.
+
+    Returns
+    -------
+    sensors
+        In the order in which the recordings have them.
+    drops
+        In the order of the recordings and of time.
+    still
+        Channels that no drop moves, and what that means.
+    """
+    channels = {channel.name: channel for one in looks if one.drops for channel in one.channels}
+    names = tuple(channels)
+    recorded = list(together(looks))
+    drops = [_of(drop, held, names) for _, drop, held in recorded]
+    loudness = np.max([np.nan_to_num(drop.seen.peak / np.maximum(drop.seen.noise, 1e-9)) for drop in drops], axis=0)
+    still = {name: "no drop moves it" for name, size in zip(names, loudness, strict=True) if size < _STILL}
+    moving = tuple(name for name in names if name not in still)
+    drops, names = [_of(drop, names, moving) for drop in drops], moving
+
+    hints = [wheels_named(called(files)) for files, _, _ in recorded]
+    score = wheel_score(drops)
+    parts = [_part(name, float(score[i]), drops, i) for i, name in enumerate(names)]
+    places, by_files = _places(
+        names, [part for part, _ in parts], tell_wheels(drops, [part for part, _ in parts]), hints
+    )
+    told = tell_wheels(drops, places)
+    scales = _most(looks)
+    sensors = tuple(
+        _sensor(
+            _agreed(name, looks),
+            place,
+            (*notes, *(by_files if place != before and place in WHEELS else ())),
+            scales,
+            told,
+            i,
+        )
+        for i, (name, place, (before, notes)) in enumerate(zip(names, places, parts, strict=True))
+    )
+    several = Counter(files for files, _, _ in recorded)
+    drafted = [
+        _drop(
+            files, drop, hint, names, next(one for one in looks if one.file.name == files[0]), several[files], sensors
+        )
+        for (files, _, _), drop, hint in zip(recorded, told, hints, strict=True)
+    ]
+    return sensors, _with_loads(drafted, sensors, [_says_load(files) for files, _, _ in recorded]), still
+
+
+def _says_load(files: Sequence[str]) -> bool:
+    """Say whether the names of a drop's files tell its load."""
+    return any(load_named(name) is not None for name in (called(files), *files))
+
+
+def _with_loads(
+    drops: Sequence[DraftDrop], sensors: Sequence[DraftSensor], named: Sequence[bool]
+) -> tuple[DraftDrop, ...]:
+    """Group the drops of which no name tells the load by how the vehicle swings, and propose a load for the slower ones."""
+    body = [i for i, sensor in enumerate(sensors) if sensor.on == "body"]
+    open_ = [
+        i for i, (drop, told) in enumerate(zip(drops, named, strict=True)) if not told and drop.found.slow is not None
+    ]
+    motions = [found.at(body) for i in open_ if (found := drops[i].found.slow) is not None]
+    slower = slower_drops([drops[i].found.fell for i in open_], motions) if body else ()
+    given = list(drops)
+    for i, is_slower in zip(open_, slower, strict=False):
+        drop = given[i]
+        notes = tuple(note for note in drop.notes if note != _TAKEN_EMPTY)
+        if is_slower is None:
+            note = "nothing tells whether a load was on the vehicle, as it was in others of these drops"
+            given[i] = replace(drop, load=None, notes=(*notes, note))
+            continue
+        load, pace = (_PROPOSED, "more slowly") if is_slower else ("empty", "more quickly")
+        note = f"swings {pace} than others of the same wheels: taken to be {load}"
+        given[i] = replace(drop, load=load, notes=(*notes, note), proposed=True)
+    return tuple(given)
+
+
+def _of(drop: FoundDrop, held: Sequence[str], names: Sequence[str]) -> FoundDrop:
+    """Give a drop with the readings of other channels than those it holds, or in another order."""
+    channels = [held.index(name) if name in held else None for name in names]
+    return replace(drop, seen=drop.seen.at(channels), slow=None if drop.slow is None else drop.slow.at(channels))
+
+
+def _part(
+    name: str, score: float, drops: Sequence[FoundDrop], channel: int
+) -> tuple[Literal["body", "wheel"], tuple[str, ...]]:
+    """Tell body from wheel by how it moves; by its name only where it never fell."""
+    peak = float(np.nanmax([drop.seen.peak[channel] for drop in drops])) / STANDARD_GRAVITY
+    depth = float(np.nanmax([drop.seen.depth[channel] for drop in drops])) / STANDARD_GRAVITY
+    seen: Literal["body", "wheel"] = "wheel" if score > 1 else "body"
+    note = f"falls {depth:.2g} g below rest and lands with {peak:.2g} g: {'a wheel' if seen == 'wheel' else 'the body'}"
+    if 1 / 3 < score < 3:
+        note += ", but not clearly"
+    named = part_named(name)
+    if named == "wheel" and seen == "body" and depth < 0.2 * _deepest(drops):
+        return "wheel", ("a wheel by its name; none of the drops let it fall",)
+    if named is not None and named != seen:
+        note += f", though its name says {named}"
+    return seen, (note,)
+
+
+def _deepest(drops: Sequence[FoundDrop]) -> float:
+    return max(float(np.nanmax(drop.seen.depth)) for drop in drops) / STANDARD_GRAVITY
+
+
+def _places(
+    names: Sequence[str], parts: Sequence[Place], drops: Sequence[FoundDrop], hints: Sequence[tuple[Wheel, ...]]
+) -> tuple[list[Place], tuple[str, ...]]:
+    """Tell the wheels' stations: by the channels' names, or else by which of them fall in files named after wheels."""
+    places: list[Place] = [
+        station_named(name) or part if part == "wheel" else part for name, part in zip(names, parts, strict=True)
+    ]
+    unknown = [i for i, place in enumerate(places) if place == "wheel"]
+    free = [wheel for wheel in WHEELS if wheel not in places]
+    clues = [(set(drop.fell), set(hint)) for drop, hint in zip(drops, hints, strict=True) if hint]
+    if not unknown or len(unknown) > len(free) or not clues:
+        return places, ()
+    scored = sorted(
+        (
+            sum(
+                (i in fell) == (wheel in hint) for fell, hint in clues for i, wheel in zip(unknown, chosen, strict=True)
+            ),
+            chosen,
+        )
+        for chosen in permutations(free, len(unknown))
+    )
+    most, chosen = scored[-1]
+    ambiguous = len(scored) > 1 and scored[-2][0] == most
+    if ambiguous or most < 0.9 * len(clues) * len(unknown):
+        return places, ()
+    for i, wheel in zip(unknown, chosen, strict=True):
+        places[i] = wheel
+    return places, ("which wheel: from the drops in which it falls, by the names of their files",)
+
+
+def _agreed(name: str, looks: Sequence[Look]) -> Channel:
+    """Give what most recordings take a channel for."""
+    seen = [channel for one in looks if one.drops for channel in one.channels if channel.name == name]
+    usual = Counter((channel.unit, channel.direction, channel.coupling) for channel in seen).most_common(1)[0][0]
+    agreeing = [channel for channel in seen if (channel.unit, channel.direction, channel.coupling) == usual]
+    if len(agreeing) == len(seen):
+        return agreeing[0]
+    note = f"in {len(seen) - len(agreeing)} of {len(seen)} recordings it reads something else at rest"
+    return replace(agreeing[0], notes=(*agreeing[0].notes, note))
+
+
+def _most(looks: Sequence[Look]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    for one in looks:
+        for name, size in one.full_scale.items():
+            found[name] = max(size, found.get(name, 0.0))
+    return found
+
+
+def _sensor(
+    channel: Channel,
+    place: Place,
+    notes: tuple[str, ...],
+    scales: Mapping[str, float],
+    drops: Sequence[FoundDrop],
+    index: int,
+) -> DraftSensor:
+    direction, own = channel.direction, list(channel.notes)
+    if channel.coupling == "AC":
+        onsets = [float(drop.seen.onset[index]) for drop in drops if np.isfinite(drop.seen.onset[index])]
+        first = max(onsets, key=abs, default=0.0)
+        direction = "down" if first > 0 else "up"
+        own.append(
+            f"moves {'up' if first > 0 else 'down'} in its own direction when it falls, so it points {direction}"
+        )
+    corner = None
+    if place == "body":
+        corner, named = _corner(drops, index, direction != channel.direction), station_named(channel.name)
+        if corner is not None:
+            own.append(
+                f"moves most when the {_spoken(corner)} falls"
+                + (f", though its name says {_spoken(named)}" if named not in (None, corner) and named else "")
+            )
+    return DraftSensor(
+        channel=channel.name,
+        on=place,
+        corner=corner,
+        unit=channel.unit,
+        written=channel.written,
+        direction=direction,
+        coupling=channel.coupling,
+        full_scale=scales.get(channel.name),
+        notes=(*own, *notes),
+        logger=channel.logger,
+    )
+
+
+def _corner(drops: Sequence[FoundDrop], index: int, turned: bool) -> Wheel | None:
+    """Tell the corner of the body at which a sensor sits, from drops of one end and of one side."""
+    depths: dict[str, list[float]] = {key: [] for key in ("f", "r", "l", "R")}
+    for drop in drops:
+        ends, sides = {wheel[0] for wheel in drop.wheels}, {wheel[1] for wheel in drop.wheels}
+        onset = float(np.nan_to_num(drop.seen.onset[index]))
+        depth = max(onset if turned else -onset, 0.0)
+        if len(ends) == 1 and len(sides) == 2:
+            depths["f" if ends == {"f"} else "r"].append(depth)
+        if len(sides) == 1 and len(ends) == 2:
+            depths["l" if sides == {"l"} else "R"].append(depth)
+    if not all(depths.values()):
+        return None
+    front, rear, left, right = (float(np.mean(depths[key])) for key in ("f", "r", "l", "R"))
+    if max(front, rear) < _CLEARLY * min(front, rear) or max(left, right) < _CLEARLY * min(left, right):
+        return None
+    return next(w for w in WHEELS if w[0] == ("f" if front > rear else "r") and w[1] == ("l" if left > right else "r"))
+
+
+def _spoken(corner: Wheel) -> str:
+    return f"{'front' if corner[0] == 'f' else 'rear'} {'left' if corner[1] == 'l' else 'right'}"
+
+
+def _drop(
+    files: tuple[str, ...],
+    drop: FoundDrop,
+    hint: tuple[Wheel, ...],
+    names: Sequence[str],
+    one: Look,
+    several: int,
+    sensors: Sequence[DraftSensor],
+) -> DraftDrop:
+    notes = list(drop.why(names))
+    wheels = drop.wheels
+    if wheels and hint and set(wheels) != set(hint):
+        notes.append(f"these wheels fell, though the name of the file says {', '.join(hint)}")
+    if not wheels and hint:
+        wheels = hint
+        notes.append("which wheels fell: by the name of the file")
+        if any(sensor.on != "body" for sensor in sensors) and len(drop.fell) != len(hint):
+            notes.append(f"though {len(drop.fell)} channels show the fall of a wheel")
+    alone = several == 1 and one.file.end - one.file.start <= _SHORT
+    window = None if alone or len(files) > 1 else drop.window
+    load = load_named(called(files)) or next((load for load in map(load_named, files) if load is not None), None)
+    if load is None and several == 1:
+        load = "empty"
+        notes.append(_TAKEN_EMPTY)
+    return DraftDrop(files, window, load, wheels, drop, tuple(notes))

@@ -1,0 +1,247 @@
+"""What a draft holds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from sprung.campaign import FILE, SCHEMA_FILE, kind_of, schema_text
+from sprung.display import shown
+from sprung.errors import Problem
+from sprung.files import atomic_write
+from sprung.preprocess import FoundDrop, Place, Refusal
+from sprung.vehicle import Wheel
+
+
+@dataclass(frozen=True)
+class DraftSensor:
+    """A sensor, as far as its readings and its name tell.
+
+    Attributes
+    ----------
+    channel
+        Its name.
+    on
+        The body, a wheel station, or just "wheel" where nobody knows which.
+    corner
+        The corner of the body that its name means.
+    unit
+        In which it reads; None where nothing tells.
+    written
+        The unit that the files name.
+    direction
+        Which way its positive reading points.
+    coupling
+        DC where it feels gravity at rest, AC where it reads nothing.
+    full_scale
+        A reading at which it stays for some samples, in its unit.
+    notes
+        What was found and what was concluded from it, in words.
+    logger
+        The part of its recordings' names that tells its logger, where several loggers' channels have one name; the channel
+        then begins with it.
+    """
+
+    channel: str
+    on: Place
+    corner: Wheel | None
+    unit: str | None
+    written: str | None
+    direction: Literal["up", "down"]
+    coupling: Literal["DC", "AC"]
+    full_scale: float | None
+    notes: tuple[str, ...]
+    logger: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class DraftDrop:
+    """A drop.
+
+    Attributes
+    ----------
+    files
+        The recording, or the recordings of several loggers.
+    window
+        s on the file's clock, where the recording holds more than this drop.
+    load
+        Name of the load; None where nothing tells.
+    wheels
+        Which fell; none where nothing tells.
+    found
+        What was seen of it.
+    notes
+        What was found and what was concluded from it, in words.
+    proposed
+        Whether its load is taken from how the vehicle swings, and not from a name.
+    """
+
+    files: tuple[str, ...]
+    window: tuple[float, float] | None
+    load: str | None
+    wheels: tuple[Wheel, ...]
+    found: FoundDrop
+    notes: tuple[str, ...]
+    proposed: bool = False
+
+    @property
+    def kind(self) -> str | None:
+        """What such a drop is called."""
+        return kind_of(self.wheels) if self.wheels else None
+
+
+@dataclass(frozen=True, eq=False)
+class DraftFile:
+    """A recording that was read.
+
+    Attributes
+    ----------
+    name
+        Relative to the folder.
+    rate
+        Samples per second.
+    start, end
+        s on its clock.
+    drops
+        How many drops were found in it.
+    refused
+        The largest of the other events, and why they are no drops.
+    events
+        How many other events there were.
+    left_out
+        Channels that are no vertical accelerations, and why.
+    """
+
+    name: str
+    rate: float
+    start: float
+    end: float
+    drops: int
+    refused: tuple[Refusal, ...]
+    events: int
+    left_out: Mapping[str, str]
+
+
+@shown
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """A drafted campaign.
+
+    Attributes
+    ----------
+    folder
+        Where its recordings are.
+    name
+        Of the vehicle, after the folder.
+    sensors, drops
+        What was found.
+    files
+        The recordings that were read.
+    unreadable
+        Those that were not, and why.
+    text
+        The campaign file.
+    missing
+        Where its gaps are, and what is to be written there.
+    """
+
+    folder: Path
+    name: str
+    sensors: tuple[DraftSensor, ...]
+    drops: tuple[DraftDrop, ...]
+    files: tuple[DraftFile, ...]
+    unreadable: Mapping[str, tuple[Problem, ...]]
+    text: str = ""
+    missing: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """Names of the loads, without ``empty``, in the order in which they come up."""
+        return tuple(dict.fromkeys(drop.load for drop in self.drops if drop.load not in (None, "empty") and drop.load))
+
+    @property
+    def path(self) -> Path:
+        """Where the campaign file goes."""
+        return self.folder / FILE
+
+    def write(self, *, overwrite: bool = False) -> Path:
+        """Write the campaign file and, for editors, its JSON Schema beside it; whole or not at all.
+
+        Parameters
+        ----------
+        overwrite
+            Whether files of these names that sprung did not write, or that were changed since, are replaced.
+
+        Returns
+        -------
+        Path
+            The campaign file.
+
+        Raises
+        ------
+        InputError
+            If such files would be overwritten, with their list, or the folder cannot be written to.
+        """
+        files = {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()}
+        atomic_write(self.folder, files, overwrite=overwrite)
+        return self.path
+
+    def document(self) -> dict[str, Any]:
+        """Give everything as one JSON document."""
+        return {
+            "campaign": str(self.path),
+            "sensors": [
+                {
+                    "channel": sensor.channel,
+                    "on": sensor.on,
+                    "corner": sensor.corner,
+                    "unit": sensor.unit,
+                    "direction": sensor.direction,
+                    "coupling": sensor.coupling,
+                    "full_scale": sensor.full_scale,
+                    "notes": list(sensor.notes),
+                }
+                for sensor in self.sensors
+            ],
+            "loads": list(self.loads),
+            "drops": [
+                {
+                    "files": list(drop.files),
+                    "release": _rounded(drop.found.release),
+                    "landing": _rounded(drop.found.landing),
+                    "faded": _rounded(drop.found.faded),
+                    "begin": _rounded(drop.found.begin),
+                    "end": _rounded(drop.found.end),
+                    "window": None if drop.window is None else [_rounded(time) for time in drop.window],
+                    "load": drop.load,
+                    "wheels": list(drop.wheels),
+                    "kind": drop.kind,
+                    "notes": list(drop.notes),
+                }
+                for drop in self.drops
+            ],
+            "files": [
+                {
+                    "file": file.name,
+                    "rate": _rounded(file.rate),
+                    "start": _rounded(file.start),
+                    "end": _rounded(file.end),
+                    "drops": file.drops,
+                    "events": file.events,
+                    "refused": [{"time": _rounded(one.time), "why": one.why} for one in file.refused],
+                    "left_out": dict(file.left_out),
+                }
+                for file in self.files
+            ],
+            "unreadable": {name: [str(problem) for problem in problems] for name, problems in self.unreadable.items()},
+            "missing": [{"where": where, "what": what} for where, what in self.missing],
+            "next": ["sprung", "check", str(self.path)],
+        }
+
+
+def _rounded(number: float) -> float | None:
+    return round(float(number), 6) if np.isfinite(number) else None

@@ -1,0 +1,84 @@
+"""From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
+
+from sprung.estimation.characteristics import characteristics_of
+from sprung.estimation.closed_form import Likelihood, LikelihoodAt
+from sprung.estimation.contact import clear_of_splines, fit_from_contact
+from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
+from sprung.estimation.fault_scores import FaultScore, score_faults
+from sprung.estimation.fit import NEAR, STARTS, FitResult, escape_local_optimum, fit_linear, score_linear_term
+from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
+from sprung.estimation.monomials import parameters_from_matrices, shape_of
+from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms, wald_test
+from sprung.estimation.nonlinear_scores import score_nonlinear_terms
+from sprung.estimation.overdispersion import autocorrelation_inflation, corrections
+from sprung.estimation.prediction import Prediction, predictions
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.problem import CONVERGED, NO_INFORMATION, RANK, identifiable_subspace
+from sprung.estimation.profile import profiled
+from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
+from sprung.estimation.statistics import (
+    FitStatistics,
+    Inflater,
+    fit_jointly,
+    overdispersion_of,
+    residual_records,
+    uncertainty_of,
+)
+from sprung.estimation.subspace import canonical_basis
+from sprung.estimation.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
+
+__all__ = [
+    "CONVERGED",
+    "NEAR",
+    "NO_INFORMATION",
+    "RANK",
+    "STARTS",
+    "UNNAMED",
+    "USUAL_ENGINE",
+    "USUAL_MOUNTING",
+    "Coordinates",
+    "Correlation",
+    "Estimates",
+    "FaultScore",
+    "FitResult",
+    "FitStatistics",
+    "Inflater",
+    "Likelihood",
+    "LikelihoodAt",
+    "ModeEstimate",
+    "Mounting",
+    "Prediction",
+    "PriorsAndConstraints",
+    "Scale",
+    "Unidentifiable",
+    "autocorrelation_inflation",
+    "canonical_basis",
+    "characteristics_of",
+    "clear_of_splines",
+    "corrections",
+    "escape_local_optimum",
+    "estimate_of",
+    "fit_from_contact",
+    "fit_jointly",
+    "fit_linear",
+    "fit_nonlinear",
+    "identifiable_subspace",
+    "mask_unsynchronised",
+    "mode_estimates",
+    "mountings_of",
+    "overdispersion_of",
+    "parameters_from_matrices",
+    "predictions",
+    "profiled",
+    "residual_records",
+    "score_faults",
+    "score_linear_term",
+    "score_nonlinear_terms",
+    "score_stepped_terms",
+    "shape_of",
+    "synchronise_at_release",
+    "synchronise_by_decay",
+    "to_estimates",
+    "uncertainty_of",
+    "wald_test",
+]

@@ -1,0 +1,81 @@
+"""Masses, loads, centre of gravity, ride frequencies and damping ratios of the identified vehicle, with their uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimate import NORMAL_95, Estimate, Known
+from sprung.estimation.estimates import estimate_of
+from sprung.estimation.statistics import FitStatistics
+from sprung.vehicle import CHARACTERISTICS, DERIVED, WHEELS, LinearModel, characteristic, wheel_loads
+
+Real = NDArray[np.float64]
+
+_ROUNDING = 1e-12
+"""Relative standard uncertainty below which a quantity follows exactly from what was known."""
+
+_SIDES = {"l": "left", "r": "right"}
+_AXLES = {"f": "front", "r": "rear"}
+
+
+def characteristics_of(fit: FitStatistics, known: Mapping[str, Known], empty: LinearModel) -> dict[str, Estimate]:
+    """Estimate what follows from the parameters: `CHARACTERISTICS` and the static wheel loads.
+
+    The standard uncertainty is that of the gradient under the joint covariance of all parameters.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    known
+        What was known beforehand.
+    empty
+        Equations of motion of the empty vehicle.
+
+    Returns
+    -------
+    dict
+        By name; without a value where the data do not determine it, such as masses without absolute scale.
+    """
+    found = {}
+    for name, one in CHARACTERISTICS.items():
+        if name in DERIVED:
+            found[name] = estimate_of(fit, known, name)
+        elif one.needs <= set(fit.names):
+            value, gradient = characteristic(name, fit.names, fit.values)
+            found[name] = _estimate(fit, value, gradient, one.unit, one.signed)
+    return found | _wheel_loads(fit, empty)
+
+
+def _wheel_loads(fit: FitStatistics, empty: LinearModel) -> dict[str, Estimate]:
+    loads, gradients = wheel_loads(empty, fit.values)
+    each = dict(zip(WHEELS, zip(loads.tolist(), gradients, strict=True), strict=True))
+    if "y_s" in fit.names:
+        names = {station: f"{_AXLES[station[0]]}_{_SIDES[station[1]]}_wheel_load" for station in WHEELS}
+    else:
+        names = {"fl": "front_wheel_load", "rl": "rear_wheel_load"}
+    return {
+        name: _estimate(fit, load, gradient, "N", signed=False)
+        for station, name in names.items()
+        for load, gradient in [each[station]]
+    }
+
+
+def _estimate(fit: FitStatistics, value: float, gradient: Real, unit: str, signed: bool) -> Estimate:
+    """Estimate a quantity of which value and gradient by the parameters are given, SI."""
+    # What may be zero counts as determined beside what its parameters would have to be to matter.
+    size = max(abs(value), *(abs(slope) * fit.size(name) for name, slope in zip(fit.names, gradient, strict=True)))
+    std = fit.spread(gradient * fit.slopes, size if signed else value)
+    if std is None:
+        return Estimate(None, None, None, unit, "unidentifiable")
+    if std <= _ROUNDING * abs(value):
+        return Estimate(value, 0.0, (value, value), unit, "known")
+    if signed:
+        interval = value - NORMAL_95 * std, value + NORMAL_95 * std
+    else:
+        factor = float(np.exp(NORMAL_95 * std / value))
+        interval = value / factor, value * factor
+    return Estimate(value, std, interval, unit, "estimated", "curvature")

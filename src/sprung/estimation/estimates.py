@@ -1,0 +1,220 @@
+"""From a fit to what may be said: parameters, what is left when the scale is unknown, and what cannot be told."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.display import shown
+from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
+from sprung.estimation.statistics import FitStatistics
+from sprung.estimation.subspace import canonical_basis
+from sprung.modal import leading_entry
+from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
+
+Real = NDArray[np.float64]
+
+_SCALE = (
+    "multiplying every mass, inertia and rate by one number changes no acceleration: only their ratios are determined; add "
+    "drops with a known load, weigh the vehicle (total_mass, front_axle_mass, rear_axle_mass), or give one mass or rate that "
+    "is known"
+)
+
+_HARDLY = (
+    "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
+    "would determine it"
+)
+
+_DERIVED_UNITS = {"total_mass": "kg", "front_axle_mass": "kg", "rear_axle_mass": "kg", "wheelbase": "m"}
+
+_PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
+
+
+@shown
+@dataclass(frozen=True)
+class Unidentifiable:
+    """A combination of parameters that the data do not determine.
+
+    Attributes
+    ----------
+    parameters
+        Which parameters move together.
+    text
+        What cannot be told, and what would.
+    """
+
+    parameters: tuple[str, ...]
+    text: str
+
+
+@shown
+@dataclass(frozen=True)
+class Scale:
+    """The absolute scale, and what is left without it.
+
+    Attributes
+    ----------
+    known
+        Whether load, weighing or another known quantity fixes masses and rates absolutely.
+    per_total_mass
+        Masses, inertias and rates divided by the empty vehicle's total mass, as far as they are determined.
+    """
+
+    known: bool
+    per_total_mass: dict[str, Ratio]
+
+
+@shown
+@dataclass(frozen=True)
+class Correlation:
+    """Correlation of the estimated parameters.
+
+    Attributes
+    ----------
+    names
+        The parameters.
+    matrix
+        Correlation coefficients, one row for each name.
+    """
+
+    names: tuple[str, ...]
+    matrix: tuple[tuple[float, ...], ...]
+
+
+@shown
+@dataclass(frozen=True)
+class Estimates:
+    """Everything that may be said about the parameters.
+
+    Attributes
+    ----------
+    parameters
+        By name.
+    scale
+        The absolute scale, and what is left without it.
+    unidentifiable
+        Combinations that the data do not determine.
+    correlation
+        Of the estimated parameters.
+    """
+
+    parameters: dict[str, Estimate]
+    scale: Scale
+    unidentifiable: tuple[Unidentifiable, ...]
+    correlation: Correlation
+
+
+def to_estimates(fit: FitStatistics, known: Mapping[str, Known]) -> Estimates:
+    """Say what the fit allows to be said.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    known
+        What was known beforehand.
+
+    Returns
+    -------
+    Estimates
+    """
+    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not name.startswith(LOAD_MASS)}
+    return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
+
+
+def estimate_of(fit: FitStatistics, known: Mapping[str, Known], name: str) -> Estimate:
+    """Say what the fit says of one quantity.
+
+    Parameters
+    ----------
+    fit, known
+        As for `to_estimates`.
+    name
+        A parameter, or a derived quantity of `sprung.vehicle.DERIVED`.
+
+    Returns
+    -------
+    Estimate
+    """
+    value, gradient = quantity(name, fit.names, fit.values)
+    unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
+    if name in known and known[name].exact:
+        exact = known[name].value
+        return Estimate(exact, 0.0, (exact, exact), unit, "known")
+    std = fit.spread(gradient * fit.slopes, fit.size(name) if name in fit.names else value)
+    if std is None:
+        return Estimate(None, None, None, unit, "unidentifiable")
+    if std <= 1e-12 * abs(value) and value:
+        return Estimate(value, 0.0, (value, value), unit, "known")
+    return Estimate(value, std, _interval(name, value, std), unit, "estimated", "curvature")
+
+
+def _interval(name: str, value: float, std: float) -> tuple[float, float]:
+    if (
+        name not in PARAMETERS or PARAMETERS[name].positive
+    ):  # estimated by its logarithm, so the interval is even there and never negative
+        factor = float(np.exp(NORMAL_95 * std / value))
+        return value / factor, value * factor
+    return value - NORMAL_95 * std, value + NORMAL_95 * std
+
+
+def _scale(fit: FitStatistics) -> Scale:
+    total, gradient = quantity("total_mass", fit.names, fit.values)
+    mass_direction = gradient * fit.slopes / total
+    per_total_mass = {}
+    for i, name in enumerate(fit.names):
+        if PARAMETERS[name].scales and not name.startswith(LOAD_MASS):
+            ratio = float(fit.values[i]) / total
+            direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
+            std = fit.spread(direction, fit.size(name) / total)
+            if std is not None:
+                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[PARAMETERS[name].unit])
+    return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)
+
+
+def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
+    scaling = fit.scaling
+    found = []
+    directions = fit.undetermined
+    if directions.shape[1] and np.linalg.norm(directions.T @ scaling) > 0.999 * np.linalg.norm(scaling):
+        found.append(Unidentifiable(tuple(name for name in fit.names if PARAMETERS[name].scales), _SCALE))
+        unit = scaling / np.linalg.norm(scaling)
+        left, size, _ = np.linalg.svd(directions - np.outer(unit, unit @ directions), full_matrices=False)
+        directions = canonical_basis(left[:, size > 0.5])
+    shares = np.abs(directions)
+    together = shares > 0.1 * shares.max(axis=0, initial=1e-300)
+    # Whatever is undetermined belongs to the direction that moves it most, if to no other.
+    named = {name for one in found for name in one.parameters}
+    for i, name in enumerate(fit.names):
+        if (
+            name in parameters
+            and parameters[name].status == "unidentifiable"
+            and not together[i].any()
+            and name not in named
+            and shares.size
+        ):
+            together[i, np.argmax(shares[i])] = True
+    for direction, moved in zip(directions.T, together.T, strict=True):
+        names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
+        leading = direction[leading_entry(direction)]
+        ways = [
+            f"{name} {'up' if part * leading > 0 else 'down'}"
+            for name, part, moves in zip(fit.names, direction, moved, strict=True)
+            if moves
+        ]
+        what = f"{names[0]} alone" if len(names) == 1 else f"moving {', '.join(ways)} together"
+        found.append(Unidentifiable(names, f"{what} {_HARDLY}"))
+    return tuple(found)
+
+
+def _correlation(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Correlation:
+    chosen = [i for i, name in enumerate(fit.names) if name in parameters and parameters[name].status == "estimated"]
+    covariance = fit.covariance[np.ix_(chosen, chosen)]
+    spread = np.sqrt(np.diag(covariance))
+    matrix = covariance / np.outer(spread, spread) if chosen else covariance
+    return Correlation(
+        tuple(fit.names[i] for i in chosen), tuple(tuple(float(entry) for entry in row) for row in matrix)
+    )

@@ -1,0 +1,128 @@
+"""Modes of the identified vehicle, with the uncertainty that its parameters hand down to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.display import shown
+from sprung.estimation.solution import differentiate_modes, solve_modes
+from sprung.estimation.statistics import FitStatistics
+from sprung.modal import Mode, leading_entry, name_modes, paper_name
+from sprung.vehicle import LinearModel, Rows, Sensor
+
+Real = NDArray[np.float64]
+
+
+UNNAMED = "unnamed"
+"""What a mode is called whose shape is like no template."""
+
+_TOLD = 0.5
+"""Part of itself by which a value may be uncertain, to count as told."""
+
+
+@shown
+@dataclass(frozen=True)
+class ModeEstimate:
+    """One mode of the identified vehicle.
+
+    Attributes
+    ----------
+    name
+        After what moves: one of `sprung.modal.MODE_NAMES`, or ``unnamed`` where the shape is like none of them.
+    pole
+        [re, im], 1/s; im is 0 for a real pole, not negative for others.
+    frequency, frequency_std
+        Undamped natural frequency |pole|/2π and its standard uncertainty, Hz; the latter None where the data do not
+        determine the mode.
+    damped_frequency
+        Hz.
+    damping_ratio, damping_ratio_std
+        -re/|pole|, dimensionless; 1 for a real pole.
+    motion
+        How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
+        imaginary part of each, the largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
+    paper_name
+        What Table 3 of the paper calls it; None where it has no such mode, or an older sprung wrote the result.
+    """
+
+    name: str
+    pole: tuple[float, float]
+    frequency: float
+    frequency_std: float | None
+    damped_frequency: float
+    damping_ratio: float
+    damping_ratio_std: float | None
+    motion: tuple[tuple[float, float], ...] = ()
+    paper_name: str | None = None
+
+
+def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
+    """Give the modes of one load, lowest frequency first.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    model
+        Equations of motion with the load.
+    sensors
+        The sensors.
+
+    Returns
+    -------
+    tuple of ModeEstimate
+    """
+    rows = Rows.of([sensor.row for sensor in sensors], fit.names)
+    modes = solve_modes(model, rows, fit.values)
+    slopes = differentiate_modes(model, rows, fit.values, modes, 1.0).poles * fit.slopes[:, None]
+    # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
+    away = [
+        np.linalg.eigvals(model.matrices(fit.moved(way * direction)).state).astype(np.complex128)
+        for direction in fit.undetermined.T
+        for way in (-1, 1)
+    ]
+    upper = np.flatnonzero(modes.poles.imag >= 0)
+    named = name_modes([Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper])
+    left = set(upper.tolist())
+    estimates = []
+    for mode in named:
+        nearest = min(left, key=lambda j: abs(modes.poles[j] - mode.pole))
+        left.remove(nearest)
+        estimates.append(_estimate(mode, slopes[:, nearest], away, fit))
+    return tuple(estimates)
+
+
+def _estimate(
+    mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.complex128]], fit: FitStatistics
+) -> ModeEstimate:
+    pole, size = mode.pole, abs(mode.pole)
+    of_size = (np.conj(pole) * slope).real / size
+    of_damping = np.zeros_like(of_size) if pole.imag == 0 else -slope.real / size + pole.real * of_size / size**2
+    followed = np.array([poles[np.argmin(np.abs(poles - pole))] for poles in away], dtype=complex)
+
+    def std(direction: Real, value: float, values: Real) -> float | None:
+        near = fit.spread(direction, value)
+        far = float(np.abs(values - value).max(initial=0.0))
+        return None if near is None or max(near, far) > _TOLD * abs(value) else max(near, far)
+
+    return ModeEstimate(
+        name=mode.name or UNNAMED,
+        pole=(float(pole.real), float(pole.imag)),
+        frequency=mode.frequency,
+        frequency_std=std(of_size / (2 * np.pi), mode.frequency, np.abs(followed) / (2 * np.pi)),
+        damped_frequency=mode.damped_frequency,
+        damping_ratio=mode.damping_ratio,
+        damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
+        motion=_largest_one(mode.shape),
+        paper_name=paper_name(mode.name),
+    )
+
+
+def _largest_one(shape: NDArray[np.complex128]) -> tuple[tuple[float, float], ...]:
+    """Turn and scale a shape so that its largest entry is 1; real and imaginary part of each."""
+    scaled = shape / shape[leading_entry(shape)]
+    return tuple((float(part.real), float(part.imag)) for part in scaled)

@@ -1,0 +1,219 @@
+"""A direct start: the equations of motion, integrated against modulating functions, are linear in what is sought.
+
+M Ẍ + C Ẋ + K X = 0 holds for the accelerations A, too. Multiplied by the first derivative p₁ of a function that vanishes with
+its derivatives at both ends of a record, and integrated by parts until none is left on A, it says M∫p₃A - C∫p₂A + K∫p₁A = 0
+with the derivatives p₂ and p₃ of p₁ (Shinbrot, Trans. ASME 79 (1957) 1319). Offsets drop out, for p₁ has no mean. M, C
+and K are linear in products of the parameters where the body's motion is taken above the front axle, so that no row
+depends on where the centre of gravity is. One small linear least squares gives all of them: no guess, no eigenvalues, no
+iteration. What noise adds to the squares on average is taken off beforehand; even so it is no estimate to report, but a
+start that is nearly there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.monomials import expand, parameters_of
+from sprung.estimation.records import RecordBatch
+from sprung.estimation.starts import VehicleSize
+from sprung.modal import waves
+from sprung.vehicle import LAWS, PARAMETERS, LinearModel, Rows, Sensor
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Key = tuple[int, int, int]
+
+_WINDOWS = ((2.0, np.arange(0.0, 6.1, 0.75)), (12.0, np.arange(0.0, 24.1, 2.5)), (50.0, np.arange(0.0, 33.0, 8.0)))
+"""1/s by which each modulating function falls, and Hz at which it turns: long ones for the body, short ones for wheel hop."""
+
+_SHAPE = np.polynomial.Polynomial([0, 1]) ** 5 * np.polynomial.Polynomial([1, -1]) ** 5
+_BUMP = np.array([np.pad((_SHAPE.deriv(k) if k else _SHAPE).coef, (0, k)) for k in range(4)])
+"""u⁵(1-u)⁵ and its first three derivatives, as coefficients of the powers of u."""
+
+_RATE, _LONGEST, _MOST = 200.0, 6.0, 8  # samples per second, s, and records of one load that are enough
+
+_OWN = 2 * np.pi * np.array([1.5, 1.5, 1.5, 11.0, 11.0, 11.0, 11.0])
+"""Usual own frequency of each coordinate, 1/s: what its equation is weighed by."""
+
+_WHEEL = 0.035  # mass of a wheel as a part of the body's, to make the equations comparable
+
+
+def modulating_function_estimate(
+    runs: Sequence[RecordBatch], models: Sequence[LinearModel], sensors: Sequence[Sensor], outline: VehicleSize
+) -> dict[str, float] | None:
+    """Find parameters from the records in one step.
+
+    Parameters
+    ----------
+    runs
+        The records.
+    models
+        Equations of motion by the position of the load.
+    sensors
+        The sensors.
+    outline
+        Size of the vehicle; its mass is used where it was weighed, or where no load tells the scale.
+
+    Returns
+    -------
+    dict or None
+        Parameters, SI, by name; None where the sensors do not see every coordinate, or no vehicle explains the records.
+    """
+    wheelbase = outline.wheelbase
+    moved = [model.seen_from_front_axle(wheelbase) for model in models]
+    names = moved[0].names
+    seen = Rows.of([sensor.row.seen_from_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
+    sprung, ahead = 1 + names.index("m_s"), 1 + names.index("a")
+    # m_s a² stands where I_yy does: only their sum can be found.
+    keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))
+    keys = [key for key in keys if key != _key(sorted((sprung, ahead, ahead)))]
+    motions = [(_Motion.of(run, seen), _terms(moved[run.load[0]], keys, wheelbase)) for run in _sketches(runs, seen)]
+    normal = np.zeros((len(keys), len(keys)))
+    for falling, frequencies in _WINDOWS:
+        tables: dict[tuple[int, float], _Modulating] = {}
+        for motion, terms in motions:
+            kind = motion.coordinates.shape[2], motion.step
+            if kind not in tables:
+                tables[kind] = _Modulating.of(*kind, falling, frequencies)
+            normal += _normal(motion, tables[kind], terms)
+    products = _products(normal, keys, (0, 0, sprung))
+    if products is None:
+        return None
+    laws = [{key: term for key, term in expand(moved[0], law).items() if key in products} for law in LAWS]
+    per_mass = dict(zip(names, parameters_of(products, laws, names).tolist(), strict=True))
+    per_mass |= {"I_yy": per_mass["I_yy"] - per_mass["a"] ** 2, "b": wheelbase - per_mass["a"]}
+    # A known load stands beside the vehicle's own masses as a number.
+    load_share = products.get((0, 0, 0), 0.0)
+    mass = 1 / load_share if load_share > 0 and not outline.weighed else outline.sprung_mass
+    values = {name: value * (mass if PARAMETERS[name].scales else 1.0) for name, value in per_mass.items()}
+    sound = all(np.isfinite(value) and (value > 0 or not PARAMETERS[name].positive) for name, value in values.items())
+    return values if sound else None
+
+
+def _key(key: Sequence[int]) -> Key:
+    one, two, three = key
+    return one, two, three
+
+
+def _products(normal: Real, keys: Sequence[Key], unit: Key) -> dict[Key, float] | None:
+    """Solve for the products as parts of one of them."""
+    size = np.sqrt(np.maximum(np.diag(normal), 0.0))
+    others = [i for i, key in enumerate(keys) if key != unit and size[i] > 0]
+    if not others or not np.isfinite(normal).all():
+        return None
+    system = normal[np.ix_(others, others)] / np.outer(size[others], size[others])
+    right = -normal[others, keys.index(unit)] / size[others]
+    found = np.linalg.lstsq(system, right, rcond=1e-10)[0] / size[others]
+    return {unit: 1.0, **dict(zip([keys[i] for i in others], found.tolist(), strict=True))}
+
+
+def _terms(model: LinearModel, keys: Sequence[Key], wheelbase: float) -> Real:
+    """Give what each product multiplies, equations divided by usual masses; shape (product, 7, 21)."""
+    masses = np.array([1.0, wheelbase**2 / 4, wheelbase**2 / 16, *[_WHEEL] * 4])
+    terms = np.zeros((len(keys), 7, 21))
+    for key, term in zip(model.products.tolist(), model.terms, strict=True):
+        if _key(key) in keys:
+            terms[keys.index(_key(key))] = np.concatenate(list(term), axis=1)
+    terms /= masses[:, None]
+    return terms
+
+
+def _sketches(runs: Sequence[RecordBatch], seen: Real) -> list[RecordBatch]:
+    """Thin the records of every load, and cut them to one length as far as they are of a similar one."""
+    groups = [
+        (run, i)
+        for run in runs
+        if np.linalg.matrix_rank(seen[run.present > 0]) == seen.shape[1]
+        for i in range(len(run.load))
+    ]
+    first = [run.sketch(group, _RATE, _LONGEST, _MOST) for run, group in groups]
+    durations = np.array([float(one.samples[0] * one.step[0]) for one in first])
+    common = durations[2 * durations > durations.max(initial=0.0)].min(initial=_LONGEST)
+    return [
+        one if duration <= common else one.shortened(common) for one, duration in zip(first, durations, strict=True)
+    ]
+
+
+class _Motion(NamedTuple):
+    """Accelerations of the coordinates in records of one length.
+
+    Attributes
+    ----------
+    coordinates
+        Shape (record, 7, time).
+    noise
+        Its covariance between the coordinates, shape (7, 7).
+    step
+        Sampling interval, s.
+    """
+
+    coordinates: Real
+    noise: Real
+    step: float
+
+    @classmethod
+    def of(cls, run: RecordBatch, seen: Real) -> _Motion:
+        used = run.present > 0
+        to_coordinates = np.linalg.pinv(seen[used])
+        records = np.array([run.record(i) for i in range(len(run.samples))])[:, used]
+        # From differences of the last third, where hardly anything else is left.
+        late = np.diff(records[:, :, -max(records.shape[2] // 3, 3) :], 2, axis=2)
+        noise = (to_coordinates * (np.mean(late**2, axis=(0, 2)) / 6)) @ to_coordinates.T
+        return cls(to_coordinates @ records, noise, float(run.step[0]))
+
+
+class _Modulating(NamedTuple):
+    """Modulating functions of one length: p₃, -p₂ and p₁ of ψ = u⁵(1-u)⁵ e^{-st}, u running from 0 to 1.
+
+    Attributes
+    ----------
+    real, imaginary
+        Shape (function, 3, time).
+    overlap
+        Real part of their inner products, shape (function, 3, 3).
+    """
+
+    real: Real
+    imaginary: Real
+    overlap: Real
+
+    @classmethod
+    def of(cls, samples: int, step: float, rate: float, frequencies: Real) -> _Modulating:
+        s = np.asarray(rate + 2j * np.pi * frequencies, dtype=np.complex128)
+        duration = (samples - 1) * step
+        powers = np.linspace(0.0, 1.0, samples) ** np.arange(_BUMP.shape[1])[:, None]
+        derivatives = _BUMP @ powers / duration ** np.arange(4)[:, None]
+        # Leibniz: the derivatives of a product with an exponential.
+        one, nothing = np.ones_like(s), np.zeros_like(s)
+        rows = np.array(
+            [[-(s**3), 3 * s**2, -3 * s, one], [-(s**2), 2 * s, -one, nothing], [-s, one, nothing, nothing]]
+        )
+        falling = waves(-s * step, samples).T
+        size = np.linalg.norm(derivatives[0] * falling, axis=1)
+        functions = np.moveaxis(rows, 2, 0) @ derivatives
+        functions *= (falling / size[:, None])[:, None]
+        real, imaginary = np.ascontiguousarray(functions.real), np.ascontiguousarray(functions.imag)
+        overlap = real @ np.swapaxes(real, 1, 2) + imaginary @ np.swapaxes(imaginary, 1, 2)
+        return cls(real, imaginary, overlap)
+
+
+def _normal(motion: _Motion, table: _Modulating, terms: Real) -> Real:
+    """Give the normal equations of the products, shape (product, product)."""
+    records, _, samples = motion.coordinates.shape
+    flat = motion.coordinates.reshape(-1, samples)
+    parts = [flat @ part.reshape(-1, samples).T for part in (table.real, table.imaginary)]
+    integrals = np.array(parts).reshape(2, records, 7, -1, 3).transpose(4, 2, 0, 1, 3).reshape(21, 2 * records, -1)
+    normal = np.zeros((len(terms), len(terms)))
+    for own in np.unique(_OWN):
+        weights = 1 / (table.overlap[:, 0, 0] + own**4 * table.overlap[:, 2, 2])
+        weighted = (integrals * np.sqrt(weights)).reshape(21, -1)
+        noise_bias_of_information = records * np.kron(np.tensordot(weights, table.overlap, 1), motion.noise)
+        design = terms[:, own == _OWN]
+        normal += np.tensordot(
+            design @ (weighted @ weighted.T - noise_bias_of_information), design, axes=([1, 2], [1, 2])
+        )
+    return normal

@@ -1,0 +1,122 @@
+"""How much less the records tell than as many independent samples of the right model would.
+
+Two things show it without any other model: residuals that are coloured, and drops that contradict each other.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+_SPAN = 0.25
+"""s over which residuals are correlated: drift and model error last longer, but then they fill it."""
+
+_SIGNIFICANT = 3.0
+"""Standard errors by which an excess must be real before it counts."""
+
+_SEEN = 1e-9
+"""Information, as a part of the largest, below which one drop says nothing about a direction."""
+
+
+def autocorrelation_inflation(
+    residuals: Iterable[Real],
+    rates: Sequence[float],
+    span: float = _SPAN,
+    counted: Real | float = 1.0,
+    least: Real | float = 0.0,
+) -> Real:
+    """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
+
+    Parameters
+    ----------
+    residuals
+        One record for each drop, shape (channel, time), NaN in channels that are left out.
+    rates
+        Samples per second of each.
+    span
+        s over which means are taken: as long as what correlates the residuals, and a small part of a record.
+    counted
+        Part of the samples that the fit counts, shape (channel,) or one for all; fewer than there are where some were
+        interpolated.
+    least
+        Variance below which residuals are rounding, of whose colour nothing follows, (m/s²)²; shape (channel,) or one for
+        all.
+
+    Returns
+    -------
+    ndarray
+        For each channel the variance of means over that time, times the samples counted in them, over that of single samples
+        (batch means: Law and Kelton, Simulation Modeling and Analysis, section 9.5.3). Never below 1; 1 where the excess
+        is not significant. Shape (channel,).
+    """
+    sums = []
+    for record, rate in zip(residuals, rates, strict=True):
+        length = min(max(int(span * rate), 1), record.shape[1])
+        count = record.shape[1] // length
+        batch = record[:, : count * length].reshape(len(record), count, length)
+        energy, mean = np.einsum("cbt,cbt->c", batch, batch), np.sum(batch.mean(axis=2) ** 2, axis=1)
+        used = ~np.isnan(energy)
+        sums.append(
+            [np.where(used, energy, 0.0), np.where(used, length * mean, 0.0), used * count * length, used * count]
+        )
+    total, means, samples, batches = np.sum(sums, axis=0)
+    variance = np.maximum(total / np.maximum(samples, 1.0), np.maximum(least, np.finfo(float).tiny))
+    ratio = counted * means / np.maximum(batches, 1.0) / variance
+    return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
+
+
+def birge_ratio(scores: Real, informations: Real) -> float:
+    """Estimate by how much the drops differ from each other beyond their noise.
+
+    Parameters
+    ----------
+    scores
+        Gradient of the log-likelihood of each drop at the joint optimum, in free directions; shape (drop, direction).
+    informations
+        Fisher information of each drop in the same directions; shape (drop, direction, direction).
+
+    Returns
+    -------
+    float
+        Birge's ratio, squared: each drop's own correction to the joint estimate, in units of its own uncertainty, squared
+        and averaged (Birge, Phys. Rev. 40 (1932) 207). 1 where the excess is not significant, or with too few drops.
+
+    Notes
+    -----
+    A model error that is the same in every drop goes unseen here; one that depends on how far or which way the vehicle
+    moved, as geometry and friction do, does not.
+    """
+    squares, directions = corrections(scores, informations)
+    freedom = int(directions.sum()) - scores.shape[1]
+    if freedom <= 0:
+        return 1.0
+    ratio = float(squares.sum()) / freedom
+    return ratio if ratio > 1 + _SIGNIFICANT * np.sqrt(2 / freedom) else 1.0
+
+
+def corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np.int64]]:
+    """Give each drop's own correction to the joint estimate, in units of its own uncertainty, squared and added up.
+
+    Parameters
+    ----------
+    scores, informations
+        As for `birge_ratio`.
+
+    Returns
+    -------
+    squares
+        Shape (drop,).
+    directions
+        In how many directions each drop says anything, shape (drop,).
+    """
+    squares, directions = np.zeros(len(scores)), np.zeros(len(scores), dtype=np.int64)
+    for drop, (score, information) in enumerate(zip(scores, informations, strict=True)):
+        eigenvalues, vectors = np.linalg.eigh(information)
+        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
+        squares[drop] = np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen])
+        directions[drop] = seen.sum()
+    return squares, directions

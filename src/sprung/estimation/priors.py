@@ -1,0 +1,181 @@
+"""What is known beforehand, as the fit uses it: exact statements bind the parameters, uncertain ones pull at them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimate import Known
+from sprung.vehicle import PARAMETERS, quantity
+
+Real = NDArray[np.float64]
+
+
+_FINEST = 1e-6
+"""Smallest relative uncertainty that a statement is taken to have: beside a finer one, rounding would hide the records."""
+
+
+_TRAVEL = 0.03
+"""m of travel at which a spring's force is the size of a friction that is large."""
+
+
+class Prior(NamedTuple):
+    """The uncertain statements at some parameter values.
+
+    Attributes
+    ----------
+    residual
+        (known - value) / std, shape (statement,).
+    slopes
+        Derivative of value / std by the fit's coordinates, shape (statement, coordinate).
+    """
+
+    residual: Real
+    slopes: Real
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinates:
+    """Fitted coordinates of the parameters: logarithms of those that must be positive, multiples of the others.
+
+    In logarithms every rate and mass is of order one, positive by construction, and scaling them all together, which
+    no acceleration can see, is one straight line. Coordinates u are dimensionless, shape (parameter,), or (..., parameter).
+
+    Attributes
+    ----------
+    names
+        The parameters.
+    references
+        For parameters that may be zero the size by which their coordinate is multiplied, SI; shape (parameter,).
+    """
+
+    names: tuple[str, ...]
+    references: Real
+
+    @classmethod
+    def beside(cls, names: tuple[str, ...], typical: Mapping[str, float]) -> Coordinates:
+        """Make coordinates of parameters, those that may be zero in sizes of a typical vehicle's, SI by name."""
+        return cls(names, np.array([_reference(name, typical) for name in names]))
+
+    @cached_property
+    def _logarithmic(self) -> NDArray[np.bool_]:
+        return np.array([PARAMETERS[name].positive for name in self.names])
+
+    def values(self, u: Real) -> Real:
+        """Give parameter values, SI, at coordinates."""
+        values = self.references * u
+        values[self._logarithmic] = np.exp(u[self._logarithmic])
+        return values
+
+    def by_name(self, values: Mapping[str, float]) -> Real:
+        """Give coordinates at parameter values, SI, by name."""
+        return self.of(np.array([values[name] for name in self.names]))
+
+    def slopes(self, u: Real) -> Real:
+        """Give the derivative of each value by its coordinate; shape (parameter,)."""
+        return np.where(self._logarithmic, self.values(u), self.references)
+
+    def of(self, values: Real) -> Real:
+        """Give coordinates at parameter values, SI."""
+        u = values / self.references
+        u[self._logarithmic] = np.log(values[self._logarithmic])
+        return u
+
+
+@dataclass(frozen=True, eq=False)
+class PriorsAndConstraints:
+    """Statements about parameters and derived quantities.
+
+    Coordinates u, and steps and directions of them, are those of `Coordinates`: dimensionless, shape (parameter,).
+
+    Attributes
+    ----------
+    coordinates
+        The fit's coordinates.
+    statements
+        Known quantities by name: parameters, or derived quantities of `sprung.vehicle.DERIVED`.
+    """
+
+    coordinates: Coordinates
+    statements: Mapping[str, Known]
+
+    @cached_property
+    def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
+        """Names, values and sizes of error that count as one; of the exact statements, and of the others."""
+        chosen = {}
+        for exact in (True, False):
+            those = {name: known for name, known in self.statements.items() if known.exact == exact}
+            values = np.array([known.value for known in those.values()])
+            std = np.array([known.std for known in those.values()])
+            sizes = np.abs(values) if exact else np.maximum(std, _FINEST * np.abs(values))
+            chosen[exact] = tuple(those), values, sizes
+        return chosen
+
+    def _at(self, u: Real, exact: bool) -> tuple[Real, Real]:
+        """Give what statements differ from what the coordinates make of them, and the slopes of that, in their sizes."""
+        names, known, sizes = self._chosen[exact]
+        if not names:
+            return np.zeros(0), np.zeros((0, len(u)))
+        values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
+        found = [quantity(name, self.coordinates.names, values) for name in names]
+        rows = np.array([gradient for _, gradient in found]) * slopes
+        sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero
+        return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
+
+    def prior(self, u: Real) -> Prior:
+        """Give the uncertain statements as observations in units of their own standard uncertainty."""
+        return Prior(*self._at(u, exact=False))
+
+    def without(self, name: str) -> PriorsAndConstraints:
+        """Give the knowledge without one statement."""
+        return replace(self, statements={one: known for one, known in self.statements.items() if one != name})
+
+    def change(self, name: str, u: Real, step: Real) -> float:
+        """Give by how much a quantity changes with a step of the coordinates, to first order, SI."""
+        _, gradient = quantity(name, self.coordinates.names, self.coordinates.values(u))
+        return float(gradient * self.coordinates.slopes(u) @ step)
+
+    def bind(self, u: Real) -> Real:
+        """Move coordinates, by the shortest way, to where every exact statement holds."""
+        for _ in range(20):
+            residual, rows = self._at(u, exact=True)
+            if np.all(np.abs(residual) <= 1e-14):
+                break
+            u = u + np.linalg.pinv(rows) @ residual
+        return u
+
+    def free(self, u: Real) -> Real:
+        """Give an orthonormal basis of the directions that the exact statements leave free.
+
+        Returns
+        -------
+        ndarray
+            Shape (coordinate, direction).
+        """
+        residual, rows = self._at(u, exact=True)
+        if residual.size == 0:
+            return np.eye(len(u))
+        _, singular, right = np.linalg.svd(rows)
+        rank = int(np.sum(singular > 1e-10 * singular[0]))
+        return right[rank:].T
+
+
+def _reference(name: str, typical: Mapping[str, float]) -> float:
+    """Give the size by which a parameter's coordinate is multiplied, SI; 1 for those that are fitted by their logarithms."""
+    told = PARAMETERS[name]
+    if told.positive or not told.scales:
+        return 1.0
+    stiffness = typical["k_sf"]
+    sizes = {
+        "N": _TRAVEL * stiffness,
+        "N/m": stiffness,
+        "N m": stiffness,
+        "N s/m": typical["c_sf"],
+        "kg": typical["m_uf"],
+    }
+    return sizes[told.unit]

@@ -1,0 +1,176 @@
+"""Where the fit starts: vehicles of every usual kind, tried on the records, when nobody has told us which it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimate import Known
+from sprung.vehicle import NEUTRAL, Sensor
+
+BODY_FREQUENCIES = (1.0, 1.6, 2.6)
+"""Hz: from a limousine to an empty lorry."""
+
+USUAL_ENGINE = 0.1
+"""Part of the sprung mass that an engine on mounts usually is."""
+
+_MOUNTED = (7.0, 10.0, 14.0)  # Hz of an engine on its mounts
+
+HOP_FREQUENCIES = (8.5, 12.0, 18.0)
+"""Hz."""
+
+DAMPING_RATIOS = (0.12, 0.35, 0.8)
+
+_GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
+_MOUNT_DAMPING = 0.08  # damping ratio of usual engine mounts
+_WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
+
+
+class Mounting(NamedTuple):
+    """How an engine may be mounted, before a fit says so.
+
+    Attributes
+    ----------
+    frequency
+        On its mounts, the body held, Hz.
+    place
+        Forward of the front axle, m.
+    """
+
+    frequency: float = 10.0
+    place: float = 0.0
+
+    def engine(self, mass: float) -> dict[str, float]:
+        """Give the parameters of an engine of a mass in kg, SI, by name."""
+        omega = 2 * np.pi * self.frequency
+        return {"m_e": mass, "k_e": mass * omega**2, "c_e": 2 * _MOUNT_DAMPING * mass * omega, "x_e": self.place}
+
+
+USUAL_MOUNTING = Mounting()
+"""The one from which a start begins where nothing says another."""
+
+
+def mountings_of(wheelbase: float) -> list[Mounting]:
+    """Give how engines are usually mounted: above either axle.
+
+    Parameters
+    ----------
+    wheelbase
+        m.
+
+    Returns
+    -------
+    list of Mounting
+    """
+    return [Mounting(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
+
+
+class VehicleSize(NamedTuple):
+    """Size of a vehicle, as what is known and the sensors' places tell it.
+
+    Attributes
+    ----------
+    wheelbase
+        m.
+    front_share
+        The front axle's share of the weight.
+    mass
+        Of the whole vehicle, kg.
+    weighed
+        Whether somebody knows it; a usual one for the wheelbase otherwise.
+    half_track
+        m.
+    """
+
+    wheelbase: float
+    front_share: float
+    mass: float
+    weighed: bool
+    half_track: float
+
+    @classmethod
+    def of(cls, known: Mapping[str, Known], sensors: Sequence[Sensor]) -> VehicleSize:
+        """Gather what is known beforehand, the wheelbase included; the rest is taken from the sensors' places."""
+        value = {name: one.value for name, one in known.items()}
+        places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
+        wheelbase, front_share = _length(value, places)
+        mass = _mass(value)
+        half_track = float(np.abs(places[:, 1]).sum()) / max(len(places), 1) or 0.27 * wheelbase
+        usual = _GRAVITY_FREE_MASS * (wheelbase / 2.7) ** 3
+        return cls(wheelbase, front_share, usual if mass is None else mass, mass is not None, half_track)
+
+    @property
+    def sprung_mass(self) -> float:
+        """Mass of a usual body in it, kg."""
+        return self.mass * (1 - 4 * _WHEEL_SHARE)
+
+
+def start_grid(outline: VehicleSize, known: Mapping[str, Known], engine: bool = False) -> Iterator[dict[str, float]]:
+    """Make vehicles of every usual kind, of one size.
+
+    Parameters
+    ----------
+    outline
+        The size.
+    known
+        What was measured beforehand.
+    engine
+        Whether each has an engine on mounts, wherever that usually is.
+
+    Yields
+    ------
+    dict
+        Values, SI, of every parameter of every linear model; the known ones hold.
+    """
+    wheelbase, front_share, half_track = outline.wheelbase, outline.front_share, outline.half_track
+    a, b = (1 - front_share) * wheelbase, front_share * wheelbase
+    wheel, sprung_mass = _WHEEL_SHARE * outline.mass, outline.sprung_mass
+    for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
+        values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
+        for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
+            spring = corner * (2 * np.pi * body) ** 2
+            values |= {
+                f"m_u{axle}": wheel,
+                f"k_s{axle}": spring,
+                f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
+                f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
+            }
+            values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
+        values |= {"a": a, "b": b}
+        values |= NEUTRAL
+        for mounting in mountings_of(wheelbase) if engine else [USUAL_MOUNTING]:
+            values |= mounting.engine(USUAL_ENGINE * sprung_mass)
+            yield values | {name: one.value for name, one in known.items() if name in values}
+
+
+def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:
+    """Give wheelbase and the front axle's share of the weight."""
+    wheelbase = value.get("wheelbase")
+    if wheelbase is None and "a" in value and "b" in value:
+        wheelbase = value["a"] + value["b"]
+    if wheelbase is None:
+        wheelbase = float(np.ptp(places[:, 0])) if len(places) else 2.7
+    if "b" in value:
+        share = value["b"] / wheelbase
+    elif "a" in value:
+        share = 1 - value["a"] / wheelbase
+    elif "front_axle_mass" in value and "rear_axle_mass" in value:
+        share = value["front_axle_mass"] / (value["front_axle_mass"] + value["rear_axle_mass"])
+    else:
+        share = 0.5
+    return wheelbase, float(np.clip(share, 0.1, 0.9))
+
+
+def _mass(value: Mapping[str, float]) -> float | None:
+    if "total_mass" in value:
+        return value["total_mass"]
+    axles = [value[name] for name in ("front_axle_mass", "rear_axle_mass") if name in value]
+    if axles:
+        return sum(axles) * 2 / len(axles)
+    if "m_s" in value:
+        return value["m_s"] / (1 - 4 * _WHEEL_SHARE)
+    return None

@@ -1,0 +1,89 @@
+"""One change of a whole campaign that would put several of its statements right at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import dist
+
+from sprung.campaign import Campaign
+from sprung.errors import Fault
+from sprung.vehicle import Sensor, Wheel
+
+Place = tuple[float, float, float]
+
+_PAIRED = 0.5
+"""m by which the place of a sensor may miss that opposite to another one."""
+
+SIDES: Mapping[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
+"""Left and right exchanged."""
+
+ENDS: Mapping[Wheel, Wheel] = {"fl": "rl", "fr": "rr", "rl": "fl", "rr": "fr"}
+"""Front and rear exchanged."""
+
+
+@dataclass(frozen=True, eq=False)
+class CommonCause:
+    """A hypothesis about a whole campaign.
+
+    Attributes
+    ----------
+    fault
+        What it is called, and what to do about it.
+    changed
+        The campaign with it put right.
+    replaces
+        How many single statements it changes: of several hypotheses that explain the same, more stand for less.
+    """
+
+    fault: Fault
+    changed: Campaign
+    replaces: int
+
+    @property
+    def corrected(self) -> Campaign:
+        """The campaign with it put right and named."""
+        return replace(self.changed, faults=(*self.changed.faults, self.fault))
+
+
+def with_places(
+    campaign: Campaign, moved: Callable[[Place], Place], which: Callable[[Sensor], bool] = lambda _: True
+) -> tuple[Campaign, tuple[str, ...]]:
+    """Put the body's sensors, or some of them, elsewhere; give the campaign and the channels that moved."""
+    sensors, channels = [], []
+    for sensor in campaign.sensors:
+        if sensor.position is None or not which(sensor):
+            sensors.append(sensor)
+            continue
+        place = moved(sensor.position)
+        if place != sensor.position:
+            channels.append(sensor.channel)
+        sensors.append(replace(sensor, position=place))
+    return replace(campaign, sensors=tuple(sensors)), tuple(channels)
+
+
+def with_opposite_places(campaign: Campaign, opposite: Callable[[Place], Place]) -> tuple[Campaign, tuple[str, ...]]:
+    """Give each of the body's sensors the place of that on the opposite side; the opposite place where none is near it."""
+    places = [one.position for one in campaign.sensors if one.position is not None]
+    nearest = {place: _nearest(opposite(place), places) for place in places}
+    paired = all(
+        nearest[other] == place and dist(other[:2], opposite(place)[:2]) < _PAIRED for place, other in nearest.items()
+    )
+    return with_places(campaign, nearest.__getitem__ if paired else opposite)
+
+
+def _nearest(place: Place, places: Sequence[Place]) -> Place:
+    return min(places, key=lambda one: dist(one[:2], place[:2]))
+
+
+def with_stations(campaign: Campaign, other: Mapping[Wheel, Wheel]) -> tuple[Campaign, tuple[str, ...]]:
+    """Put the wheels' sensors on other wheels; give the campaign and the channels."""
+    sensors = tuple(
+        one if one.on is None or one.on == "body" else replace(one, on=other[one.on]) for one in campaign.sensors
+    )
+    return replace(campaign, sensors=sensors), tuple(one.channel for one in campaign.sensors if one.on != "body")
+
+
+def told(channels: tuple[str, ...]) -> str:
+    """Name several channels."""
+    return ", ".join(channels)

@@ -1,0 +1,115 @@
+"""One registry of file formats: every format is asked whether a file is its own, and exactly one must say yes."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import metadata
+from importlib.metadata import EntryPoint
+from typing import TYPE_CHECKING, Protocol
+
+from sprung.errors import InputError, Problem, did_you_mean
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+    from pathlib import Path
+
+    from sprung.formats.table import Table
+
+GROUP = "sprung.formats"
+HEAD = 8192
+
+# To look through everything that is installed takes as long as to read a file, of which a campaign has many.
+entry_points = cache(metadata.entry_points)
+
+# Known even where no package metadata is installed, as when running from the sources.
+_OWN = tuple(
+    EntryPoint(name, f"sprung.formats.{name}:{format_}", GROUP)
+    for name, format_ in (
+        ("csv", "CsvFormat"),
+        ("excel", "ExcelFormat"),
+        ("hdf5", "Hdf5Format"),
+        ("iso_mme", "IsoMmeFormat"),
+        ("mat", "MatFormat"),
+        ("mdf", "MdfFormat"),
+        ("parquet", "ParquetFormat"),
+        ("rpc", "RpcFormat"),
+        ("tdms", "TdmsFormat"),
+        ("uff", "UffFormat"),
+        ("wav", "WavFormat"),
+    )
+)
+
+
+class Format(Protocol):
+    """One file format.
+
+    A package adds one by an entry point in the group ``sprung.formats`` that leads to a class like this one. Heavy
+    libraries belong inside `read`: every format is loaded to be asked, only the one that is met may cost time.
+    """
+
+    def claims(self, path: Path, head: bytes) -> bool:
+        """Say whether the file is of this format, from its name and its first bytes."""
+        ...
+
+    def read(self, path: Path) -> Table:
+        """Read it.
+
+        Raises
+        ------
+        InputError
+            If it cannot be read; every problem at once.
+        """
+        ...
+
+
+def formats() -> dict[str, Format]:
+    """Give every installed format by its name, sprung's own first."""
+    found = {entry.name: entry for entry in (*_OWN, *entry_points(group=GROUP))}
+    return {name: entry.load()() for name, entry in found.items()}
+
+
+def read_table(path: Path, others: Collection[str] = ()) -> Table:
+    """Read a file in whatever known format it is.
+
+    Parameters
+    ----------
+    path
+        The file.
+    others
+        Names of files beside it that are wanted elsewhere: a file that is missing was hardly meant to be one of them.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    InputError
+        If it is missing or unreadable, if no format or more than one claims it, or if its content is faulty.
+    """
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD)
+    except FileNotFoundError:
+        beside = [other.name for other in path.parent.glob("*") if other.suffix != ".toml" and other.is_file()]
+        beside = [name for name in beside if name not in others]
+        do = "Put the recordings there, or correct the path."
+        if beside:
+            do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
+        raise InputError([Problem(path.name, f"no such file in {path.parent}", "a recording", do)]) from None
+    except IsADirectoryError:
+        raise InputError([Problem(path.name, "a folder", "a recording", "Name the file in it.")]) from None
+    except OSError as error:
+        reason = f"a file that cannot be read ({error.strerror})"
+        raise InputError([Problem(path.name, reason, "a recording", "See to its permissions.")]) from error
+    known = formats()
+    claiming = [name for name, format_ in known.items() if format_.claims(path, head)]
+    match claiming:
+        case [only]:
+            return known[only].read(path)
+        case []:
+            found, do = "a file of no known format", "Export the recording in one of these formats."
+        case _:
+            found = f"a file that {len(claiming)} formats claim: {', '.join(claiming)}"
+            do = "Export it in another format, or uninstall the package that claims too much."
+    raise InputError([Problem(path.name, found, f"exactly one of the known formats: {', '.join(known)}", do)])

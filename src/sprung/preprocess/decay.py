@@ -1,0 +1,162 @@
+"""A decay: the part of a recording in which the free-vibration model holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.campaign import LoggerClock
+from sprung.errors import Fault
+from sprung.preprocess.events import Events
+from sprung.preprocess.release import StaticBaseline, resolution
+
+FITTED = "in the fitted vehicle every tyre is down for good"
+"""Why a fit uses a decay from elsewhere than the recording alone shows."""
+
+
+@dataclass(frozen=True, eq=False)
+class FromFlight:
+    """What the samples between the release and the landing tell of the vehicle, whatever the clocks that they were taken by.
+
+    Attributes
+    ----------
+    names
+        Of the vehicle's parameters, half-distances of springs and dampers apart.
+    at
+        Their values for which the rest holds, SI, shape (parameter,).
+    gradient, information
+        Of the log-likelihood of these samples by the parameters, there; shapes (parameter,), (parameter, parameter).
+    left
+        Sum of squares that is left there, over the variance of the noise.
+    samples
+        How many there are.
+    """
+
+    names: tuple[str, ...]
+    at: NDArray[np.float64]
+    gradient: NDArray[np.float64]
+    information: NDArray[np.float64]
+    left: float
+    samples: int
+
+    def missed(self, values: NDArray[np.float64]) -> float:
+        """Give what is left for a vehicle near by, from its parameters, shape (parameter,)."""
+        step = values - self.at
+        return float(self.left + step @ (self.information @ step - 2 * self.gradient))
+
+
+@dataclass(frozen=True, eq=False)
+class FreeDecay:
+    """The usable part of one drop.
+
+    Attributes
+    ----------
+    name
+        The drop's short name.
+    file
+        The recording's file name.
+    load
+        Name of the load on the vehicle.
+    values
+        Shape (channel, time), m/s², positive up; NaN throughout in a channel that is left out.
+    earlier
+        The samples before them, back to the first landing: they belong to the decay if no tyre lifts off again, which
+        the accelerometers alone do not tell for certain. Shape (channel, time); none where the user gave the start.
+    rate
+        Samples per second.
+    start
+        Time of the first sample on the file's own clock, s.
+    rest
+        What the sensors read while the vehicle stood on the blocks.
+    faults
+        What is wrong with the drop.
+    clocks
+        For several loggers how their clocks stand to this one; without any, all channels have one clock.
+    shares
+        Samples that were taken of each channel for each one that is here; empty where it is 1 for all of them.
+    undone
+        Corner of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
+    velocity
+        What each sensor read above its rest level, integrated from rest to the first of the `earlier` samples, m/s,
+        as far as the high-pass that was undone remembers it; shape (channel,).
+    events
+        When what happened, and why the decay has its limits.
+    flight
+        What the flight before it tells of the vehicle; None where that is not used.
+    """
+
+    name: str
+    file: str
+    load: str
+    values: NDArray[np.float64]
+    earlier: NDArray[np.float64]
+    rate: float
+    start: float
+    rest: StaticBaseline
+    faults: tuple[Fault, ...] = ()
+    clocks: tuple[LoggerClock, ...] = ()
+    undone: tuple[float, ...] = ()
+    shares: tuple[float, ...] = ()
+    velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    events: Events = field(default_factory=Events)
+    flight: FromFlight | None = None
+
+    @cached_property
+    def usable(self) -> NDArray[np.bool_]:
+        """Which channels are not left out; shape (channel,)."""
+        usable: NDArray[np.bool_] = np.logical_not(np.isnan(self.values).any(axis=1))
+        return usable
+
+    @cached_property
+    def resolution(self) -> NDArray[np.float64]:
+        """Step of each channel as it was recorded, m/s², whatever was undone or taken off since; shape (channel,)."""
+        seen = resolution(np.nan_to_num(self.values))
+        return np.where(np.isnan(self.rest.step), seen, self.rest.step)
+
+    @property
+    def samples(self) -> int:
+        """Samples in each channel."""
+        return int(self.values.shape[1])
+
+    def moved(self, samples: int) -> FreeDecay:
+        """Give the decay with its start moved.
+
+        Parameters
+        ----------
+        samples
+            Later, or where negative earlier, at most as far as `earlier` reaches.
+        """
+        whole = np.concatenate([self.earlier, self.values], axis=1)
+        first = self.earlier.shape[1] + samples
+        start = self.start + samples / self.rate
+        events = replace(self.events, why_fit=FITTED) if samples else self.events
+        return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start, events=events)
+
+    @property
+    def end(self) -> float:
+        """Time of the last sample on the file's own clock, s."""
+        return self.start + (self.samples - 1) / self.rate
+
+
+def rounding(decays: Sequence[FreeDecay]) -> NDArray[np.float64]:
+    """Give the mean square of rounding to each channel's resolution at its worst.
+
+    Where a slow signal stays between two steps, the error is not spread evenly over a step but nearer to its ends.
+
+    Parameters
+    ----------
+    decays
+        All decays; those in which a channel is left out say nothing of it.
+
+    Returns
+    -------
+    ndarray
+        (m/s²)², shape (channel,).
+    """
+    steps = np.array([np.where(decay.usable, decay.resolution, np.inf) for decay in decays]).min(axis=0)
+    worst: NDArray[np.float64] = np.where(np.isfinite(steps), steps, 0.0) ** 2 / 6
+    return worst

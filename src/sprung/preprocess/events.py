@@ -1,0 +1,122 @@
+"""What happened when in a drop, and what its recording shows beside its decay: for people who want to see why."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.campaign import Recording
+from sprung.preprocess.release import StaticBaseline, no_rest
+from sprung.vehicle import Wheel
+
+
+@dataclass(frozen=True)
+class Events:
+    """When what happened, and why the decay is used from where to where.
+
+    Attributes
+    ----------
+    release
+        First motion, s on the recording's clock; None where no rest was found before it.
+    landing
+        When the last wheel that fell met the ground, s; None where no sensor tells.
+    last_lift_off
+        Last moment, not before the landing, at which a tyre may have been off the ground once more, s; None where none can have
+        been, or no sensor tells.
+    start
+        From when on the recording shows free vibration, s, not before any of these; None where nobody looked.
+    why_start, why_end
+        The reason for each limit of the decay, in words that go on after the time.
+    why_fit
+        The reason why a fit uses the decay from elsewhere; empty where it does not.
+    """
+
+    release: float | None = None
+    landing: float | None = None
+    last_lift_off: float | None = None
+    start: float | None = None
+    why_start: str = ""
+    why_end: str = ""
+    why_fit: str = ""
+
+
+class Mark(NamedTuple):
+    """Samples of a channel with which something is the matter.
+
+    Attributes
+    ----------
+    code
+        The fault's.
+    channel
+        Position of the channel.
+    samples
+        Positions of the samples, shape (sample,).
+    """
+
+    code: str
+    channel: int
+    samples: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class DropObservation:
+    """What one drop's recording shows, whether or not it can be used.
+
+    Attributes
+    ----------
+    recording
+        The whole of it, in SI, put right; channels that clip within the decay are still in it.
+    release
+        Position of the first sample that moves; None where no rest was found before it.
+    rest
+        What the sensors read before it.
+    marks
+        Samples with which something is the matter.
+    fell
+        For each wheel with a sensor, as far as the release shows it: whether it lost its block.
+    wheels
+        Those that were dropped: as stated, or as far as the release contradicts that, as it shows.
+    """
+
+    recording: Recording
+    release: int | None = None
+    rest: StaticBaseline = field(default_factory=lambda: no_rest(0))
+    marks: tuple[Mark, ...] = ()
+    fell: Mapping[Wheel, bool] = field(default_factory=dict)
+    wheels: tuple[Wheel, ...] = ()
+
+
+def marked(code: str, samples: NDArray[np.bool_]) -> tuple[Mark, ...]:
+    """Give a mark for each channel that has any.
+
+    Parameters
+    ----------
+    code
+        The fault's.
+    samples
+        Shape (channel, time).
+    """
+    some = np.flatnonzero(np.asarray(samples.any(axis=1))).tolist()
+    return tuple(Mark(code, channel, np.flatnonzero(samples[channel])) for channel in some)
+
+
+def filled_in(before: Recording, after: Recording) -> NDArray[np.bool_]:
+    """Say which samples were replaced by others.
+
+    Parameters
+    ----------
+    before, after
+        One recording.
+
+    Returns
+    -------
+    ndarray
+        Shape (channel, time).
+    """
+    there = np.isfinite(before.values) & np.isfinite(after.values)
+    replaced: NDArray[np.bool_] = there & (before.values != after.values)
+    return replaced

@@ -1,0 +1,161 @@
+"""The first motion of the body after each release: where it goes down tells on which side its wheels lost their blocks.
+
+Within some hundredths of a second after the release a spring that carried a corner of the body loses part of its force, at the
+wheels that fell and nowhere else. What the body then gains in velocity is linear in the place on the body, and adds up over the
+wheels: v(x, y) = Σ over axles (n (A + B x) + s C y), with n wheels that fell at the axle, s more on the left than on the right.
+A body goes down most where its wheels fell (C < 0; B has one sign at the front and the other at the rear), and turns about the
+opposite axle, as its radius of gyration is about that of two masses above the axles (centre of percussion). No mass and no rate
+has to be known for that, so it judges where sensors and wheels are said to be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.campaign import Campaign
+from sprung.preprocess.prepare import Prepared
+from sprung.preprocess.release import Release
+from sprung.preprocess.stated import wheels_that_fell
+from sprung.vehicle import Wheel
+
+Real = NDArray[np.float64]
+
+_AFTER = 0.06
+"""s after the release over which velocity is gained: the fall from blocks of 0.02 m takes as long."""
+
+_AT_ONCE = 0.02
+"""s after the release in which a wheel falls: the stiffest ones swing back soon after."""
+
+_EXPLAINED = 0.75
+"""Part of the sum of squares of the velocities that motion about the right places explains at least."""
+
+_SHOWN = 0.15
+"""Part of the largest velocity that a slope times the sensors' spread has to make up for its sign to count."""
+
+_ABOUT_THE_REAR, _ABOUT_THE_FRONT = (-2.0, -0.45), (-0.55, 1.0)
+"""x over the wheelbase about which a body turns whose front, and whose rear wheels fall: -1 and 0 for a body whose radius of
+gyration squared is a b; the limits are those of 0.4 and 2 times that."""
+
+
+@dataclass(frozen=True, eq=False)
+class FirstMotion:
+    """How the body begins to move in each drop.
+
+    Attributes
+    ----------
+    channels
+        Positions of the body's sensors in the campaign.
+    velocities
+        What each gains in the first hundredths of a second, m/s, upward, shape (drop, channel); NaN where nothing tells.
+    fell
+        For each drop the wheels' channels that show a fall, by the station where they are said to be: whether they fell.
+    rises
+        Whether what moves most, among the body's sensors or among those of the wheels, begins to rise after the releases
+        where it should fall: no vehicle does.
+    """
+
+    channels: tuple[int, ...]
+    velocities: Real
+    fell: tuple[Mapping[Wheel, bool], ...]
+    rises: bool
+
+    @classmethod
+    def of(cls, campaign: Campaign, prepared: Prepared) -> FirstMotion:
+        """Read it from recordings that were prepared, for a campaign that may say otherwise where their sensors are."""
+        body = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body")
+        wheels = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on != "body")
+        gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
+        rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
+        fell = tuple(
+            wheels_that_fell(
+                seen.recording, None if seen.release is None else Release(seen.release, seen.rest), campaign.sensors
+            )
+            for seen in prepared.seen
+        )
+        return cls(body, gained[:, list(body)], fell, rises)
+
+
+def _gained(prepared: Prepared, channels: int, span: float) -> Real:
+    """Give the velocity that each channel gains in some time after the release, m/s, shape (drop, channel)."""
+    gained = np.full((len(prepared.seen), channels), np.nan)
+    for drop, seen in enumerate(prepared.seen):
+        if seen.release is not None:
+            count = max(round(span * seen.recording.rate), 2)
+            first = seen.recording.values[:, seen.release : seen.release + count]
+            gained[drop] = (first - seen.rest.level[:, None]).sum(axis=1) / seen.recording.rate
+    return gained
+
+
+def _rises(gained: Real) -> bool:
+    """Say whether the larger velocities of a group of sensors are upward, shape (drop, channel)."""
+    known = np.nan_to_num(gained)
+    return bool((known * np.abs(known)).sum() > 0)
+
+
+def moves_as_stated(
+    motion: FirstMotion, places: Sequence[tuple[float, float]], fallen: Sequence[Sequence[Wheel]], wheelbase: float
+) -> bool | None:
+    """Say whether the body moves first as bodies do, with its sensors at some places and some wheels fallen.
+
+    Parameters
+    ----------
+    motion
+        What the recordings show.
+    places
+        x and y of the body's sensors, m: forward of the front axle, left of the centreline.
+    fallen
+        The wheels that fell in each drop.
+    wheelbase
+        m.
+
+    Returns
+    -------
+    bool or None
+        None where neither drops of one end nor of one side show it.
+    """
+    counts = np.array([[sum(wheel[0] == end for wheel in wheels) for end in "fr"] for wheels in fallen], dtype=float)
+    sides = np.array(
+        [
+            [sum((1 if wheel[1] == "l" else -1) for wheel in wheels if wheel[0] == end) for end in "fr"]
+            for wheels in fallen
+        ],
+        dtype=float,
+    )
+    x, y = np.array(places, dtype=float).T
+    there = np.isfinite(motion.velocities)
+    velocities = motion.velocities[there]
+    if velocities.size == 0:
+        return None
+    ends_differ = bool(np.linalg.matrix_rank(counts) == 2)
+    sides_differ = bool(sides.any())
+    if not ends_differ and not sides_differ:
+        return None
+    columns = [np.broadcast_to(counts[:, [i]], there.shape) for i in range(2)]
+    columns += [counts[:, [i]] * x for i in range(2)] + [sides[:, [i]] * y for i in range(2)]
+    design = np.array([column[there] for column in columns]).T
+    found = np.linalg.lstsq(design, velocities, rcond=1e-9)[0]
+    left = velocities - design @ found
+    if left @ left > (1 - _EXPLAINED) * (velocities @ velocities):
+        return False
+    largest = float(np.abs(velocities).max())
+    front, rear, slope_front, slope_rear, left_front, left_rear = found.tolist()
+    if sides_differ:
+        tilts = (left_front + left_rear) * np.ptp(y)
+        if not tilts < -_SHOWN * largest:
+            return False
+    return not ends_differ or (
+        _turns(front, slope_front, wheelbase, _ABOUT_THE_REAR, -1.0)
+        and _turns(rear, slope_rear, wheelbase, _ABOUT_THE_FRONT, 1.0)
+    )
+
+
+def _turns(constant: float, slope: float, wheelbase: float, limits: tuple[float, float], way: float) -> bool:
+    """Say whether a body goes down where it should, and turns about a place where it should."""
+    if slope * way <= 0:
+        return False
+    low, high = limits
+    return low <= -constant / slope / wheelbase <= high

@@ -1,0 +1,47 @@
+"""The identified vehicle, to be simulated and exported."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sprung.assessment import Verdict
+from sprung.errors import InputError, Problem
+from sprung.estimate import Estimate
+from sprung.vehicle import Vehicle
+
+
+def identified_vehicle(
+    name: str, verdict: Verdict, parameters: Mapping[str, Estimate], heights: Mapping[str, float]
+) -> Vehicle:
+    """Return the vehicle whose parameters are the estimates.
+
+    Parameters
+    ----------
+    name
+        The vehicle's.
+    verdict
+        Of the result.
+    parameters
+        By name.
+    heights
+        Above the ground, m, by their keys in a campaign file.
+
+    Returns
+    -------
+    Vehicle
+
+    Raises
+    ------
+    InputError
+        If the verdict is reject, or a parameter is not determined.
+    """
+    if verdict.state == "reject":
+        do = "Read result.verdict.reasons; measure again, or correct the campaign."
+        raise InputError([Problem(f"result of {name}", "the verdict reject", "accept or doubtful", do)])
+    values = {parameter: found.value for parameter, found in parameters.items() if found.value is not None}
+    missing = [parameter for parameter in parameters if parameter not in values]
+    if missing:
+        found = f"no value of {', '.join(missing)}"
+        do = "Read result.unidentifiable: what is said there would determine them. Ratios are in result.scale.per_total_mass."
+        raise InputError([Problem(f"result of {name}", found, "every parameter determined", do)])
+    return Vehicle.nearest(values, name=name, **heights)

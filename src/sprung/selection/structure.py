@@ -1,0 +1,190 @@
+"""Which model is fitted: what the user says, what follows from what is known, and what is left to the records."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from sprung.campaign import Campaign
+from sprung.errors import Problems, did_you_mean
+from sprung.estimate import Known
+from sprung.estimation import USUAL_MOUNTING, Mounting
+from sprung.vehicle import (
+    EXTRAS,
+    LINEAR_EXTRAS,
+    CarriedAt,
+    Heights,
+    LinearModel,
+    NonlinearModel,
+    Tracks,
+    brought_by,
+    ground_forces,
+    nonlinear_elements,
+    parameter_names,
+    seven_degrees_of_freedom,
+)
+
+_SEPARATE = ("t_f1", "t_f2", "t_r1", "t_r2")
+_SHARED = ("t_f", "t_r")
+
+
+@dataclass(frozen=True, eq=False)
+class ModelStructure:
+    """The model to fit.
+
+    Attributes
+    ----------
+    campaign
+        Of which loads.
+    tracks
+        Whether springs and dampers of an axle share their half-distance.
+    extras
+        What it carries beyond the paper's seven degrees of freedom.
+    known
+        Everything known beforehand about its parameters, the wheelbase included.
+    open
+        Whether neither the user nor what is known says anything about the tracks, so that the records are to decide.
+    free
+        The extras about which the records are to decide.
+    tilting
+        Whether the sensors tilt with the body, so that they feel the less of gravity the further it turns: an effect of the
+        second order that only the model with forces beside it can show.
+    airborne
+        Whether wheels may be off the ground, so that the ground is a force beside the others.
+    met
+        Compression at which stops are thought to be met before a fit says so, m.
+    mounted
+        How an engine is thought to be mounted before a fit says so.
+    carried_at
+        Where the body is carried sideways, where two heights are known at which it may be.
+    """
+
+    campaign: Campaign
+    tracks: Tracks
+    extras: tuple[str, ...]
+    known: Mapping[str, Known]
+    open: bool
+    free: tuple[str, ...]
+    tilting: bool = False
+    airborne: bool = False
+    met: float = 1.0
+    mounted: Mounting = USUAL_MOUNTING
+    carried_at: CarriedAt = "wheels"
+
+    @property
+    def heights(self) -> Heights:
+        """How high things are, as far as it was measured."""
+        return self.campaign.heights._replace(carried_at=self.carried_at)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters: the vehicle's, and the masses of loads that are known with an uncertainty."""
+        used = {drop.load for drop in self.campaign.drops}
+        masses = [name for load in self.campaign.loads if load.name in used for name in load.uncertain_masses]
+        return (*parameter_names(self.tracks, self.extras), *masses)
+
+    @cached_property
+    def models(self) -> Mapping[str, LinearModel]:
+        """Equations of motion by load name, without the forces that no matrix carries."""
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
+        return {
+            load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
+            for load in self.campaign.loads
+        }
+
+    @cached_property
+    def stepped(self) -> Mapping[str, NonlinearModel]:
+        """Equations of motion by load name, with the forces that no matrix carries."""
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
+        forces = nonlinear_elements(self.tracks, self.extras) + (ground_forces(self.extras) if self.airborne else ())
+        return {
+            load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
+            for load in self.campaign.loads
+        }
+
+    @property
+    def nonlinear(self) -> bool:
+        """Whether it has such forces."""
+        return any(extra not in LINEAR_EXTRAS for extra in self.extras)
+
+    @property
+    def followed(self) -> bool:
+        """Whether its motion has to be followed step by step."""
+        return self.nonlinear or self.airborne
+
+    @property
+    def linear_extras(self) -> tuple[str, ...]:
+        """Those of its extras that matrices carry."""
+        return tuple(extra for extra in self.extras if extra in LINEAR_EXTRAS)
+
+    def having(self, extras: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
+        """Give the same with other extras, and other tracks."""
+        ordered = tuple(extra for extra in EXTRAS if extra in extras)
+        return replace(self, tracks=tracks or self.tracks, extras=ordered)
+
+
+def choose_model(
+    campaign: Campaign, tracks: Tracks | None = None, extras: tuple[str, ...] | None = None
+) -> ModelStructure:
+    """Choose the model for a campaign, as far as nobody has to look into the records for it.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    tracks, extras
+        Override what the campaign's own ``[model]`` says.
+
+    Returns
+    -------
+    Choice
+
+    Raises
+    ------
+    InputError
+        If an extra is unknown or forbidden, or known half-distances contradict the choice of tracks.
+    """
+    problems = Problems()
+    where = "campaign" if campaign.path is None else campaign.path.name
+    wanted = campaign.model.extras if extras is None else extras
+    chosen_extras = tuple(wanted or ())
+    for extra in chosen_extras:
+        if extra not in EXTRAS:
+            do = did_you_mean(extra, EXTRAS)
+            problems.add(f"{where}: model.extras", f"'{extra}'", f"any of {', '.join(EXTRAS)}", do)
+        elif extra in campaign.model.forbid and extras is None:
+            problems.add(f"{where}: model", f"'{extra}' both wanted and forbidden", "one of the two", "Remove one.")
+
+    apart = [name for name in _SEPARATE if name in campaign.known]
+    together = [name for name in _SHARED if name in campaign.known]
+    chosen: Tracks = tracks or campaign.model.tracks or ("separate" if apart else "shared")
+    clash = apart if chosen == "shared" else together
+    if clash:
+        problems.add(
+            f"{where}: known.{clash[0]}",
+            f'{", ".join(clash)} with tracks = "{chosen}"',
+            "t_f and t_r where springs and dampers share their half-distance, t_f1, t_r1, t_f2 and t_r2 where not",
+            'Set tracks = "separate" in [model] or rename the known half-distances.',
+        )
+    names = parameter_names(chosen, chosen_extras) if not problems else ()
+    for extra in EXTRAS:
+        brought = brought_by(extra, chosen)
+        for name in (one for one in brought if one in campaign.known and names and one not in names):
+            problems.add(
+                f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",
+                f'Add extras = ["{extra}"] to [model], or remove it.',
+            )  # fmt: skip
+    problems.raise_if_any()
+
+    known = dict(campaign.known)
+    if campaign.wheelbase is not None:
+        known["wheelbase"] = campaign.wheelbase
+    for load in campaign.loads:
+        known |= load.uncertain_masses
+    undecided = tracks is None and campaign.model.tracks is None and not apart and not together
+    # Where heights are known they say all that gravity does.
+    said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.known else ()))
+    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in said)
+    ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
+    return ModelStructure(campaign, chosen, ordered, known, undecided, free)

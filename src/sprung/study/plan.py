@@ -1,0 +1,177 @@
+"""From a vehicle, or a campaign that is done, to the table of what could be measured next."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from sprung.analysis import fit_campaign, result_of, to_design
+from sprung.campaign import Campaign, CampaignSource, Drop, Given, ModelChoice, campaign_from, read_vehicle
+from sprung.errors import InputError, Problems
+from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
+from sprung.progress import Progress, Step, silent
+from sprung.selection import choose_model
+from sprung.simulation import DEFAULT_HEIGHT, Setup
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Load, Sensor, Vehicle
+
+RATE, NOISE, DURATION = 500.0, 0.02, 3.2
+"""Samples per second, m/s² root-mean-square, and s after the release where nobody says."""
+
+
+def plan(
+    source: Vehicle | CampaignSource,
+    *,
+    wanted: float = 1.0,
+    sensors: Sequence[Sensor | Mapping[str, Any]] | None = None,
+    loads: Sequence[Load | Mapping[str, Any]] | None = None,
+    drops: Sequence[Drop | Mapping[str, Any]] | None = None,
+    rate: float | None = None,
+    noise: float | Mapping[str, float] | None = None,
+    duration: float | None = None,
+    known: Mapping[str, Given] | None = None,
+    model: ModelChoice | Mapping[str, Any] | None = None,
+    progress: Progress = silent,
+) -> Plan:
+    """Say what a test would tell, what its alternatives would, and which of them is enough.
+
+    Parameters
+    ----------
+    source
+        A vehicle as it is thought to be, or the path of its vehicle file: then a test of it is planned. Or a campaign, or the
+        path of one: then it is identified, and the plan says what to measure next; its first row is what the campaign has told.
+    wanted
+        Percent that the standard uncertainty of no parameter is to exceed.
+    sensors, loads, drops, rate, noise, duration, known, model
+        Of the planned test of a vehicle, as for `sprung.simulate`; a vehicle file's own where none are given, else 500 samples
+        per second, 0.02 m/s² and 3.2 s. A campaign has its own.
+    progress
+        Told in words what is being done.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, something does not fit together, or the vehicle cannot be dropped so; all faults at once.
+
+    Examples
+    --------
+    >>> from sprung.vehicle import TABLE_1_CAR
+    >>> plan(TABLE_1_CAR).next_step.labels
+    ('total mass',)
+    """
+    problems = Problems()
+    _check_wanted(wanted, problems)
+    test: dict[str, object] = {"sensors": sensors, "loads": loads, "drops": drops, "rate": rate, "noise": noise}
+    test |= {"duration": duration, "known": known, "model": model}
+    if isinstance(source, Campaign) or not (isinstance(source, Vehicle) or _describes_vehicle(source)):
+        for name, value in test.items():
+            if value is not None:
+                found = f"{value:g}" if isinstance(value, float | int) else type(value).__name__
+                do = f"Leave {name} out, or plan from a vehicle."
+                problems.add(f"plan: {name}", found, "nothing: a campaign brings its own along", do)
+        problems.raise_if_any()
+        return _plan_further(campaign_from(source, progress), wanted, progress)
+    if isinstance(source, Vehicle):
+        vehicle = source
+    else:
+        file = read_vehicle(source)
+        vehicle = file.vehicle
+        sensors = file.sensors or None if sensors is None else sensors
+        loads = file.loads if loads is None else loads
+        drops = file.drops or None if drops is None else drops
+        known = file.all_known if known is None else known
+        model = file.model if model is None else model
+    rate = RATE if rate is None else rate
+    noise = NOISE if noise is None else noise
+    duration = DURATION if duration is None else duration
+    setup = Setup.of(
+        vehicle,
+        sensors=sensors,
+        loads=loads,
+        drops=drops,
+        rate=rate,
+        noise=noise,
+        offset=0.0,
+        gravity=STANDARD_GRAVITY,
+        known=known,
+        model=model,
+        problems=problems,
+    )
+    levels = setup.sensing.noise
+    if not (levels > 0).all() and not any("noise" in problem.where for problem in problems):
+        do = "Without noise every uncertainty would be zero: give the noise of your sensors."
+        problems.add("plan: noise", f"{float(levels.min())} m/s^2", "more than 0", do)
+    if not (math.isfinite(duration) and duration > 0):
+        problems.add("plan: duration", f"{duration} s", "a positive number", "Correct it.")
+    if setup.model.tracks == "shared" and vehicle.tracks == "separate":
+        found = "half-distances of springs and dampers apart"
+        problems.add("plan: vehicle", f'{found} with tracks = "shared"', "one half-distance per axle", "Remove one.")
+    _raise_as_plan(problems)
+
+    statement = Campaign(
+        name=vehicle.name,
+        sensors=setup.sensing.sensors,
+        drops=(),
+        recordings=(),
+        loads=setup.loads,
+        wheelbase=setup.known["wheelbase"],
+        cg_height=vehicle.cg_height,
+        wheel_height=vehicle.wheel_height,
+        roll_axis_height=vehicle.roll_axis_height,
+        known={name: quantity for name, quantity in setup.known.items() if name != "wheelbase"},
+        model=setup.model,
+    )
+    own = vehicle.extras
+    choice = choose_model(
+        statement,
+        setup.model.tracks or ("separate" if vehicle.tracks == "separate" else None),
+        own if setup.model.extras is None else None,
+    )
+    subject = Subject(
+        vehicle, choice.tracks, choice.extras, choice.known, setup.sensing.sensors, levels, rate, duration
+    )
+    loaded = {load.name: load for load in setup.loads}
+    planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
+    return draw_up(PlannedTest(subject, planned), wanted)
+
+
+def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
+    """Identify a vehicle, and say what to measure next."""
+    fitted = fit_campaign(campaign, progress=progress)
+    result = result_of(fitted, progress=progress)
+    if result.verdict.state == "reject":
+        rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
+        return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
+    progress(Step("computing the bounds of the alternatives"))
+    return draw_up(to_design(fitted), wanted)
+
+
+def _describes_vehicle(path: str | os.PathLike[str]) -> bool:
+    """Tell a vehicle file, which has the section ``[parameters]``; what cannot be read is left to who reads it."""
+    try:
+        return "parameters" in tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
+    except (OSError, ValueError):
+        return False
+
+
+def _check_wanted(wanted: float, problems: Problems) -> None:
+    if not (math.isfinite(wanted) and wanted > 0):
+        problems.add("plan: wanted", f"{wanted:g} %", "a positive percentage", "Give one, such as 1.")
+
+
+def _raise_as_plan(problems: Problems) -> None:
+    """Raise what was found, naming the arguments of `simulate` as those of `plan`."""
+    if problems:
+        raise InputError(replace(one, where=re.sub(r"^simulate:", "plan:", one.where)) for one in problems)

@@ -1,0 +1,100 @@
+"""Drops used from their release on: what that tells beyond the decays, and when it is not done."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sprung
+from sprung.preprocess import flights, prepare
+from sprung.preprocess.flight import FROM_RELEASE
+from sprung.vehicle import TABLE_1_CAR
+
+LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
+DROPS: list[dict[str, Any]] = [
+    {"wheels": ("fl", "fr")},
+    {"wheels": ("fl", "rl")},
+    {"wheels": ("fl", "fr"), "load": "ballast"},
+]
+
+
+@pytest.fixture(scope="module")
+def campaign() -> sprung.Campaign:
+    return sprung.simulate(TABLE_1_CAR, loads=[LOAD], drops=DROPS, rate=250, duration=1.6, noise=0.2, seed=3)
+
+
+@pytest.fixture(scope="module")
+def landed(campaign: sprung.Campaign) -> sprung.Result:
+    return sprung.identify(campaign, fall=False)
+
+
+@pytest.fixture(scope="module")
+def fallen(campaign: sprung.Campaign) -> sprung.Result:
+    return sprung.identify(campaign)
+
+
+def test_where_the_decays_tell_too_little_the_fall_is_used(landed: sprung.Result, fallen: sprung.Result) -> None:
+    """Every parameter within four standard errors of the truth, and these hardly more than half of what they were."""
+    assert (landed.fit.since, fallen.fit.since) == ("landing", "release")
+    assert "the fall is used too" in fallen.fit.why
+    narrower = []
+    for name, truth in TABLE_1_CAR.parameters.items():
+        before, after = landed.parameters[name], fallen.parameters[name]
+        assert before.std is not None
+        assert after.value is not None
+        assert after.std is not None
+        assert abs(after.value - truth) < 4 * after.std
+        narrower.append(after.std / before.std)
+    assert np.median(narrower) < 0.7
+    assert fallen.fit.inflation < 1.5
+    assert all(drop.used_from is not None and 0.4 < drop.used_from < 0.42 for drop in fallen.drops)  # released at 0.4 s
+
+
+@pytest.mark.long
+def test_the_blocks_need_not_have_been_measured(campaign: sprung.Campaign, fallen: sprung.Result) -> None:
+    unmeasured = replace(campaign, drops=tuple(replace(drop, height=None) for drop in campaign.drops))
+    found = sprung.identify(unmeasured)
+    assert found.fit.since == "release"
+    for name, one in fallen.parameters.items():
+        assert found.parameters[name].value == pytest.approx(one.value, rel=1e-3)
+
+
+@pytest.mark.long
+def test_a_fall_that_the_model_does_not_explain_is_not_used(campaign: sprung.Campaign, landed: sprung.Result) -> None:
+    """Somebody holds on to the body after the release: the decays are used as before, and it is said."""
+    held = []
+    for recording in campaign.recordings:
+        time = recording.start + np.arange(recording.values.shape[1]) / recording.rate
+        pull = 8.0 * ((time > 0.405) & (time < 0.43)) * np.array([[1.0]] * 4 + [[0.0]] * 4)
+        held.append(replace(recording, values=recording.values + pull))
+    found = sprung.identify(replace(campaign, recordings=tuple(held)), fall=True)
+    assert found.fit.since == "landing"
+    assert "was tried and says nothing more" in found.fit.why
+    for channel, noise in landed.fit.noise.items():
+        assert found.fit.noise[channel] == pytest.approx(noise, rel=0.02)
+
+
+def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
+    """Those after a release that was found, of which nobody said from when on to use them, and whose samples are whole."""
+    prepared = prepare(campaign)
+    found = flights(prepared.decays, campaign.drops, prepared.seen)
+    for one, decay, seen in zip(found, prepared.decays, prepared.seen, strict=True):
+        assert one is not None
+        assert one.decay.events.why_fit == FROM_RELEASE
+        assert one.decay.end == pytest.approx(decay.end)
+        np.testing.assert_array_equal(one.decay.values, seen.recording.values[:, -one.decay.samples :])
+        assert one.since == pytest.approx(0.012)
+    started = [replace(drop, start=0.6) for drop in campaign.drops]
+    prepared = prepare(replace(campaign, drops=tuple(started)))
+    assert flights(prepared.decays, started, prepared.seen) == [None] * 3
+    clipped = [replace(one, values=np.clip(one.values, -30.0, 30.0)) for one in campaign.recordings]
+    prepared = prepare(replace(campaign, recordings=tuple(clipped)))
+    assert flights(prepared.decays, campaign.drops, prepared.seen) == [None] * 3
+
+
+def test_the_campaign_may_say_whether_the_fall_is_used(campaign: sprung.Campaign) -> None:
+    told = replace(campaign, model=replace(campaign.model, fall=False))
+    assert sprung.identify(told).fit.since == "landing"

@@ -1,0 +1,68 @@
+"""How much less than white and agreeing records: against processes whose answer is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio
+
+
+def test_white_residuals_are_left_alone() -> None:
+    random = np.random.default_rng(1)
+    alarms = 0
+    for _ in range(50):
+        records = [0.02 * random.standard_normal((8, 1500)) for _ in range(10)]
+        alarms += int(np.sum(autocorrelation_inflation(records, [500.0] * 10) > 1))
+    assert alarms <= 4  # of 400 channels, at three standard errors one-sided: 0.13 %, 0.5 expected
+
+
+@pytest.mark.parametrize("time_constant", [0.004, 0.02])
+def test_coloured_residuals_are_found_out(time_constant: float) -> None:
+    """A first-order process with ρ = exp(-Δt/τ) has a mean with (1 + ρ)/(1 - ρ) times the variance of a white one's."""
+    random = np.random.default_rng(2)
+    rho = np.exp(-0.002 / time_constant)
+    records = []
+    for _ in range(10):
+        noise = random.standard_normal((2, 1700))
+        record = np.zeros_like(noise)
+        for k in range(1, 1700):
+            record[:, k] = rho * record[:, k - 1] + noise[:, k]
+        records.append(record[:, 200:])
+    expected = (1 + rho) / (1 - rho)
+    # Bartlett's weights over 0.1 s see at least 70 % of it at the longer time constant.
+    assert np.all(autocorrelation_inflation(records, [500.0] * 10) == pytest.approx(expected, rel=0.35))
+
+
+def test_a_channel_left_out_counts_nothing() -> None:
+    random = np.random.default_rng(3)
+    record = np.repeat(random.standard_normal((2, 300)), 5, axis=1)
+    record[1] = np.nan
+    colour = autocorrelation_inflation([record], [500.0])
+    assert colour[0] > 3
+    assert colour[1] == 1.0
+
+
+def simulated(drops: int, excess: float, seed: int) -> float:
+    """Scores of drops whose own estimates scatter with `excess` times their information's variance, centred jointly."""
+    random = np.random.default_rng(seed)
+    informations = []
+    for _ in range(drops):
+        root = random.standard_normal((6, 6))
+        informations.append(root @ root.T)
+    own = [random.multivariate_normal(np.zeros(6), excess * np.linalg.inv(F)) for F in informations]
+    joint = np.linalg.solve(sum(informations), sum(F @ x for F, x in zip(informations, own, strict=True)))
+    scores = np.array([F @ (x - joint) for F, x in zip(informations, own, strict=True)])
+    return birge_ratio(scores, np.array(informations))
+
+
+def test_agreeing_drops_are_left_alone() -> None:
+    assert sum(simulated(10, 1.0, seed) > 1 for seed in range(100)) <= 3
+
+
+def test_drops_that_disagree_give_their_ratio_away() -> None:
+    assert np.mean([simulated(10, 4.0, seed) for seed in range(50)]) == pytest.approx(4.0, rel=0.1)
+
+
+def test_one_drop_cannot_disagree() -> None:
+    assert simulated(1, 9.0, 1) == 1.0

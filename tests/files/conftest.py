@@ -1,0 +1,5 @@
+"""Fixtures of this folder."""
+
+from campaign_folder import folder, text, vehicle_file
+
+__all__ = ["folder", "text", "vehicle_file"]

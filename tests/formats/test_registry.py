@@ -1,0 +1,70 @@
+from __future__ import annotations
+
+from importlib.metadata import EntryPoint
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from sprung.errors import InputError
+from sprung.formats import Table, formats, read_table, registry
+from sprung.formats.store import holding
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+class Greedy:
+    """A format that claims everything."""
+
+    def claims(self, path: Path, head: bytes) -> bool:
+        return bool(path.name and head)
+
+    def read(self, path: Path) -> Table:
+        return Table((path.stem,), (None,), holding(np.zeros((1, 4))), clock=2.0)
+
+
+class GreedyEntry:
+    name = "greedy"
+
+    @staticmethod
+    def load() -> type[Greedy]:
+        return Greedy
+
+
+def installed(monkeypatch: pytest.MonkeyPatch, *entries: object) -> None:
+    monkeypatch.setattr(registry, "entry_points", lambda *, group: entries if group == "sprung.formats" else ())
+
+
+def test_text_tables_are_known_without_package_metadata(monkeypatch: pytest.MonkeyPatch) -> None:
+    installed(monkeypatch)
+    own = ["csv", "excel", "hdf5", "iso_mme", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
+    assert list(formats()) == own
+
+
+def test_a_format_registered_twice_counts_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    entry = EntryPoint("csv", "sprung.formats.csv:CsvFormat", "sprung.formats")
+    installed(monkeypatch, entry, entry)
+    (tmp_path / "a.csv").write_text("time,a\n0,1\n1,2\n")
+    assert read_table(tmp_path / "a.csv").channels == ("a",)
+
+
+def test_two_claims_are_an_error_naming_both(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    installed(monkeypatch, GreedyEntry())
+    (tmp_path / "a.csv").write_text("time,a\n0,1\n1,2\n")
+    with pytest.raises(InputError, match="2 formats claim: csv, greedy"):
+        read_table(tmp_path / "a.csv")
+
+
+def test_the_one_that_claims_reads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    installed(monkeypatch, GreedyEntry())
+    (tmp_path / "a.bin").write_bytes(b"\0")
+    table = read_table(tmp_path / "a.bin")
+    assert table.time.tolist() == [0, 0.5, 1, 1.5]  # 2 samples per second from 0
+    assert table.place(1) == "sample 2"
+
+
+def test_no_claim_names_the_known_formats(tmp_path: Path) -> None:
+    (tmp_path / "a.bin").write_bytes(b"\0")
+    with pytest.raises(InputError, match="no known format; expected exactly one of the known formats: csv"):
+        read_table(tmp_path / "a.bin")
