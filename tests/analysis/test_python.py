@@ -22,17 +22,8 @@ from sprung.vehicle import PARAMETERS, TABLE_1_CAR
 DATA = Path(__file__).resolve().parents[1] / "data"
 SAVED = Path(__file__).resolve().parents[1] / "report"
 ROOMS = (
-    "errors",
-    "estimate",
-    "campaign",
-    "assessment",
-    "planning",
-    "checking",
-    "results",
-    "modal_survey",
-    "analysis",
-    "study",
-    "paper",
+    *("errors", "estimate", "campaign", "assessment", "planning", "checking"),
+    *("results", "modal_survey", "analysis", "study", "paper"),
 )
 LINES = 10  # of any record in a console, by the issue
 
