@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 import sprung
@@ -37,7 +35,7 @@ def test_another_vehicle_in_one_drop_is_named(changed: dict[str, float]) -> None
     spoilt = tuple(
         two if i == 3 else one for i, (one, two) in enumerate(zip(made.recordings, other.recordings, strict=True))
     )
-    verdict = judged(replace(made, recordings=spoilt))
+    verdict = judged(made.with_recordings(spoilt))
     assert verdict.state != "accept"
     said = [reason for reason in verdict.reasons if "do not predict" in reason]
     assert len(said) == 1

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -34,7 +32,7 @@ def odd_one_out(**changed: float) -> Campaign:
     """The second drop is another vehicle's."""
     made = campaign(1)
     other = campaign(2, **changed).recordings[1]
-    return replace(made, recordings=tuple(other if i == 1 else one for i, one in enumerate(made.recordings)))
+    return made.with_recordings(other if i == 1 else one for i, one in enumerate(made.recordings))
 
 
 def predicted_by_a_fit(made: Campaign, position: int, weights: NDArray[np.float64]) -> float:

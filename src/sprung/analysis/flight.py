@@ -103,7 +103,7 @@ def fly(
     Flown or None
         None where no drop can be used so, or where the vehicle did something during the fall that the model does not have.
     """
-    found = flights(prepared.decays, campaign.drops, prepared.seen)
+    found = flights(prepared.decays, prepared.seen)
     if not any(found):
         return None
     progress(Step("using the fall"))

@@ -31,8 +31,8 @@ def to_design(fitted: Fitted) -> PlannedTest:
     )
     used = {decay.file for decay in decays}
     dropped = [
-        PlannedDrop(campaign.load(drop.load), seen.wheels, drop.height or DEFAULT_HEIGHT)
-        for drop, seen in zip(campaign.drops, fitted.prepared.seen, strict=True)
+        PlannedDrop(campaign.load(seen.drop.load), seen.wheels, seen.drop.height or DEFAULT_HEIGHT)
+        for seen in fitted.prepared.seen
         if seen.recording.name in used
     ]
     return campaign_of_fit(subject, fit, dropped)

@@ -183,7 +183,7 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
     problems = Problems()
     where = "campaign" if campaign.path is None else campaign.path.name
     problems.add(where, "no drop that can be used", "at least one", "Read the reasons below and record again.")
-    for _, _, faults in prepared.left_out:
+    for _, faults in prepared.left_out:
         for fault in faults:
             problems.add(fault.where, fault.what, "a usable decay", fault.do)
     problems.raise_if_any()

@@ -183,14 +183,13 @@ class Bench:
     def _as_recorded(self, campaign: Campaign) -> bool:
         """Say whether a campaign's samples are what they were."""
         before, after = ([one.high_pass for one in each.sensors] for each in (self.campaign, campaign))
-        return campaign.recordings is self.campaign.recordings and before == after
+        return campaign.recordings == self.campaign.recordings and before == after
 
     def _decays(self, campaign: Campaign) -> tuple[FreeDecay, ...]:
         """Give the decays of a campaign that was changed: the same samples, as long as nobody has touched them."""
         if not self._as_recorded(campaign):
             return prepare(campaign).decays
-        named = zip(campaign.drops, campaign.recordings, strict=True)
-        loads = {recording.name: drop.load for drop, recording in named}
+        loads = {drop.recording.name: drop.load for drop in campaign.drops}
         return tuple(replace(decay, load=loads[decay.file]) for decay in self.decays)
 
 
@@ -231,7 +230,6 @@ def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -
 def _cut(campaign: Campaign, spans: Mapping[str, Span]) -> Campaign:
     campaign = without_drops(*(one.name for one in campaign.recordings if one.name not in spans))(campaign)
     drops = [
-        replace(drop, start=spans[recording.name][0], end=spans[recording.name][1])
-        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
+        replace(drop, start=spans[drop.recording.name][0], end=spans[drop.recording.name][1]) for drop in campaign.drops
     ]
     return replace(campaign, drops=tuple(drops))

@@ -124,7 +124,6 @@ def plan(
         name=vehicle.name,
         sensors=setup.sensing.sensors,
         drops=(),
-        recordings=(),
         loads=setup.loads,
         wheelbase=setup.known["wheelbase"],
         cg_height=vehicle.cg_height,
