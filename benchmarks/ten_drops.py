@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
-from sprung.estimate import Known
 from sprung.estimation import FitResult, FitStatistics, fit_jointly, fit_linear, fit_nonlinear
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import choose_structure
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, LinearModel, NonlinearModel, Sensor, Vehicle
 
 Real = NDArray[np.float64]
@@ -48,7 +48,7 @@ class Task:
     decays: tuple[FreeDecay, ...]
     models: Mapping[str, LinearModel]
     sensors: tuple[Sensor, ...]
-    known: Mapping[str, Known]
+    known: Mapping[str, KnownValue]
 
     @property
     def nbytes(self) -> int:
@@ -108,7 +108,7 @@ class FrictionTask:
     decays: tuple[FreeDecay, ...]
     models: Mapping[str, NonlinearModel]
     sensors: tuple[Sensor, ...]
-    known: Mapping[str, Known]
+    known: Mapping[str, KnownValue]
     linear: FitResult
 
     @property

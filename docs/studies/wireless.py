@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.campaign import Campaign, Recording, merged
-from sprung.estimate import Known
 from sprung.simulation import default_sensors
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
 
 Real = NDArray[np.float64]
@@ -114,6 +114,6 @@ def wireless(
         for drop, recording in zip(together.drops, recordings, strict=True)
     )
     campaign = replace(
-        together, drops=drops, recordings=tuple(recordings), known={"total_mass": Known(vehicle.total_mass)}
+        together, drops=drops, recordings=tuple(recordings), known={"total_mass": KnownValue(vehicle.total_mass)}
     )
     return Wireless(campaign, np.array(ahead), together)

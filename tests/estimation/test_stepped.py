@@ -56,7 +56,7 @@ def test_with_nothing_to_step_it_is_the_linear_likelihood(
     larger = plain.with_terms(("friction",))
     start = optimum.parameters | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5}
     known = dict(plain.known) | {
-        name: sprung.estimate.Known(value) for name, value in start.items() if name[:2] in ("F_", "s_")
+        name: sprung.uncertainty.KnownValue(value) for name, value in start.items() if name[:2] in ("F_", "s_")
     }
     found = fit_nonlinear(
         decays, larger.nonlinear_models, campaign.sensors, known, start=start, states=optimum.states, near=True
@@ -128,7 +128,7 @@ def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(
     """Wald's test is exact to second order: half a percent off, a mass costs what its information says."""
     value = optimum.parameters["m_uf"] * 1.002
     expected = wald_test(optimum, [("m_uf", value)])
-    known = dict(plain.known) | {"m_uf": sprung.estimate.Known(value)}
+    known = dict(plain.known) | {"m_uf": sprung.uncertainty.KnownValue(value)}
     held = fit_linear(decays, plain.linear_models, campaign.sensors, known, start=optimum.parameters | {"m_uf": value})
     assert 2 * (optimum.loglikelihood - held.loglikelihood) == pytest.approx(expected, rel=0.05)
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Estimate, Known
 from sprung.estimation import FitResult, FitStatistics, estimate_of, profiled
 from sprung.progress import Progress, counted
 from sprung.selection import choose_structure
+from sprung.uncertainty import Estimate, KnownValue
 from sprung.vehicle import DERIVED, Tracks, parameter_names
 
 ALL = "all"
@@ -59,7 +59,7 @@ def check_asked(
 
 
 def profiles_of(
-    asked: Sequence[str], optimum: FitResult, fit: FitStatistics, known: Mapping[str, Known], progress: Progress
+    asked: Sequence[str], optimum: FitResult, fit: FitStatistics, known: Mapping[str, KnownValue], progress: Progress
 ) -> dict[str, Estimate]:
     """Estimate what was asked for, with intervals from profiles.
 

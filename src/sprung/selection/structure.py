@@ -8,8 +8,8 @@ from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Known
 from sprung.estimation import USUAL_MOUNTING, Mounting
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -63,7 +63,7 @@ class ModelStructure:
     campaign: Campaign
     tracks: Tracks
     terms: tuple[str, ...]
-    known: Mapping[str, Known]
+    known: Mapping[str, KnownValue]
     tracks_open: bool
     open_terms: tuple[str, ...]
     gravity_leakage: bool = False
