@@ -16,7 +16,7 @@ from typing import Any, TypeGuard
 import sprung
 from sprung.campaign import Campaign
 from sprung.errors import Fault
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 
 STORED = Path(__file__).parent / "report"
 DATA = Path(__file__).parent / "data"
@@ -46,7 +46,7 @@ def accepted() -> sprung.Result:
 
 def doubtful() -> sprung.Result:
     """The sedan with a mass that its known load contradicts: it is 1551.8 kg."""
-    known = {"total_mass": Known(1600.0, 1.0)}
+    known = {"total_mass": KnownValue(1600.0, 1.0)}
     return _linear(dataclasses.replace(campaign_of("sedan", *FOUR), known=known))
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.campaign import Campaign, Recording, merged
-from sprung.estimate import Known
 from sprung.simulation import default_sensors
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
 
 Real = NDArray[np.float64]
@@ -111,5 +111,5 @@ def wireless(
         whole = Recording(f"{drop.label}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
         recording = merged(whole, [part.start for part in parts])
         drops.append(replace(drop, file=None, files=tuple(part.name for part in parts), recording=recording))
-    campaign = replace(together, drops=tuple(drops), known={"total_mass": Known(vehicle.total_mass)})
+    campaign = replace(together, drops=tuple(drops), known={"total_mass": KnownValue(vehicle.total_mass)})
     return Wireless(campaign, np.array(ahead), together)

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from sprung.campaign import Campaign, Drop, DropTest, ModelChoice, Recording, read, write
 from sprung.campaign.comments import SECTIONS, meaning
 from sprung.errors import InputError
-from sprung.estimate import Known
 from sprung.files import atomic_write
 from sprung.files.ownership import MANIFEST
 from sprung.formats import split_unit
 from sprung.simulation import simulate
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Added, Item, Load, Sensor
 
 if TYPE_CHECKING:
@@ -90,14 +90,14 @@ def campaigns(draw: st.DrawFn) -> Campaign:
         sensors=where,
         drops=tuple(drops),
         loads=(EMPTY, load),
-        wheelbase=draw(st.none() | st.builds(Known, st.floats(1.5, 12), deviations)),
+        wheelbase=draw(st.none() | st.builds(KnownValue, st.floats(1.5, 12), deviations)),
         cg_height=draw(st.none() | st.floats(0.1, 4)),
         wheel_height=draw(st.none() | st.floats(0.05, 1.2)),
         roll_axis_height=draw(st.none() | st.floats(-2, 3)),
         known=draw(
             st.sampled_from(weighed).flatmap(
                 lambda one: st.dictionaries(
-                    st.just(one[0]), st.builds(Known, st.floats(one[1], one[2]), deviations), max_size=1
+                    st.just(one[0]), st.builds(KnownValue, st.floats(one[1], one[2]), deviations), max_size=1
                 )
             )
         ),
@@ -188,7 +188,7 @@ def test_comments_say_what_every_section_and_key_is_for(tmp_path: Path) -> None:
             Load(name="bags # of sand", items=(Item(mass=50.0, position=(-1.0, 0.0, 0.5)), Item(mass=5.0, on="fl"))),
             Load(name="totals", added=Added(mass=100.0, I_yy=20.0)),
         ),
-        known={"total_mass": Known(1500.0, 2.0), "a": Known(1.2)},
+        known={"total_mass": KnownValue(1500.0, 2.0), "a": KnownValue(1.2)},
     )
     path = write(campaign, tmp_path)
     text = path.read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from sprung.campaign.recording import Recording
 from sprung.campaign.sources import SourceFile
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problems, UnknownNameError
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, Heights, Load, Sensor, record
 
 
@@ -98,11 +98,11 @@ class Campaign:
     sensors: tuple[Sensor, ...]
     drops: tuple[DropTest, ...]
     loads: tuple[Load, ...] = (EMPTY,)
-    wheelbase: Known | None = None
+    wheelbase: KnownValue | None = None
     cg_height: float | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
-    known: Mapping[str, Known] = field(default_factory=dict)
+    known: Mapping[str, KnownValue] = field(default_factory=dict)
     model: ModelChoice = field(default_factory=ModelChoice)
     faults: tuple[Fault, ...] = ()
     path: Path | None = None

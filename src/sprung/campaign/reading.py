@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from sprung.campaign.recording import Recording
-    from sprung.estimate import Known
+    from sprung.uncertainty import KnownValue
 
 FILE = "campaign.toml"
 """The campaign file's name, where only its folder is given."""
@@ -56,17 +56,17 @@ class VehicleFile:
     sensors: tuple[Sensor, ...]
     loads: tuple[Load, ...]
     drops: tuple[Drop, ...]
-    wheelbase: Known | None = None
+    wheelbase: KnownValue | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
-    known: Mapping[str, Known] = field(default_factory=dict)
+    known: Mapping[str, KnownValue] = field(default_factory=dict)
     model: ModelChoice = field(default_factory=ModelChoice)
     path: Path | None = None
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
 
     @property
-    def all_known(self) -> dict[str, Known]:
+    def all_known(self) -> dict[str, KnownValue]:
         """What is known beforehand, the wheelbase included where the file gives it."""
         return dict(self.known) if self.wheelbase is None else {**self.known, "wheelbase": self.wheelbase}
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from sprung.campaign.campaign import Campaign
     from sprung.campaign.drop import DropTest
     from sprung.campaign.recording import Recording
-    from sprung.estimate import Known
+    from sprung.uncertainty import KnownValue
 
 
 def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
@@ -153,8 +153,8 @@ def _load(load: Load) -> dict[str, Any]:
     return keys
 
 
-def _measured(known: Known) -> float | dict[str, float]:
-    return known.value if known.exact else {"value": known.value, "std": known.std}
+def _measured(known: KnownValue) -> float | dict[str, float]:
+    return known.value if known.is_exact else {"value": known.value, "std": known.std}
 
 
 def _toml(document: Mapping[str, Any]) -> str:

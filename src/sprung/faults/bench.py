@@ -22,7 +22,7 @@ from sprung.estimation import (
 from sprung.faults.changes import silenced, without_drops
 from sprung.faults.tally import Noise, ResidualTable, noise_of, tally_of
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection import choose_model
+from sprung.selection import choose_structure
 from sprung.vehicle import LinearModel, Rows, Tracks
 
 Real = NDArray[np.float64]
@@ -167,14 +167,16 @@ class Bench:
             Whether one step from the direct start will do.
         """
         decays = self._decays(campaign) if decays is None else decays
-        choice = choose_model(campaign, self.tracks, self.extras)
+        choice = choose_structure(campaign, self.tracks, self.extras)
         sensors, known = campaign.sensors, choice.known
         starts, enough = (1, np.inf) if roughly else (_STARTS, NEAR)
-        optimum = fit_linear(decays, choice.models, sensors, known, start=start, starts=starts, enough=enough)
+        optimum = fit_linear(decays, choice.linear_models, sensors, known, start=start, starts=starts, enough=enough)
         noise = (
             self.base.noise if self._as_recorded(campaign) and "base" in self.__dict__ else noise_of(decays, optimum)
         )
-        return CandidateFit(campaign, decays, choice.models, optimum, tally_of(self.files, decays, optimum), noise)
+        return CandidateFit(
+            campaign, decays, choice.linear_models, optimum, tally_of(self.files, decays, optimum), noise
+        )
 
     def after(self, trial: CandidateFit) -> Bench:
         """Give the bench on which what was tried is the campaign."""

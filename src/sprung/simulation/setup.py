@@ -22,9 +22,9 @@ from sprung.campaign import (
     recording_names,
 )
 from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Known
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ class Setup:
     loads: tuple[Load, ...]
     drops: tuple[Drop, ...]
     sensing: Sensing
-    known: dict[str, Known]
+    known: dict[str, KnownValue]
     model: ModelChoice
 
     @classmethod
@@ -118,7 +118,9 @@ class Setup:
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
         sensing = Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
-        stated = {"wheelbase": Known(vehicle.wheelbase)} | known_quantities(known or {}, "simulate: known", problems)
+        stated = {"wheelbase": KnownValue(vehicle.wheelbase)} | known_quantities(
+            known or {}, "simulate: known", problems
+        )
         _check_plausible(vehicle, chosen_sensors, all_loads, chosen_drops, stated, problems)
         return cls(
             vehicle,
@@ -180,7 +182,7 @@ def _check_plausible(
     sensors: Sequence[Sensor],
     loads: Sequence[Load],
     drops: Sequence[Drop],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     problems: Problems,
 ) -> None:
     """Add a problem for everything that a vehicle file may not state either."""
