@@ -14,11 +14,11 @@ from sprung.estimation import FitResult, fit_linear, uncertainty_of
 from sprung.estimation.closed_form import Likelihood
 from sprung.preprocess import FreeDecay, FromFlight, prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, record_of
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, parse_record
 
 Real = NDArray[np.float64]
 
-LOAD = record_of(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
+LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 CAMPAIGN, QUIET = (
     free_decays(TABLE_1_CAR, loads=[LOAD], states=2, noise=noise, seed=3, duration=1.5, rate=200)
     for noise in (0.02, 0.0)

@@ -19,7 +19,7 @@ from sprung.campaign.sources import SourceFile
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problems, UnknownNameError
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, record
+from sprung.vehicle import EMPTY, WHEELS, Finite, Heights, Load, Positive, Sensor, Wheel, checked_record
 
 KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
@@ -46,7 +46,7 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
     return KINDS.get(frozenset(wheels), " ".join(wheels))
 
 
-@record
+@checked_record
 class Drop:
     """One release off the blocks, as a campaign file describes it."""
 
@@ -184,7 +184,7 @@ def _shared_beginning(texts: Sequence[str]) -> str:
     return texts[0][: (*alike, False).index(False)]
 
 
-@record
+@checked_record
 class ModelChoice:
     """What the user says about the model; what is left out, sprung decides."""
 
@@ -198,7 +198,7 @@ class ModelChoice:
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
-@record
+@checked_record
 class TestRecord:
     """``[test]``: when, where and by whom the vehicle was tested; for the record, no number depends on it."""
 

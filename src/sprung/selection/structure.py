@@ -18,10 +18,10 @@ from sprung.vehicle import (
     LinearModel,
     NonlinearModel,
     Tracks,
-    brought_by,
-    ground_forces,
+    ground_contact_elements,
     nonlinear_elements,
     parameter_names,
+    parameters_of_term,
     seven_degrees_of_freedom,
 )
 
@@ -97,7 +97,9 @@ class ModelStructure:
     def stepped(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with the forces that no matrix carries."""
         elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
-        forces = nonlinear_elements(self.tracks, self.extras) + (ground_forces(self.extras) if self.airborne else ())
+        forces = nonlinear_elements(self.tracks, self.extras) + (
+            ground_contact_elements(self.extras) if self.airborne else ()
+        )
         return {
             load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
             for load in self.campaign.loads
@@ -169,7 +171,7 @@ def choose_model(
         )
     names = parameter_names(chosen, chosen_extras) if not problems else ()
     for extra in EXTRAS:
-        brought = brought_by(extra, chosen)
+        brought = parameters_of_term(extra, chosen)
         for name in (one for one in brought if one in campaign.known and names and one not in names):
             problems.add(
                 f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",
