@@ -114,7 +114,7 @@ def fly(
     way = tilted(ModelSearch(airborne, higher, decays, (), progress))
     if not way.optimum.converged or np.any(way.optimum.noise > _NO_WORSE * optimum.noise):
         return None
-    now = uncertainty_of(way.optimum, decays)
+    now = uncertainty_of(way.optimum)
     known = np.sqrt(np.diag(fit.covariance)) > 0
     ratios = np.sqrt(np.diag(now.covariance)[known] / np.diag(fit.covariance)[known])
     sharper = float(np.median(ratios))

@@ -111,7 +111,7 @@ class Stand(NamedTuple):
         way.progress(Step("computing the uncertainties"))
         optimum, decays = escape_local_optimum(way.optimum), tuple(way.decays)
         prepared = self.prepared._replace(decays=decays)
-        return Fitted(self.campaign, way.choice, way.why, prepared, optimum, uncertainty_of(optimum, decays), way.path)
+        return Fitted(self.campaign, way.choice, way.why, prepared, optimum, uncertainty_of(optimum), way.path)
 
 
 def begun(

@@ -163,7 +163,7 @@ def _scores(way: ModelSearch, extras: Sequence[str]) -> dict[str, float]:
     larger = way.larger(extras)
     start = neutral_start(larger, way.optimum.parameters)
     candidates = {extra: brought(extra, larger.tracks) for extra in extras}
-    return score_nonlinear_terms(way.optimum, way.decays, larger.stepped, start, candidates)
+    return score_nonlinear_terms(way.optimum, larger.stepped, start, candidates)
 
 
 def _scored(way: ModelSearch, extras: Sequence[str]) -> tuple[ModelSearch, dict[str, float]]:
