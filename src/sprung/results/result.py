@@ -17,7 +17,6 @@ from sprung.assessment import DropValidation, Verdict
 from sprung.checking import DropReport, Recorded
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.estimate import Covariance, Estimate, Named
 from sprung.estimation import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
 from sprung.files import atomic_write
 from sprung.results.amplitude import Amplitudes
@@ -29,6 +28,7 @@ from sprung.results.tables import characteristics_tables, modes_table, other_qua
 from sprung.results.vehicle import identified_vehicle
 from sprung.selection import SelectionStep
 from sprung.tables import escaped
+from sprung.uncertainty import Covariance, Estimate, NamedValues
 from sprung.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ class Result:
 
     def __post_init__(self) -> None:
         for mapping in ("parameters", "derived", "modes", "validation", "series", "recordings"):
-            object.__setattr__(self, mapping, Named(getattr(self, mapping)))
+            object.__setattr__(self, mapping, NamedValues(getattr(self, mapping)))
 
     def __repr__(self) -> str:
         said = ", ".join(f"{name} {found}" for name, found in self.parameters.items())

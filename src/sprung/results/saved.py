@@ -18,12 +18,12 @@ import numpy as np
 from pydantic import ValidationError
 
 from sprung.errors import Problem, Problems, ResultFileError
-from sprung.estimate import Estimate
 from sprung.results.checksums import SEALS, arrays_seal, document_seal
 from sprung.results.plain import record_from
 from sprung.results.result import SCHEMA, Result
 from sprung.results.series import Everything, everything_in
 from sprung.results.withholding import withhold_estimates
+from sprung.uncertainty import Estimate
 from sprung.vehicle import UNKNOWN_KEY
 
 _AGAIN = "Run the identification again, or take the file from where it was copied."

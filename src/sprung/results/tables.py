@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from sprung.estimate import Estimate, Ratio, round_by_uncertainty
 from sprung.estimation import ModeEstimate
 from sprung.tables import Table, unit_text, value_cells, with_std
+from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
 from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, PARAMETERS, WHEEL_LOADS
 
 _OF_ALL = "of the empty vehicle"
