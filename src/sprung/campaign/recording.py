@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.vehicle import separated
+from sprung.vehicle import with_separate_tracks
 
 CLOCK_STD = 0.05
 """Standard uncertainty of a clock offset that was estimated from the first motion in the records alone, s."""
@@ -53,7 +53,7 @@ class LoggerClock:
         parameters
             Of the vehicle, SI.
         """
-        apart = separated(parameters)
+        apart = with_separate_tracks(parameters)
         return self.delay + sum(slope * apart[name] for name, slope in self.d_delay_d_parameter.items())
 
 
