@@ -21,7 +21,7 @@ from sprung.analysis.profiles import check_asked, profiles_of
 from sprung.analysis.stand import Fitted
 from sprung.analysis.starting import start_values
 from sprung.assessment import BodyMotion, Misfit, ModeAmplitude, body_motions, judge, judge_residuals, validate_drops
-from sprung.campaign import CampaignSource, campaign_from
+from sprung.campaign import CampaignSource, resolve_campaign
 from sprung.checking import check_prepared
 from sprung.errors import Omissions
 from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
@@ -142,7 +142,7 @@ def identify_campaign(
     """
     tracks, extras = model_options(tracks, extras)
     begin = start_values(start)
-    campaign = campaign_from(campaign, progress)
+    campaign = resolve_campaign(campaign, progress)
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
     options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from sprung.campaign import KINDS, Drop, Recording
+from sprung.campaign import DROP_KINDS, Drop, Recording
 from sprung.errors import Fault
 from sprung.preprocess.fallen import channels_that_fell
 from sprung.preprocess.falls import read_fall
@@ -82,7 +82,7 @@ def contradicted(drops: Sequence[Drop], fell: Sequence[Fell]) -> tuple[int, ...]
         exchanged = [{swap.get(wheel, wheel): falls for wheel, falls in told.items()} for told in fell]
         if not any(_otherwise(drop, told) for drop, told in zip(drops, exchanged, strict=True)):
             return ()
-    return tuple(i for i in wrong if frozenset(as_seen(drops[i], fell[i])) in KINDS)
+    return tuple(i for i in wrong if frozenset(as_seen(drops[i], fell[i])) in DROP_KINDS)
 
 
 def _otherwise(drop: Drop, fell: Fell) -> set[Wheel]:
