@@ -103,16 +103,11 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     Raises
     ------
     InputError
-        If there is no such mode or load, its shape is not held, or the result was rejected.
+        If there is no such mode or load; a rejected result has none.
     """
     load = chosen(load or next(iter(result.modes)), list(result.modes), "load")
     modes = {one.name: one for one in result.modes[load]}
     found = modes[chosen(name, list(modes), "mode")]
-    if not found.motion or result.verdict.state == "reject":
-        what = "no shape" if not found.motion else "a rejected result"
-        raise InputError(
-            [Problem(f"mode {name}", what, "a result that holds its shape", "Identify the campaign again.")]
-        )
     car, axes = wire_car(result), single(axes)
     rise = (car.swing(found.motion) * np.exp(1j * phase)).real
     moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)
