@@ -30,7 +30,7 @@ ROOMS = (
     "cli",
     "drafting",
     "errors",
-    "estimate",
+    "uncertainty",
     "estimation",
     "faults",
     "files",

@@ -45,7 +45,7 @@ ROOMS = (
     "files",
     "vehicle",
     "tables",
-    "estimate",
+    "uncertainty",
     "units",
     "errors",
 )

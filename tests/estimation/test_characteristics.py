@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sprung.estimate import Known
 from sprung.estimation import FitStatistics, characteristics_of
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, characteristic, wheel_loads
 
 UNEVEN = replace(TABLE_1_CAR, y_s=0.02, d_ksf=600.0, name="uneven")
@@ -83,7 +83,7 @@ def test_what_was_known_exactly_is_known() -> None:
     names = list(TABLE_1_CAR.parameters)
     total = TABLE_1_CAR.total_mass
     found = characteristics_of(
-        fit_of(TABLE_1_CAR, correlated(len(names), 0.003)), {"total_mass": Known(total)}, TABLE_1_CAR.model()
+        fit_of(TABLE_1_CAR, correlated(len(names), 0.003)), {"total_mass": KnownValue(total)}, TABLE_1_CAR.model()
     )
     assert (found["total_mass"].status, found["total_mass"].value, found["total_mass"].std) == ("known", total, 0.0)
 

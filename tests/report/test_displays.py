@@ -23,9 +23,9 @@ from goldens import RESULTS, stored_result
 from layouts import check_view_is_whole
 from sprung.checking import ChannelReport, Check, DropReport
 from sprung.errors import Fault
-from sprung.estimate import Estimate
 from sprung.modal_survey import FoundMode, LoadModes
 from sprung.report import check_view, comparison_view, modes_view, page_of, result_view, text_of
+from sprung.uncertainty import Estimate
 from sprung.vehicle import WHEELS
 
 HERE = Path(__file__).parent

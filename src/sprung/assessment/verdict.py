@@ -13,9 +13,9 @@ import numpy as np
 from sprung.assessment.drops import DropValidation
 from sprung.assessment.residuals import Misfit
 from sprung.display import shown
-from sprung.estimate import Estimate
 from sprung.estimation import FitStatistics
 from sprung.tables import escaped
+from sprung.uncertainty import Estimate
 
 State = Literal["accept", "doubtful", "reject"]
 """What a verdict may be: see `Verdict`."""

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.modal import leading_entry
+from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
 from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
 
 Real = NDArray[np.float64]
@@ -107,7 +107,7 @@ class Estimates:
     correlation: Correlation
 
 
-def to_estimates(fit: FitStatistics, known: Mapping[str, Known]) -> Estimates:
+def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimates:
     """Say what the fit allows to be said.
 
     Parameters
@@ -125,7 +125,7 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, Known]) -> Estimates:
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 
-def estimate_of(fit: FitStatistics, known: Mapping[str, Known], name: str) -> Estimate:
+def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> Estimate:
     """Say what the fit says of one quantity.
 
     Parameters
@@ -141,7 +141,7 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, Known], name: str) -> Es
     """
     value, gradient = quantity(name, fit.names, fit.values)
     unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
-    if name in known and known[name].exact:
+    if name in known and known[name].is_exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
     std = fit.spread(gradient * fit.slopes, fit.size(name) if name in fit.names else value)

@@ -10,7 +10,6 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import Known
 from sprung.estimation.closed_form import Likelihood
 from sprung.estimation.modulating_functions import modulating_function_estimate
 from sprung.estimation.overdispersion import birge_ratio
@@ -19,6 +18,7 @@ from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, NEARER, Estimati
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_names
 
 Real = NDArray[np.float64]
@@ -131,7 +131,7 @@ def fit_linear(
     decays: Sequence[FreeDecay],
     models: Mapping[str, LinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     *,
     start: Mapping[str, float] | None = None,
     guess: Mapping[str, float] = MappingProxyType({}),
@@ -247,7 +247,7 @@ def score_linear_term(
     decays: Sequence[FreeDecay],
     models: Mapping[str, LinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     values: Mapping[str, float],
 ) -> float:
     """Give what a model with more parameters would gain over one that is fitted already, without fitting it.
@@ -273,7 +273,7 @@ def _climb(
     decays: Sequence[FreeDecay],
     models: Mapping[str, LinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     typical: Mapping[str, float],
 ) -> EstimationProblem:
     names = next(iter(models.values())).names

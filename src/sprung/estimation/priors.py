@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import PARAMETERS, quantity
 
 Real = NDArray[np.float64]
@@ -102,14 +102,14 @@ class PriorsAndConstraints:
     """
 
     coordinates: Coordinates
-    statements: Mapping[str, Known]
+    statements: Mapping[str, KnownValue]
 
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
         """Names, values and sizes of error that count as one; of the exact statements, and of the others."""
         chosen = {}
         for exact in (True, False):
-            those = {name: known for name, known in self.statements.items() if known.exact == exact}
+            those = {name: known for name, known in self.statements.items() if known.is_exact == exact}
             values = np.array([known.value for known in those.values()])
             std = np.array([known.std for known in those.values()])
             sizes = np.abs(values) if exact else np.maximum(std, _FINEST * np.abs(values))

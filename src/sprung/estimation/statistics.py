@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimate import Known
 from sprung.estimation.fit import STARTS, FitResult, escape_local_optimum, fit_linear
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import PARAMETERS, LinearModel, Sensor
 
 Real = NDArray[np.float64]
@@ -160,7 +160,7 @@ def fit_jointly(
     decays: Sequence[FreeDecay],
     models: Mapping[str, LinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     *,
     start: Mapping[str, float] | None = None,
     starts: int = STARTS,

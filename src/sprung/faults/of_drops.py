@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimate import Known
 from sprung.estimation import NEAR, fit_linear
 from sprung.faults.bench import Bench, CandidateFit
 from sprung.faults.changes import exchanged, relabelled, silenced, without_drops
@@ -20,6 +19,7 @@ from sprung.faults.measured import meanings
 from sprung.faults.of_channels import without
 from sprung.faults.tally import ResidualTable
 from sprung.preprocess import FreeDecay
+from sprung.uncertainty import KnownValue
 
 Real = NDArray[np.float64]
 
@@ -99,7 +99,7 @@ class WithoutDrop:
     def _fitted(self, bench: Bench, free: tuple[str, ...]) -> Real:
         """Give what is left of the drop by itself where some parameters may be others, shape (channel,)."""
         values = self.trial.optimum.parameters
-        known = {name: Known(value) for name, value in values.items() if name not in free}
+        known = {name: KnownValue(value) for name, value in values.items() if name not in free}
         optimum = fit_linear([self.decay], self.trial.models, bench.campaign.sensors, known, start=values, enough=NEAR)
         left: Real = optimum.point.evaluation.residual[0]
         return left

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from sprung.estimate import Known
 from sprung.estimation import FitStatistics
 from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import LEVEL, Heights, Sensor, Tracks, Vehicle
 
 
@@ -16,7 +16,7 @@ def subject_of_fit(
     fit: FitStatistics,
     tracks: Tracks,
     extras: tuple[str, ...],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     sensors: Sequence[Sensor],
     *,
     rate: float,

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.errors import InputError, Problem
-from sprung.estimate import Known
 from sprung.estimation import Coordinates, Likelihood, PriorsAndConstraints
 from sprung.preprocess import FreeDecay, no_rest
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     LOAD_MASS,
     PARAMETERS,
@@ -88,7 +88,7 @@ class Subject:
     vehicle: Vehicle
     tracks: Tracks
     extras: tuple[str, ...]
-    known: Mapping[str, Known]
+    known: Mapping[str, KnownValue]
     sensors: tuple[Sensor, ...]
     noise: Real
     rate: float
@@ -138,7 +138,7 @@ class Subject:
         """Directions of the coordinates that exact knowledge leaves free, shape (parameter, direction)."""
         return self.priors.free(self.u)
 
-    def of_statements(self, statements: Mapping[str, Known]) -> Real:
+    def of_statements(self, statements: Mapping[str, KnownValue]) -> Real:
         """Give the information in uncertain statements; shape (direction, direction)."""
         slopes = PriorsAndConstraints(self.priors.coordinates, statements).prior(self.u).slopes @ self.free
         return slopes.T @ slopes

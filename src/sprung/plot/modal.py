@@ -103,8 +103,11 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     Raises
     ------
     InputError
-        If there is no such mode or load; a rejected result has none.
+        If there is no such mode or load, or the result was rejected.
     """
+    if result.verdict.state == "reject":
+        do = "Read result.verdict.reasons; sprung.modes finds modes without a vehicle model."
+        raise InputError([Problem(f"mode {name}", "a rejected result, which has no modes", "accept or doubtful", do)])
     load = chosen(load or next(iter(result.modes)), list(result.modes), "load")
     modes = {one.name: one for one in result.modes[load]}
     found = modes[chosen(name, list(modes), "mode")]

@@ -17,7 +17,6 @@ from sprung.assessment import DropValidation, Verdict
 from sprung.checking import DropReport, Recorded
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.estimate import Covariance, Estimate, Named
 from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
 from sprung.files import atomic_write
 from sprung.results.amplitude import Amplitudes
@@ -37,6 +36,7 @@ from sprung.results.tables import (
 )
 from sprung.results.vehicle import identified_vehicle
 from sprung.tables import escaped
+from sprung.uncertainty import Covariance, Estimate, NamedValues
 from sprung.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ class Result:
 
     def __post_init__(self) -> None:
         for mapping in ("parameters", "derived", "modes", "validation", "series", "recordings"):
-            object.__setattr__(self, mapping, Named(getattr(self, mapping)))
+            object.__setattr__(self, mapping, NamedValues(getattr(self, mapping)))
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} {estimate}" for name, estimate in self.parameters.items())

@@ -12,8 +12,8 @@ from pydantic import ConfigDict
 
 from sprung.campaign import Campaign, ModelChoice, SourceFile, TestRecord
 from sprung.display import shown
-from sprung.estimate import Estimate, Known
 from sprung.estimation import FitStatistics, estimate_of
+from sprung.uncertainty import Estimate, KnownValue
 from sprung.vehicle import DERIVED, Load, Sensor
 
 _LIBRARIES = ("numpy", "scipy")
@@ -82,7 +82,7 @@ class Setup:
 
 
 def setup_of(
-    campaign: Campaign, fit: FitStatistics, known: Mapping[str, Known], options: Mapping[str, object]
+    campaign: Campaign, fit: FitStatistics, known: Mapping[str, KnownValue], options: Mapping[str, object]
 ) -> Setup:
     """Return the input of an identification, with what was known beside its estimates.
 
@@ -115,7 +115,7 @@ def setup_of(
     )
 
 
-def _compared(fit: FitStatistics, known: Mapping[str, Known], name: str) -> PriorComparison:
+def _compared(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> PriorComparison:
     found = estimate_of(fit, known, name)
     missed = fit.contradictions.get(name)
     missed = missed if missed is not None and np.isfinite(missed) else None

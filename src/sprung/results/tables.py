@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from sprung.estimate import Estimate, Ratio, round_by_uncertainty
 from sprung.estimation import ModeEstimate
 from sprung.results.records import TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
+from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
 from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, PARAMETERS, WHEEL_LOADS
 
 TRACE_TITLE = "How the result was reached"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from sprung.assessment import Verdict
 from sprung.errors import InputError, Problem
-from sprung.estimate import Estimate
+from sprung.uncertainty import Estimate
 from sprung.vehicle import Vehicle
 
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sprung.estimate import Estimate
 from sprung.estimation import Correlation, Scale, Unidentifiable
 from sprung.results.result import Result
 from sprung.results.setup import Setup
+from sprung.uncertainty import Estimate
 
 NO_ESTIMATES = "The model does not describe the recordings; no estimates are reported"
 

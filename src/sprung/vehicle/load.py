@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from sprung.errors import InputError, Problem
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import rows
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
@@ -168,14 +168,14 @@ class Load:
         return sum(item.mass for item in self.items)
 
     @property
-    def uncertain_masses(self) -> dict[str, Known]:
+    def uncertain_masses(self) -> dict[str, KnownValue]:
         """Masses that are known with an uncertainty, kg, by the names under which they are parameters of a fit."""
         if self.added is not None:
             parts: dict[str, Item | Added] = {f"{LOAD_MASS}{self.name}": self.added}
         else:
             several = len(self.items) > 1
             parts = {self._name_of(i, several): item for i, item in enumerate(self.items)}
-        return {name: Known(part.mass, part.mass_std) for name, part in parts.items() if part.mass_std > 0}
+        return {name: KnownValue(part.mass, part.mass_std) for name, part in parts.items() if part.mass_std > 0}
 
     def _name_of(self, item: int, several: bool) -> str:
         return f"{LOAD_MASS}{self.name}, item {item + 1}" if several else f"{LOAD_MASS}{self.name}"

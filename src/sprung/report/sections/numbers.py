@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
-from sprung.estimate import Estimate, round_by_uncertainty
 from sprung.report.pictures.parameters import half_width, limits_percent
 from sprung.report.sections.context import Context
 from sprung.report.words import symbol as parts_of
 from sprung.results import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
 from sprung.tables import Table, unit_text, value_cells
+from sprung.uncertainty import Estimate, round_by_uncertainty
 
 _CLOSE = 0.9
 """Correlation from which two parameters are to be read together."""

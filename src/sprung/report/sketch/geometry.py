@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sprung.campaign import Campaign
-from sprung.estimate import round_by_uncertainty
 from sprung.results import Result
+from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import EMPTY, Load, Sensor
 
 _FINEST = 0.01

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sprung.estimate import round_by_uncertainty
+from sprung.uncertainty import round_by_uncertainty
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What was measured beforehand: a value and how well it is known."""
+"""What was measured beforehand: a value and its standard uncertainty."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sprung.display import shown
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Known:
+class KnownValue:
     """A quantity known beforehand.
 
     Attributes
@@ -24,6 +24,6 @@ class Known:
     std: float = 0.0
 
     @property
-    def exact(self) -> bool:
-        """Whether it carries no uncertainty."""
-        return bool(self.std == 0.0)
+    def is_exact(self) -> bool:
+        """Whether the value carries no uncertainty."""
+        return self.std == 0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sprung.display import shown
-from sprung.estimate.rounding import round_by_uncertainty
+from sprung.uncertainty.rounding import round_by_uncertainty
 
 Status = Literal["estimated", "known", "unidentifiable"]
 """Where a value comes from: see `Estimate`."""

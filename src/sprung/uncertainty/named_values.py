@@ -1,4 +1,4 @@
-"""Quantities by name, where a misspelt name is answered with the one that was probably meant."""
+"""Quantities by name, where a misspelt name is answered with the nearest one."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ Value = TypeVar("Value")
 
 
 @shown
-class Named(dict[str, Value]):
-    """A dictionary by name; a name that is not in it raises `UnknownNameError`, a `KeyError` that says which one is near."""
+class NamedValues(dict[str, Value]):
+    """A dictionary by name; an unknown name raises `UnknownNameError`, a `KeyError` that states the nearest name."""
 
     def __missing__(self, name: object) -> Value:
         raise UnknownNameError(str(name), self)

@@ -6,7 +6,7 @@ import math
 
 
 def place_of(std: float) -> int:
-    """Give the decimal place of the second significant figure of an uncertainty.
+    """Return the decimal place of the second significant figure of an uncertainty.
 
     Examples
     --------
