@@ -19,7 +19,7 @@ from sprung.estimation import (
     synchronise_by_decay,
 )
 from sprung.preprocess import FreeDecay, Prepared
-from sprung.vehicle import Vehicle, separated
+from sprung.vehicle import Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def clock_reports(
     decays
         What was fitted.
     """
-    found = optimum.point.place.delays(optimum.point.weights, fit.covariance)
+    found = optimum.clock_delays(fit.covariance)
     return {decays[i].file: tuple(_reported(decays[i].clocks, *delays)) for i, delays in found.items()}
 
 
@@ -139,7 +139,7 @@ def told_by_flights(
         return None
     decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
     found = fit(decays)
-    values = separated(found.parameters)
+    values = with_separate_tracks(found.parameters)
     missed = sum(
         one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
     )
