@@ -130,7 +130,7 @@ def told_by_flights(
     """
     if not any(decay.clocks for decay in prepared.decays):
         return None
-    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.seen}
+    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.observations}
     flown = _released(
         campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], optimum
     )
@@ -141,7 +141,8 @@ def told_by_flights(
     found = fit(decays)
     values = separated(found.parameters)
     missed = sum(
-        one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
+        one.chi_square_at(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)]))
+        for one in told
     )
     worse = max(float(np.max(found.noise / optimum.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
     return (decays, found) if found.converged and worse < _NO_WORSE else None
@@ -154,7 +155,7 @@ def _released(
     vehicle = Vehicle.nearest(optimum.parameters, name=campaign.name, **campaign.heights.by_key)
     by_name = {
         seen.recording.name: (seen, replace(drop, wheels=seen.wheels))
-        for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
+        for drop, seen in zip(campaign.drops, prepared.observations, strict=True)
     }
     return [
         synchronise_at_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
-from sprung.preprocess import Flight, FreeDecay, Prepared, flights
+from sprung.preprocess import Flight, FreeDecay, Prepared, find_flights
 from sprung.progress import Progress, Step, silent
 from sprung.selection import ModelSearch, ModelStructure, fit_from, tilted
 from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
@@ -103,7 +103,7 @@ def fly(
     Flown or None
         None where no drop can be used so, or where the vehicle did something during the fall that the model does not have.
     """
-    found = flights(prepared.decays, campaign.drops, prepared.seen)
+    found = find_flights(prepared.decays, campaign.drops, prepared.observations)
     if not any(found):
         return None
     progress(Step("using the fall"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.analysis.stand import Fitted
-from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, subject_of_fit
+from sprung.planning import PlannedDrop, PlannedTest, completed_test, setup_from_fit
 from sprung.simulation import DEFAULT_HEIGHT
 from sprung.vehicle import LOAD_MASS, parameter_names
 
@@ -18,7 +18,7 @@ def to_design(fitted: Fitted) -> PlannedTest:
     campaign, decays = fitted.campaign, fitted.prepared.decays
     choice = fitted.choice.having(fitted.choice.linear_extras)
     fit = fitted.fit.only(parameter_names(choice.tracks, choice.extras))
-    subject = subject_of_fit(
+    subject = setup_from_fit(
         fit,
         choice.tracks,
         choice.extras,
@@ -32,7 +32,7 @@ def to_design(fitted: Fitted) -> PlannedTest:
     used = {decay.file for decay in decays}
     dropped = [
         PlannedDrop(campaign.load(drop.load), seen.wheels, drop.height or DEFAULT_HEIGHT)
-        for drop, seen in zip(campaign.drops, fitted.prepared.seen, strict=True)
+        for drop, seen in zip(campaign.drops, fitted.prepared.observations, strict=True)
         if seen.recording.name in used
     ]
-    return campaign_of_fit(subject, fit, dropped)
+    return completed_test(subject, fit, dropped)

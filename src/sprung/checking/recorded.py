@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Recording
 from sprung.display import shown
-from sprung.preprocess import DropObservation, Mark
+from sprung.preprocess import DropObservation, MarkedSamples
 
 Real = NDArray[np.float64]
 Drawn = NDArray[np.float32]
@@ -17,7 +17,7 @@ Drawn = NDArray[np.float32]
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Recorded:
+class PlottedRecording:
     """One drop's whole recording, in SI, put right as far as it could be.
 
     Attributes
@@ -35,10 +35,10 @@ class Recorded:
     start: float
     rate: float
     values: Drawn
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[MarkedSamples, ...] = ()
 
     @classmethod
-    def of(cls, seen: DropObservation, as_read: Recording) -> Recorded:
+    def of(cls, seen: DropObservation, as_read: Recording) -> PlottedRecording:
         """Take what a recording shows.
 
         Parameters

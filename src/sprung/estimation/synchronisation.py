@@ -22,7 +22,7 @@ from sprung.campaign import ROUGHLY, Drop
 from sprung.errors import SprungError
 from sprung.estimation.closed_form import Likelihood
 from sprung.estimation.fit import FitResult
-from sprung.preprocess import DropObservation, FreeDecay, FromFlight
+from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
 
 Real = NDArray[np.float64]
@@ -147,7 +147,9 @@ def synchronise_at_release(
         np.concatenate([getattr(one, name) for one in told.values()], axis=-1) for name in ("left", "unseen")
     )
     gradient, information = unseen @ left, unseen @ unseen.T
-    from_flight = FromFlight(tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told))
+    from_flight = FlightLikelihood(
+        tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told)
+    )
     return replace(decay, clocks=clocks, flight=from_flight)
 
 

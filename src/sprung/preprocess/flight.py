@@ -42,7 +42,9 @@ class Flight(NamedTuple):
     since: float
 
 
-def flights(decays: Sequence[FreeDecay], drops: Sequence[Drop], seen: Sequence[DropObservation]) -> list[Flight | None]:
+def find_flights(
+    decays: Sequence[FreeDecay], drops: Sequence[Drop], seen: Sequence[DropObservation]
+) -> list[Flight | None]:
     """Give drops from just after their releases on.
 
     Parameters

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer, SkipValidation
 
-from sprung.assessment import ModeAmplitude, Trace
+from sprung.assessment import AmplitudeTrace, ModeAmplitude
 
 
 def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
@@ -33,7 +33,7 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
     }
 
 
-def plain_trace(trace: Trace) -> dict[str, list[float]]:
+def plain_trace(trace: AmplitudeTrace) -> dict[str, list[float]]:
     """Give a trace as lists by name."""
     return {name: values.tolist() for name, values in asdict(trace).items() if name != "name"}
 
@@ -50,8 +50,8 @@ class _Trace(_Strict):
     damping_ratio: tuple[float, ...]
     damping_ratio_std: tuple[float, ...]
 
-    def named(self, name: str) -> Trace:
-        return Trace(name, **{key: np.array(values, dtype=float) for key, values in self})
+    def named(self, name: str) -> AmplitudeTrace:
+        return AmplitudeTrace(name, **{key: np.array(values, dtype=float) for key, values in self})
 
 
 class _Mode(_Strict):

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.checking import Recorded
+from sprung.checking import PlottedRecording
 from sprung.display import shown
-from sprung.preprocess import Mark
+from sprung.preprocess import MarkedSamples
 
 Real = NDArray[np.float64]
 Drawn = NDArray[np.float32]
@@ -62,7 +62,7 @@ class Everything(NamedTuple):
     """
 
     series: dict[str, Series]
-    recordings: dict[str, Recorded]
+    recordings: dict[str, PlottedRecording]
 
 
 def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
@@ -72,7 +72,7 @@ def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
     return buffer.getvalue()
 
 
-def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, Recorded]) -> dict[str, NDArray[Any]]:
+def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, PlottedRecording]) -> dict[str, NDArray[Any]]:
     """Give everything as arrays by name: ``drop/what``.
 
     Parameters
@@ -126,7 +126,7 @@ def everything_in(arrays: Mapping[str, NDArray[Any]]) -> Everything:
     for name, found in held.items():
         if "clock" in found:
             start, rate = found["clock"].tolist()
-            recordings[name] = Recorded(start, rate, found["recording"], tuple(_marks(found)))
+            recordings[name] = PlottedRecording(start, rate, found["recording"], tuple(_marks(found)))
         if "channels" in found:
             channels = tuple(found["channels"].tolist())
             series[name] = Series(channels, **{what: found[what] for what in (*_FITTED[1:], *_BODY) if what in found})
@@ -146,8 +146,8 @@ def _wrong(found: Iterable[str]) -> set[str]:
     return there ^ whole
 
 
-def _marks(found: Mapping[str, NDArray[Any]]) -> Iterator[Mark]:
+def _marks(found: Mapping[str, NDArray[Any]]) -> Iterator[MarkedSamples]:
     for what, place in found.items():
         if what.startswith(_MARKS):
             code = what.removeprefix(_MARKS).partition(" ")[2]
-            yield Mark(code, int(place[0, 0]), place[1].astype(np.int64))
+            yield MarkedSamples(code, int(place[0, 0]), place[1].astype(np.int64))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sprung.assessment.sliding import follow_mode
+from sprung.assessment.mode_tracking import follow_mode
 from sprung.modal import Mode, modes_of
 from sprung.vehicle import Vehicle
 
