@@ -130,7 +130,7 @@ class Case:
         recordings = tuple(
             replace(one, values=self.measure(one.values, self.noise, random)) for one in clean.recordings
         )
-        return replace(clean, recordings=recordings, known=self.known(np.random.default_rng([seed, 1])))
+        return replace(clean.with_recordings(recordings), known=self.known(np.random.default_rng([seed, 1])))
 
     @cached_property
     def truth(self) -> dict[str, float]:

@@ -85,7 +85,7 @@ class DropTest:
         for one in self.exact.recordings:
             off = OFFSET * felt * random.standard_normal((len(self.sensors), 1))
             recordings.append(replace(one, values=measure(one.values + off, self.noise, random)))
-        return replace(self.exact, recordings=tuple(recordings), known=self._known(random))
+        return replace(self.exact.with_recordings(recordings), known=self._known(random))
 
     def _known(self, random: np.random.Generator) -> dict[str, KnownValue]:
         names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))

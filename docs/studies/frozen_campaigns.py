@@ -88,7 +88,7 @@ def _two_vehicles() -> sprung.Campaign:
     """Return drops of which every second one is another vehicle's."""
     one, other = FLEET[0].campaign(1), replace(FLEET[0], vehicle=_OTHER).campaign(1)
     pairs = zip(one.recordings, other.recordings, strict=True)
-    return replace(one, recordings=tuple(pair[i % 2] for i, pair in enumerate(pairs)))
+    return one.with_recordings(pair[i % 2] for i, pair in enumerate(pairs))
 
 
 _OTHER = Vehicle.from_parameters(

@@ -57,8 +57,8 @@ def with_a_loose_mass(mass: float, frequency: float, damping: float, play: float
         readings = sensors @ np.array(accelerations).T + 9.80665
         noisy = readings + 0.02 * random.standard_normal(readings.shape)
         recordings.append(replace(recording, values=noisy, start=0.0))
-    begun = tuple(replace(drop, start=0.0) for drop in clean.drops)
-    return replace(clean, recordings=tuple(recordings), drops=begun)
+    begun = replace(clean, drops=tuple(replace(drop, start=0.0) for drop in clean.drops))
+    return begun.with_recordings(recordings)
 
 
 def _generator(M: Array, C: Array, K: Array, felt: Array, stop: float, play: float) -> Array:

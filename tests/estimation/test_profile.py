@@ -36,7 +36,7 @@ def body_alone(campaign: Campaign) -> Campaign:
         replace(one, values=one.values[chosen], channels=tuple(one.channels[i] for i in chosen))
         for one in campaign.recordings
     )
-    return replace(campaign, sensors=tuple(campaign.sensors[i] for i in chosen), recordings=recordings)
+    return replace(campaign.with_recordings(recordings), sensors=tuple(campaign.sensors[i] for i in chosen))
 
 
 def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, KnownValue]]:
@@ -137,7 +137,7 @@ def test_inflation_widens_the_profile_as_it_widens_the_curvature() -> None:
     campaign = drops(seed=2, noise=0.02, known={"total_mass": KnownValue(1.001 * TABLE_1_CAR.total_mass, 5.0)})
     other = replace(TABLE_1_CAR, k_sf=1.03 * TABLE_1_CAR.k_sf)
     differs = free_decays(other, states=3, noise=0.02, seed=2, rate=100, duration=1.5)
-    mixed = replace(campaign, recordings=(*campaign.recordings[:2], differs.recordings[2]))
+    mixed = campaign.with_recordings((*campaign.recordings[:2], differs.recordings[2]))
     optimum, fit, known = fitted(mixed)
     assert fit.inflation > 4
     for name in ("total_mass", "k_sr", "t_r"):

@@ -29,7 +29,7 @@ def campaign() -> Campaign:
     spiked = second.values.copy()
     spiked[5, 900] = 300.0
     short = replace(third, values=third.values[:, :300])
-    return replace(made, recordings=(first, replace(second, values=spiked), short))
+    return made.with_recordings((first, replace(second, values=spiked), short))
 
 
 @pytest.fixture(scope="module")

@@ -100,7 +100,7 @@ def set_clocks(
             for decay, other in zip(released, timed, strict=True)
         }
         recordings = [replace(one, clocks=tuple(known.get(one.name, one.clocks))) for one in campaign.recordings]
-        prepared = prepare_again(replace(campaign, recordings=tuple(recordings)))
+        prepared = prepare_again(campaign.with_recordings(recordings))
     by_file = {decay.file: decay.clocks for decay in timed}
     decays = [_told_before(one, by_file.get(one.file, ()), optimum.parameters) for one in prepared.decays]
     return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays)), optimum
@@ -153,10 +153,7 @@ def _released(
 ) -> list[FreeDecay]:
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
     vehicle = Vehicle.nearest(optimum.parameters, name=campaign.name, **campaign.heights.by_key)
-    by_name = {
-        seen.recording.name: (seen, replace(drop, wheels=seen.wheels))
-        for drop, seen in zip(campaign.drops, prepared.observations, strict=True)
-    }
+    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.observations}
     return [
         synchronise_at_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
         for decay in decays

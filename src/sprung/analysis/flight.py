@@ -17,7 +17,7 @@ from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
 from sprung.preprocess import Flight, FreeDecay, Prepared, find_flights
 from sprung.progress import Progress, Step, silent
-from sprung.selection import ModelSearch, ModelStructure, fit_from, tilted
+from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
 from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
 
 Real = NDArray[np.float64]
@@ -103,22 +103,22 @@ def fly(
     Flown or None
         None where no drop can be used so, or where the vehicle did something during the fall that the model does not have.
     """
-    found = find_flights(prepared.decays, campaign.drops, prepared.observations)
+    found = find_flights(prepared.decays, prepared.observations)
     if not any(found):
         return None
     progress(Step("using the fall"))
     begun = _begun(campaign, choice, optimum, found)
     decays = tuple(one.decay if one else decay for one, decay in zip(found, prepared.decays, strict=True))
-    airborne = replace(choice, airborne=True)
-    higher = fit_from(airborne, decays, optimum, CONVERGED, progress, begun)
-    way = tilted(ModelSearch(airborne, higher, decays, (), progress))
-    if not way.optimum.converged or np.any(way.optimum.noise > _NO_WORSE * optimum.noise):
+    airborne = replace(choice, unilateral_tyres=True)
+    higher = fit_structure(airborne, decays, optimum, CONVERGED, progress, begun)
+    way = select_gravity_leakage(ModelSearch(airborne, higher, decays, (), progress))
+    if not way.fit.converged or np.any(way.fit.noise > _NO_WORSE * optimum.noise):
         return None
-    now = uncertainty_of(way.optimum, decays)
+    now = uncertainty_of(way.fit, decays)
     known = np.sqrt(np.diag(fit.covariance)) > 0
     ratios = np.sqrt(np.diag(now.covariance)[known] / np.diag(fit.covariance)[known])
     sharper = float(np.median(ratios))
-    return Flown(way.choice, way.optimum, decays, now, sharper) if sharper < 1 else None
+    return Flown(way.structure, way.fit, decays, now, sharper) if sharper < 1 else None
 
 
 def _begun(campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]) -> Real:

@@ -22,7 +22,7 @@ from sprung.estimation import (
 from sprung.faults.changes import silenced, without_drops
 from sprung.faults.tally import Noise, ResidualTable, noise_of, tally_of
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection import choose_model
+from sprung.selection import choose_structure
 from sprung.vehicle import LinearModel, Rows, Tracks
 
 Real = NDArray[np.float64]
@@ -167,14 +167,16 @@ class Bench:
             Whether one step from the direct start will do.
         """
         decays = self._decays(campaign) if decays is None else decays
-        choice = choose_model(campaign, self.tracks, self.extras)
+        choice = choose_structure(campaign, self.tracks, self.extras)
         sensors, known = campaign.sensors, choice.known
         starts, enough = (1, np.inf) if roughly else (_STARTS, NEAR)
-        optimum = fit_linear(decays, choice.models, sensors, known, start=start, starts=starts, enough=enough)
+        optimum = fit_linear(decays, choice.linear_models, sensors, known, start=start, starts=starts, enough=enough)
         noise = (
             self.base.noise if self._as_recorded(campaign) and "base" in self.__dict__ else noise_of(decays, optimum)
         )
-        return CandidateFit(campaign, decays, choice.models, optimum, tally_of(self.files, decays, optimum), noise)
+        return CandidateFit(
+            campaign, decays, choice.linear_models, optimum, tally_of(self.files, decays, optimum), noise
+        )
 
     def after(self, trial: CandidateFit) -> Bench:
         """Give the bench on which what was tried is the campaign."""
@@ -183,14 +185,13 @@ class Bench:
     def _as_recorded(self, campaign: Campaign) -> bool:
         """Say whether a campaign's samples are what they were."""
         before, after = ([one.high_pass for one in each.sensors] for each in (self.campaign, campaign))
-        return campaign.recordings is self.campaign.recordings and before == after
+        return campaign.recordings == self.campaign.recordings and before == after
 
     def _decays(self, campaign: Campaign) -> tuple[FreeDecay, ...]:
         """Give the decays of a campaign that was changed: the same samples, as long as nobody has touched them."""
         if not self._as_recorded(campaign):
             return prepare(campaign).decays
-        named = zip(campaign.drops, campaign.recordings, strict=True)
-        loads = {recording.name: drop.load for drop, recording in named}
+        loads = {drop.recording.name: drop.load for drop in campaign.drops}
         return tuple(replace(decay, load=loads[decay.file]) for decay in self.decays)
 
 
@@ -231,7 +232,6 @@ def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -
 def _cut(campaign: Campaign, spans: Mapping[str, Span]) -> Campaign:
     campaign = without_drops(*(one.name for one in campaign.recordings if one.name not in spans))(campaign)
     drops = [
-        replace(drop, start=spans[recording.name][0], end=spans[recording.name][1])
-        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
+        replace(drop, start=spans[drop.recording.name][0], end=spans[drop.recording.name][1]) for drop in campaign.drops
     ]
     return replace(campaign, drops=tuple(drops))
