@@ -24,7 +24,7 @@ def judged(made: Campaign) -> Verdict:
     """Fit and judge without looking for what may be wrong, which would leave the drop out."""
     choice, decays = choose_structure(made), prepare(made).decays
     optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
-    fit, channels = uncertainty_of(optimum, decays), [sensor.channel for sensor in made.sensors]
+    fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
     drops = cross_validate_drops(optimum, fit, decays, channels, body_motions(fit, decays, made.sensors))
     return decide_verdict(
         fit, estimate_model_error(fit, decays), to_estimates(fit, choice.known).parameters, channels, (), drops

@@ -51,7 +51,7 @@ def decays(**what: float) -> list[FreeDecay]:
 
 
 def likelihood(those: list[FreeDecay]) -> Likelihood:
-    return Likelihood.of(those, MODELS, ROWS)
+    return Likelihood(those, MODELS, ROWS)
 
 
 def cost(fit: Likelihood, values: Real) -> float:
@@ -172,7 +172,7 @@ def test_records_moved_in_time_give_the_same_vehicle_and_that_delay() -> None:
         return fit_linear(those, MODELS, CAMPAIGN.sensors, known, start=start)
 
     one, other = fitted(still), fitted(moved)
-    std = np.sqrt(np.diag(uncertainty_of(one, still).covariance))
+    std = np.sqrt(np.diag(uncertainty_of(one).covariance))
     assert np.all(np.abs(one.values - other.values) < 1.5 * std + 1e-12)  # all but two samples are the same
-    late, _ = other.point.place.delays(other.point.weights, np.zeros((15, 15)))[0]
+    late, _ = other.clock_delays(np.zeros((15, 15)))[0]
     assert late[1] - late[0] == pytest.approx(shift / 200, abs=3e-4)

@@ -46,7 +46,7 @@ def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, Know
     decays = prepare(campaign).decays
     models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
     optimum = fit_linear(decays, models, campaign.sensors, known, start=TRUTH)
-    return optimum, uncertainty_of(optimum, decays), known
+    return optimum, uncertainty_of(optimum), known
 
 
 def both(campaign: Campaign, name: str) -> tuple[Estimate, Estimate]:
@@ -72,7 +72,7 @@ class LongWay:
     def __init__(self, campaign: Campaign) -> None:
         decays = prepare(campaign).decays
         models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
-        self.likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
+        self.likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
         self.free = [name for name in NAMES if name not in ("m_s", "b", "t_f")]
         self.samples = len(decays) * decays[0].samples
 

@@ -106,7 +106,7 @@ def test_scores_of_forces_need_no_steps(campaign: Campaign, plain: ModelStructur
     neutral = {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5, "r_f": 1.0, "r_r": 1.0, "p_f": 0.0, "p_r": 0.0}
     values = found.parameters | neutral
     brought = {extra: EXTRA_PARAMETERS[extra] for extra in extras}
-    by_modes = score_nonlinear_terms(found, theirs, larger.nonlinear_models, values, brought)
+    by_modes = score_nonlinear_terms(found, larger.nonlinear_models, values, brought)
     by_steps = score_stepped_terms(
         theirs,
         larger.nonlinear_models,

@@ -45,7 +45,7 @@ def clock_reports(
     decays
         What was fitted.
     """
-    found = optimum.point.place.delays(optimum.point.weights, fit.covariance)
+    found = optimum.clock_delays(fit.covariance)
     return {decays[i].file: tuple(_reported(decays[i].clocks, *delays)) for i, delays in found.items()}
 
 

@@ -101,7 +101,7 @@ def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
         why=f"{fitted.why}; the flights that determined the clock offsets are fitted too",
         prepared=fitted.prepared._replace(decays=decays),
         optimum=optimum,
-        fit=uncertainty_of(optimum, decays),
+        fit=uncertainty_of(optimum),
     )
 
 

@@ -114,7 +114,7 @@ def fly(
     way = select_gravity_leakage(ModelSearch(airborne, higher, decays, (), progress))
     if not way.fit.converged or np.any(way.fit.noise > _NO_WORSE * optimum.noise):
         return None
-    now = uncertainty_of(way.fit, decays)
+    now = uncertainty_of(way.fit)
     known = np.sqrt(np.diag(fit.covariance)) > 0
     ratios = np.sqrt(np.diag(now.covariance)[known] / np.diag(fit.covariance)[known])
     sharper = float(np.median(ratios))

@@ -115,9 +115,7 @@ class Stand(NamedTuple):
         way.progress(Step("computing the uncertainties"))
         optimum, decays = escape_local_optimum(way.fit), tuple(way.decays)
         prepared = self.prepared._replace(decays=decays)
-        return Fitted(
-            self.campaign, way.structure, way.reason, prepared, optimum, uncertainty_of(optimum, decays), way.steps
-        )
+        return Fitted(self.campaign, way.structure, way.reason, prepared, optimum, uncertainty_of(optimum), way.steps)
 
 
 def begun(

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation import FitStatistics, residual_records
+from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
 
 Real = NDArray[np.float64]
@@ -56,7 +56,7 @@ def estimate_model_error(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Mis
     So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
-    residuals = residual_records(fit.fitted, decays)
+    residuals = fit.residuals
     signals = [decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays]
     left, signal = pool_moments(residuals), pool_moments(signals)
     noise = estimate_sensor_noise(decays, left)

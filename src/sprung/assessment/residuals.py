@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.signal import fftconvolve
 
 from sprung.display import shown
-from sprung.estimation import FitStatistics, residual_records
+from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
 
 Real = NDArray[np.float64]
@@ -59,7 +59,7 @@ def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Rea
     ndarray
         m/s² root-mean-square, shape (channel,).
     """
-    seen = estimate_sensor_noise(decays, pool_moments(residual_records(fit.fitted, decays)))
+    seen = estimate_sensor_noise(decays, pool_moments(fit.residuals))
     variance = seen.variance + seen.added
     at_rest = np.where((seen.samples > 0) & (seen.variance > 0), np.sqrt(variance), np.inf)
     return np.minimum(at_rest, fit.noise)
@@ -89,7 +89,7 @@ def describe_residuals(
             int(channel): _remainder(record[channel], decay.rate, float(noise[channel]))
             for channel in np.flatnonzero(decay.usable)
         }
-        for decay, record in zip(decays, residual_records(fit.fitted, decays), strict=True)
+        for decay, record in zip(decays, fit.residuals, strict=True)
     )
 
 

@@ -21,7 +21,6 @@ from sprung.estimation.statistics import (
     Inflater,
     fit_jointly,
     overdispersion_of,
-    residual_records,
     uncertainty_of,
 )
 from sprung.estimation.subspace import canonical_basis
@@ -70,7 +69,6 @@ __all__ = [
     "parameters_from_matrices",
     "predictions",
     "profiled",
-    "residual_records",
     "score_faults",
     "score_linear_term",
     "score_nonlinear_terms",

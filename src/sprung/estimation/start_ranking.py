@@ -41,7 +41,7 @@ def rank_starts(likelihood: Likelihood, vehicles: Real, weights: Real) -> Real:
     )
     run = largest[0].sketch(largest[1], _RATE, _LONGEST, _MOST)
     energy = run.energy.sum(axis=0)
-    modes = solve_modes(likelihood.models[run.load[0]], likelihood.sensors, vehicles)
+    modes = solve_modes(likelihood.model_of[run.load[0]], likelihood.sensors, vehicles)
     exponent = modes.poles * run.step
     data = run.correlate(exponent.reshape(1, -1), secular=False)
     data = data.reshape(*data.shape[:2], *exponent.shape).transpose(2, 1, 3, 0)

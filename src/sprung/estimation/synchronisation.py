@@ -280,8 +280,7 @@ def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tup
     """
     likelihood = optimum.problem.likelihood
     assert isinstance(likelihood, Likelihood)  # noqa: S101 (several loggers are not stepped; for the type checker)
-    models = dict(zip(likelihood.records.loads, likelihood.models, strict=True))
-    place = Likelihood.of(decays, models, likelihood.sensors).at(optimum.values)
+    place = likelihood.with_decays(decays).at(optimum.values)
     untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.std > _UNTOLD}
     timed = list(decays)
     shifts = np.arange(-_FARTHEST, _FARTHEST + _COARSE, _COARSE)

@@ -13,17 +13,14 @@ from sprung.campaign import Campaign
 from sprung.estimation import (
     NEAR,
     FitResult,
-    Likelihood,
-    LikelihoodAt,
     autocorrelation_inflation,
     fit_linear,
-    residual_records,
 )
 from sprung.faults.changes import silenced, without_drops
 from sprung.faults.tally import Noise, ResidualTable, noise_of, tally_of
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection import choose_structure
-from sprung.vehicle import LinearModel, Rows, Tracks
+from sprung.vehicle import LinearModel, Tracks
 
 Real = NDArray[np.float64]
 
@@ -78,10 +75,7 @@ class CandidateFit:
     def walking(self) -> NDArray[np.bool_]:
         """Of which channels what is left walks slowly, shape (channel,): means over some time keep most of it."""
         kept = energy = np.zeros(len(self.campaign.sensors))
-        point = self.optimum.point
-        for record, decay in zip(
-            residual_records(point.place.fitted(point.weights), self.decays), self.decays, strict=True
-        ):
+        for record, decay in zip(self.optimum.residuals, self.decays, strict=True):
             length = max(int(_SLOWLY * decay.rate), 1)
             count = decay.samples // length
             left = np.nan_to_num(record[:, : count * length]).reshape(len(record), count, length)
@@ -93,19 +87,7 @@ class CandidateFit:
     @cached_property
     def inflation(self) -> float:
         """By how much its records tell less than white ones."""
-        return max(colour_left(self.decays, self.optimum), self.optimum.disagreement)
-
-    def left_by(self, decays: Sequence[FreeDecay]) -> Real:
-        """Give what this vehicle leaves of other decays, whatever their states; sums of squares, shape (decay, channel)."""
-        return self._at(decays).misfit(self.optimum.point.weights)[0]
-
-    def states_of(self, decays: Sequence[FreeDecay]) -> Real:
-        """Give {X, Ẋ} of this vehicle at the start of other decays, SI, shape (decay, state)."""
-        return self._at(decays).states(self.optimum.point.weights)
-
-    def _at(self, decays: Sequence[FreeDecay]) -> LikelihoodAt:
-        rows = Rows.of([sensor.row for sensor in self.campaign.sensors], self.optimum.names)
-        return Likelihood.of(decays, self.models, rows).at(self.optimum.values)
+        return max(colour_left(self.optimum), self.optimum.disagreement)
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,11 +177,9 @@ class Bench:
         return tuple(replace(decay, load=loads[decay.file]) for decay in self.decays)
 
 
-def colour_left(decays: Sequence[FreeDecay], optimum: FitResult) -> float:
+def colour_left(optimum: FitResult) -> float:
     """Give by how much the residuals of a fit tell less than white ones."""
-    point = optimum.point
-    left = residual_records(point.place.fitted(point.weights), decays)
-    return float(autocorrelation_inflation(left, [decay.rate for decay in decays]).max())
+    return float(autocorrelation_inflation(optimum.residuals, [decay.rate for decay in optimum.decays]).max())
 
 
 def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:

@@ -169,7 +169,7 @@ def _scores(way: ModelSearch, extras: Sequence[str]) -> dict[str, float]:
     larger = way.larger(extras)
     start = neutral_start(larger, way.fit.parameters)
     candidates = {extra: brought(extra, larger.tracks) for extra in extras}
-    return score_nonlinear_terms(way.fit, way.decays, larger.nonlinear_models, start, candidates)
+    return score_nonlinear_terms(way.fit, larger.nonlinear_models, start, candidates)
 
 
 def _scored(way: ModelSearch, extras: Sequence[str]) -> tuple[ModelSearch, dict[str, float]]:

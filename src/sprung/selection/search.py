@@ -117,7 +117,7 @@ class ModelSearch:
     @cached_property
     def inflation(self) -> float:
         """By how much the records tell less than white residuals of drops that agree would."""
-        return overdispersion_of(self.fit, self.decays)
+        return overdispersion_of(self.fit)
 
     @cached_property
     def _rest(self) -> Real:

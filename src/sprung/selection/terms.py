@@ -170,8 +170,8 @@ def neutral(extra: str, tracks: Tracks) -> list[tuple[str, str | float]]:
 def places_of_stops(choice: ModelStructure, optimum: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Give compressions, m, at which stops may be met, from how far a fitted vehicle moves."""
     rows = Rows.of([force.row for force in nonlinear_elements(choice.tracks, ("bump-stop",))], choice.names)
-    G, point = rows.at(optimum.values), optimum.point
-    motions = (point.place.motion(point.weights, i, 0, decay.samples) for i, decay in enumerate(decays))
+    G = rows.at(optimum.values)
+    motions = (optimum.motion(i, 0, decay.samples) for i, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
     return [part * largest for part in _MET] if largest > 0 else []
 
