@@ -13,7 +13,7 @@ from campaigns import AXLES, WEIGHING, Measure, ballast, white
 import sprung
 from sprung.campaign import Drop
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Sensor, Vehicle, Wheel, quantity
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Sensor, Vehicle, Wheel, evaluate_quantity
 
 OFFSET = 0.05
 """m/s² root-mean-square: what a sensor that feels gravity reads too much at rest, anew in every drop."""
@@ -91,7 +91,7 @@ class DropTest:
         names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))
         std = WEIGHING * self.vehicle.total_mass
         return {
-            name: KnownValue(quantity(name, names, values)[0] + std * random.standard_normal(), std)
+            name: KnownValue(evaluate_quantity(name, names, values)[0] + std * random.standard_normal(), std)
             for name in self.weighed
         }
 

@@ -13,14 +13,14 @@ import sprung
 from sprung.campaign import Campaign, Recording, merged
 from sprung.simulation import default_sensors
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, parse_record
 
 Real = NDArray[np.float64]
 
 REST, AFTER = 0.6, 2.9
 """s that a logger records before and after the release, if it starts when it should."""
 
-BAGS = record_of(
+BAGS = parse_record(
     Load,
     {
         "name": "bags",

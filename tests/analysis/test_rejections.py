@@ -12,7 +12,7 @@ from scipy.linalg import expm
 
 import sprung
 from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle, drop_from_blocks
-from sprung.vehicle.rows import body_point
+from sprung.vehicle.kinematics import body_point
 
 Array = NDArray[np.float64]
 

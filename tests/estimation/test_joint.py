@@ -23,13 +23,13 @@ from sprung.vehicle import (
     Sensor,
     Vehicle,
     Wheel,
-    record_of,
+    parse_record,
     seven_degrees_of_freedom,
 )
 from strategies import vehicles
 
 # Off the centreline and off the centre of gravity, so that ΔM is full.
-LOAD = record_of(
+LOAD = parse_record(
     Load,
     {
         "name": "bags",

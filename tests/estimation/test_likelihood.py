@@ -13,11 +13,11 @@ from sprung.estimation.expm_likelihood import evaluate_drop
 from sprung.estimation.solution import differentiate_modes, solve_modes
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, record_of
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, parse_record
 
 Real = NDArray[np.float64]
 
-LOAD = record_of(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
+LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 
 
 # 1/σ² with which the initial states' own reach weighs nothing beside the records.

@@ -19,7 +19,7 @@ from sprung.estimation import (
     synchronise_by_decay,
 )
 from sprung.preprocess import FreeDecay, Prepared
-from sprung.vehicle import Vehicle, separated
+from sprung.vehicle import Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -52,7 +52,7 @@ def clock_reports(
 def _reported(clocks: Sequence[LoggerClock], late: Real, covariance: Real) -> Iterator[ClockReport]:
     """Refer every clock to the first one: whose sample was taken later shows less than it would."""
     variance = np.diag(covariance) + covariance[0, 0] - 2 * covariance[0]
-    own = np.array([clock.ahead for clock in clocks]) - late
+    own = np.array([clock.offset for clock in clocks]) - late
     for clock, ahead, squared in zip(clocks, (own - own[0]).tolist(), variance.tolist(), strict=True):
         std = float(np.hypot(max(squared, 0.0) ** 0.5, _DRIFT if ahead else 0.0))
         yield ClockReport(clock.name, ahead, std)
@@ -94,7 +94,7 @@ def set_clocks(
         timed = synchronise_by_decay(released, optimum)
         known = {
             decay.file: [
-                replace(clock, ahead=_moment(late, optimum.parameters))
+                replace(clock, offset=_moment(late, optimum.parameters))
                 for clock, late in zip(decay.clocks, other.clocks, strict=True)
             ]
             for decay, other in zip(released, timed, strict=True)
@@ -139,7 +139,7 @@ def told_by_flights(
         return None
     decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
     found = fit(decays)
-    values = separated(found.parameters)
+    values = with_separate_tracks(found.parameters)
     missed = sum(
         one.chi_square_at(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)]))
         for one in told
@@ -162,7 +162,7 @@ def _released(
 
 def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:
     """Give what a logger's clock showed at a moment that is the same for all, s."""
-    return clock.ahead - clock.expected(parameters)
+    return clock.offset - clock.expected_delay(parameters)
 
 
 def _told_before(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> FreeDecay:
@@ -174,9 +174,14 @@ def _told_before(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Ma
     known = {clock.name: clock for clock in before}
     if not all(clock.name in known for clock in decay.clocks):
         return decay
-    earliest = min((clock.ahead - _moment(known[clock.name], parameters) for clock in decay.clocks), default=0.0)
+    earliest = min((clock.offset - _moment(known[clock.name], parameters) for clock in decay.clocks), default=0.0)
     clocks = [
-        replace(clock, late=old.late + clock.ahead - old.ahead - earliest, std=old.std, follows=old.follows)
+        replace(
+            clock,
+            delay=old.delay + clock.offset - old.offset - earliest,
+            delay_std=old.delay_std,
+            d_delay_d_parameter=old.d_delay_d_parameter,
+        )
         for clock, old in ((clock, known[clock.name]) for clock in decay.clocks)
     ]
     return replace(decay, clocks=tuple(clocks))

@@ -18,7 +18,7 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, FreeDecay, Prepared, find_flights
 from sprung.progress import Progress, Step, silent
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
+from sprung.vehicle import WHEELS, BlockSupport, Rows, Vehicle, coordinates, evaluate_quantity, simulate_nonlinear_drops
 
 Real = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ def is_needed(fit: FitStatistics) -> bool:
         Of the decays.
     """
     scaling = fit.scaling
-    total, gradient = quantity("total_mass", fit.names, fit.values)
+    total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     # Falling tells nothing of the absolute scale: what is left of the uncertainties when the total mass is given.
     within = np.eye(len(fit.names)) - np.outer(scaling, gradient * fit.slopes / total)
     errors = np.sqrt(np.diag(within @ fit.relative_covariance @ within.T)) * np.abs(fit.slopes)
@@ -136,10 +136,10 @@ def _start(flight: Flight, vehicle: Vehicle, campaign: Campaign, rows: Real) -> 
     decay = flight.decay
     load, rate = campaign.load(decay.load), decay.rate
     heights = _HEIGHTS if flight.height is None else (flight.height,)
-    blocks = [Block(load, flight.wheels or WHEELS, height) for height in heights]
+    blocks = [BlockSupport(load, flight.wheels or WHEELS, height) for height in heights]
     offset = flight.since % (1 / rate)
     before, samples = round((flight.since - offset) * rate), int(_LONG_ENOUGH * rate)
-    motions = drops_with_forces(vehicle, blocks, 1 / rate, before + samples, offset)
+    motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, before + samples, offset)
     told = (decay.values - decay.rest.level[:, None])[:, :samples]
     missed = [
         np.nansum((told - (rows @ motion.acceleration)[:, before : before + told.shape[1]]) ** 2) for motion in motions

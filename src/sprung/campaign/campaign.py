@@ -18,10 +18,10 @@ from sprung.campaign.sources import SourceFile
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problems, UnknownNameError
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, Heights, Load, Sensor, record
+from sprung.vehicle import EMPTY, Heights, Load, Sensor, checked_record
 
 
-@record
+@checked_record
 class ModelChoice:
     """What the user says about the model; what is left out, sprung decides."""
 
@@ -35,7 +35,7 @@ class ModelChoice:
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
 
-@record
+@checked_record
 class TestRecord:
     """``[test]``: when, where and by whom the vehicle was tested; for the record, no number depends on it."""
 

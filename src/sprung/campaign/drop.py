@@ -12,7 +12,7 @@ from typing import Annotated
 from pydantic import Field, InstanceOf, model_validator
 
 from sprung.campaign.recording import Recording
-from sprung.vehicle import WHEELS, Finite, Positive, Wheel, record
+from sprung.vehicle import WHEELS, Finite, Positive, Wheel, checked_record
 
 KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
@@ -39,7 +39,7 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
     return KINDS.get(frozenset(wheels), " ".join(wheels))
 
 
-@record
+@checked_record
 class Drop:
     """One release off the blocks, as a campaign file describes it."""
 
@@ -141,7 +141,7 @@ class Drop:
         return DropTest(**stated, recording=recording)
 
 
-@record
+@checked_record
 class DropTest(Drop):
     """One release off the blocks, as it is stated, and what was recorded of it; equal where the same is stated."""
 

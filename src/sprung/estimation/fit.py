@@ -20,7 +20,7 @@ from sprung.estimation.time_stepping import SteppedLikelihoodAt
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_names
+from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
 
 Real = NDArray[np.float64]
 
@@ -289,7 +289,7 @@ def fit_linear(
 
 def _completed(guess: Mapping[str, float], usual: Mapping[str, float]) -> dict[str, float]:
     """Complete a guess by a usual vehicle's values; half-distances that it shares hold for springs and dampers apart too."""
-    shared = {own: value for name, value in guess.items() for own in separate_names(name)}
+    shared = {own: value for name, value in guess.items() for own in separate_track_names(name)}
     apart = {name: guess[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in guess}
     return {**usual, **shared, **apart, **guess}
 

@@ -251,7 +251,7 @@ def _decay(
         rest=unknown_baseline(len(recording.channels)) if release is None else release.rest,
         faults=tuple(faults),
         clocks=recording.clocks,
-        shares=recording.shares,
+        rate_ratios=recording.rate_ratios,
         high_pass=high_pass,
         initial_velocity=integrate_from_rest(recording, release, high_pass, landing.possible),
         events=_events(recording, release, landing, first, why_end),

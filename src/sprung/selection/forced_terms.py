@@ -28,7 +28,7 @@ from sprung.selection.terms import (
     thinned,
     without,
 )
-from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, separate_names
+from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, separate_track_names
 
 STOPS = "bump-stop"
 
@@ -197,7 +197,7 @@ def _prospects(way: ModelSearch, extras: Sequence[str]) -> dict[str, float]:
         largest.known,
         values=neutral_start(largest, own),
         states=carried_over(way.fit.states, way.fit.names, names),
-        together=[separate_names(name) if parted else (name,) for name in own],
+        together=[separate_track_names(name) if parted else (name,) for name in own],
         candidates={extra: [(name,) for name in brought(extra, largest.tracks)] for extra in extras},
         tilting=way.structure.gravity_leakage,
     )

@@ -18,10 +18,10 @@ from sprung.vehicle import (
     LinearModel,
     NonlinearModel,
     Tracks,
-    brought_by,
-    ground_forces,
+    ground_contact_elements,
     nonlinear_elements,
     parameter_names,
+    parameters_of_term,
     seven_degrees_of_freedom,
 )
 
@@ -98,7 +98,7 @@ class ModelStructure:
         """Equations of motion by load name, with the forces that no matrix carries."""
         elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         forces = nonlinear_elements(self.tracks, self.terms) + (
-            ground_forces(self.terms) if self.unilateral_tyres else ()
+            ground_contact_elements(self.terms) if self.unilateral_tyres else ()
         )
         return {
             load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
@@ -171,7 +171,7 @@ def choose_structure(
         )
     names = parameter_names(chosen, chosen_extras) if not problems else ()
     for extra in EXTRAS:
-        brought = brought_by(extra, chosen)
+        brought = parameters_of_term(extra, chosen)
         for name in (one for one in brought if one in campaign.known and names and one not in names):
             problems.add(
                 f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",

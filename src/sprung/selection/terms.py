@@ -18,10 +18,10 @@ from sprung.vehicle import (
     PARAMETERS,
     Rows,
     Tracks,
-    brought_by,
     coordinates,
     nonlinear_elements,
-    separated,
+    parameters_of_term,
+    with_separate_tracks,
 )
 
 Real = NDArray[np.float64]
@@ -157,14 +157,14 @@ def possible(extra: str, optimum: FitResult) -> bool:
 
 def brought(extra: str, tracks: Tracks) -> tuple[str, ...]:
     """Name the parameters that move on their own in the larger model only."""
-    return ("t_f1", "t_r1") if extra == SEPARATE else brought_by(extra, tracks)
+    return ("t_f1", "t_r1") if extra == SEPARATE else parameters_of_term(extra, tracks)
 
 
 def neutral(extra: str, tracks: Tracks) -> list[tuple[str, str | float]]:
     """Give what each parameter would have to be for the extra not to be there: a value, or another parameter."""
     if extra == SEPARATE:
         return [("t_f1", "t_f2"), ("t_r1", "t_r2")]
-    return [(name, NEUTRAL[name]) for name in brought_by(extra, tracks) if name in NEUTRAL]
+    return [(name, NEUTRAL[name]) for name in parameters_of_term(extra, tracks) if name in NEUTRAL]
 
 
 def places_of_stops(choice: ModelStructure, optimum: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
@@ -196,7 +196,7 @@ def neutral_start(choice: ModelStructure, own: Mapping[str, float]) -> dict[str,
     stiff = {f"s_{axle}": _STIFFER * own[f"k_s{axle}"] for axle in "fr"}
     stops = dict.fromkeys(("x_bf", "x_br"), choice.stop_gap)
     engine = choice.engine_mounting.engine(_SPECK * own["m_s"])
-    known = {**NEUTRAL, **stiff, **stops, **engine, **separated(own), **together, **own}
+    known = {**NEUTRAL, **stiff, **stops, **engine, **with_separate_tracks(own), **together, **own}
     return {name: known[name] for name in choice.names}
 
 
