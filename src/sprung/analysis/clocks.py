@@ -8,16 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.analysis.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 from sprung.campaign import Campaign, LoggerClock
 from sprung.checking import ClockReport
-from sprung.estimation import (
-    FitResult,
-    FitStatistics,
-    clear_of_splines,
-    mask_unsynchronised,
-    synchronise_at_release,
-    synchronise_by_decay,
-)
+from sprung.estimation import FitResult, FitStatistics, clear_of_splines
 from sprung.preprocess import FreeDecay, Prepared
 from sprung.vehicle import Vehicle, with_separate_tracks
 

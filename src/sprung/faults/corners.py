@@ -13,7 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FaultScore, FitResult, LikelihoodAt, identifiable_subspace
+from sprung.estimation import FitResult, LikelihoodAt, identifiable_subspace
+from sprung.faults.fault_scores import FaultScore
 from sprung.preprocess import FreeDecay, differentiate_by_cutoff
 from sprung.vehicle import Sensor
 

@@ -9,8 +9,8 @@ from scipy.interpolate import CubicSpline
 from scipy.stats import chi2
 from wireless import Wireless, wireless
 
-from sprung.estimation import clear_of_splines, synchronise_at_release
-from sprung.estimation.synchronisation import _as_taken
+from sprung.analysis.synchronisation import _as_taken, synchronise_at_release
+from sprung.estimation import clear_of_splines
 from sprung.preprocess import FlightLikelihood, FreeDecay, prepare
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 

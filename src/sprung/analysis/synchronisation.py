@@ -20,8 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
-from sprung.estimation.closed_form import Likelihood
-from sprung.estimation.fit import FitResult
+from sprung.estimation import FitResult, Likelihood
 from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, with_separate_tracks
 

@@ -13,10 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import LikelihoodAt
-from sprung.estimation.fit import FitResult
-from sprung.estimation.problem import identifiable_subspace
-from sprung.estimation.solution import ModalSlopes, respond
+from sprung.estimation import FitResult, LikelihoodAt, ModalSlopes, identifiable_subspace, respond
 from sprung.vehicle import Heights, LinearModel, Load, Rows, Sensor
 
 Real = NDArray[np.float64]
