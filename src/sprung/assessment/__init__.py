@@ -3,14 +3,14 @@
 from sprung.assessment.amplitude import ModeAmplitude, follow_modes
 from sprung.assessment.body_motion import MOTIONS, BodyMotion, body_motions
 from sprung.assessment.cross_validation import DropValidation, cross_validate_drops
-from sprung.assessment.mode_tracking import AmplitudeTrace
+from sprung.assessment.mode_tracking import AmplitudeCurve
 from sprung.assessment.model_error import Misfit, estimate_model_error
 from sprung.assessment.residuals import ResidualStatistics, describe_residuals, estimate_noise_level
 from sprung.assessment.verdict import State, Verdict, decide_verdict
 
 __all__ = [
     "MOTIONS",
-    "AmplitudeTrace",
+    "AmplitudeCurve",
     "BodyMotion",
     "DropValidation",
     "Misfit",
