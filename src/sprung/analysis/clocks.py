@@ -8,16 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.analysis.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 from sprung.campaign import Campaign, LoggerClock
 from sprung.checking import ClockReport
-from sprung.estimation import (
-    FitResult,
-    FitStatistics,
-    clear_of_splines,
-    mask_unsynchronised,
-    synchronise_at_release,
-    synchronise_by_decay,
-)
+from sprung.estimation import FitResult, FitStatistics, clear_of_splines
 from sprung.preprocess import FreeDecay, Prepared
 from sprung.vehicle import Vehicle, with_separate_tracks
 
@@ -130,7 +124,7 @@ def told_by_flights(
     """
     if not any(decay.clocks for decay in prepared.decays):
         return None
-    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.seen}
+    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.observations}
     flown = _released(
         campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], optimum
     )
@@ -141,7 +135,8 @@ def told_by_flights(
     found = fit(decays)
     values = with_separate_tracks(found.parameters)
     missed = sum(
-        one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
+        one.chi_square_at(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)]))
+        for one in told
     )
     worse = max(float(np.max(found.noise / optimum.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
     return (decays, found) if found.converged and worse < _NO_WORSE else None
@@ -152,7 +147,7 @@ def _released(
 ) -> list[FreeDecay]:
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
     vehicle = Vehicle.nearest(optimum.parameters, name=campaign.name, **campaign.heights.by_key)
-    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.seen}
+    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.observations}
     return [
         synchronise_at_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
         for decay in decays
