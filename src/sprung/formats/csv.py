@@ -187,7 +187,7 @@ class _Text:
         sample, number, start = self.marks[bisect_right(self.marks, first, key=lambda mark: mark[0]) - 1]
         pieces = self.read_blocks(start)
         while sample < last:
-            with reading(self.path, "a text table"):
+            with reading(self.path.name, "a text table"):
                 lines = _samples(next(pieces), number, self.layout)
                 cells = Cells(self.path.name, self.layout, columns, self.size, first - sample, last - sample)
                 cells.add(lines.lines, lines.start)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from sprung.errors import InputError
 from sprung.formats.csv import table_from_lines
 from sprung.formats.libraries import load_library
-from sprung.formats.reading_errors import MemoryBudget, contained, input_error
+from sprung.formats.reading_errors import MemoryBudget, input_error, reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -42,10 +42,10 @@ class ExcelFormat:
         _refuse_others(path)
         openpyxl = load_library("openpyxl", "excel", path)
         budget = MemoryBudget(path)
-        with contained(path.name, "Excel workbook"):
+        with reading(path.name, "an Excel workbook"):
             workbook = openpyxl.load_workbook(path, read_only=True, data_only=True)
         try:
-            with contained(path.name, "Excel workbook"):
+            with reading(path.name, "an Excel workbook"):
                 sheets = {sheet.title: list(_lines(sheet, budget)) for sheet in workbook.worksheets}
         finally:
             workbook.close()

@@ -43,7 +43,7 @@ class Hdf5Format:
             If it is damaged, holds no recording, or h5py is missing.
         """
         h5py = load_library("h5py", "hdf5", path)
-        with reading(path, "an HDF5 file"), h5py.File(path, "r") as file:
+        with reading(path.name, "an HDF5 file"), h5py.File(path, "r") as file:
             node = _group(h5py, file, MemoryBudget(path), {file}, path)
         return table_from_nested(node, path, "Write the time and the channels as one-dimensional datasets.")
 

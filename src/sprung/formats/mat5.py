@@ -234,7 +234,7 @@ def _store(
         return np.frombuffer(stream.read(count * dtype.itemsize), dtype, count)
 
     def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
-        with reading(path, _KIND), again() as stream:
+        with reading(path.name, _KIND), again() as stream:
             if upright:
                 rows = [taken(stream, column * length + first, last - first) for column in columns]
                 return np.array(rows, dtype=np.float64)

@@ -12,7 +12,7 @@ import numpy as np
 from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times
 from sprung.formats.libraries import load_library
 from sprung.formats.mdf_blocks import AGAIN, MAGIC, Content, check_blocks
-from sprung.formats.reading_errors import check_declared_size, contained, input_error, memory_limit, truncation_error
+from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
 from sprung.formats.sample_store import Samples, Store, split_range
 from sprung.formats.stated_rates import TIME_UNITS
 
@@ -56,7 +56,7 @@ class MdfFormat:
             columns: list[Column] = []
             timeless: list[str] = []
             for index in range(len(measurement.groups)):
-                with contained(f"{file}: group {index + 1}", "MDF"):
+                with reading(f"{file}: group {index + 1}", "an MDF file"):
                     clock = _clock(measurement, index, file, largest)
                     found = list(_columns(measurement, index, clock, path))
                     columns += found
@@ -73,7 +73,7 @@ def _measurement(path: Path) -> Iterator[Any]:
     with path.open("rb") as stream:
         unfinished = stream.read(8) == MAGIC[1]
         stream.seek(0)
-        with contained(path.name, "MDF"), _closing_what_was_begun():
+        with reading(path.name, "an MDF file"), _closing_what_was_begun():
             measurement = load_library("asammdf", "mdf", path).MDF(BytesIO(stream.read()) if unfinished else stream)
             measurement.configure(read_fragment_size=_AT_ONCE)
         with closing(measurement):
@@ -172,7 +172,7 @@ def _store(path: Path, group: int, channels: Sequence[int], length: int) -> Stor
             for begin, end in split_range(first, last, step):
                 values = np.empty((len(columns), end - begin))
                 own = [channels[column] for column in columns]
-                with contained(f"{path.name}: group {group + 1}", "MDF"):
+                with reading(f"{path.name}: group {group + 1}", "an MDF file"):
                     place = 0
                     for records in _records(measurement, group, begin, end - begin):
                         for row, channel in zip(values, own, strict=True):

@@ -42,7 +42,7 @@ class ParquetFormat:
         """
         arrow = load_library("pyarrow", "parquet", path)
         parquet = load_library("pyarrow.parquet", "parquet", path)
-        with reading(path, _KIND), parquet.ParquetFile(path, memory_map=False) as file:
+        with reading(path.name, _KIND), parquet.ParquetFile(path, memory_map=False) as file:
             rows, schema = file.metadata.num_rows, file.schema_arrow
             fields = [field for field in schema if _is_number(arrow, field.type) or _ticks(arrow, field.type)]
             MemoryBudget(path).take(8 * rows * len(fields))
@@ -74,10 +74,10 @@ def _store(path: Path, names: Sequence[str], rows: int) -> Store:
 def _pieces(path: Path, names: Sequence[str], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
     """Read from the group of rows on in which a range begins."""
     arrow, parquet = load_library("pyarrow", "parquet", path), load_library("pyarrow.parquet", "parquet", path)
-    with reading(path, _KIND):
+    with reading(path.name, _KIND):
         file = parquet.ParquetFile(path, memory_map=False, buffer_size=1 << 16, pre_buffer=False)
     with file:
-        with reading(path, _KIND):
+        with reading(path.name, _KIND):
             origins = _origins(arrow, file, names)
             counts = [file.metadata.row_group(group).num_rows for group in range(file.num_row_groups)]
             ends = np.cumsum(counts)
@@ -86,7 +86,7 @@ def _pieces(path: Path, names: Sequence[str], first: int, last: int, step: int) 
             groups = list(range(group, len(counts)))
             batches = iter(file.iter_batches(min(step, 1 << 16), groups, list(dict.fromkeys(names)), use_threads=False))
         while place < last:
-            with reading(path, _KIND):
+            with reading(path.name, _KIND):
                 batch = next(batches)
                 values = np.array([_values(arrow, batch.column(name), origins.get(name, 0)) for name in names])
             yield values[:, max(first - place, 0) : last - place]

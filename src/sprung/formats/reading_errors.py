@@ -52,8 +52,15 @@ def truncation_error(where: str, found: str) -> InputError:
 
 
 @contextmanager
-def contained(where: str, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises over a file into an `InputError`, and keep it silent.
+def reading(where: str, kind: str) -> Iterator[None]:
+    """Turn whatever a library raises over a file into an `InputError`; its warnings and log messages are silenced.
+
+    Parameters
+    ----------
+    where
+        Name of the file, or of a part of it.
+    kind
+        What the file should be, such as ``a WAV file``.
 
     Raises
     ------
@@ -61,7 +68,7 @@ def contained(where: str, kind: str) -> Iterator[None]:
         If the block raises anything.
     """
     level = logging.root.manager.disable
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), np.errstate(invalid="ignore"):
         warnings.simplefilter("ignore")
         logging.disable(logging.CRITICAL)
         try:
@@ -69,38 +76,11 @@ def contained(where: str, kind: str) -> Iterator[None]:
         except InputError:
             raise
         except Exception as error:
-            reason = " ".join(f"{type(error).__name__}: {error}".split())[:200]
-            found, do = f"content that cannot be read ({reason})", "Export the recording again, or in another format."
-            raise input_error(where, found, f"a sound {kind} file", do) from error
+            reason = " ".join(str(error).split()) or type(error).__name__
+            found = f"a damaged file ({reason[:200]})"
+            raise input_error(where, found, kind, "Copy or export it again, or in another format.") from error
         finally:
             logging.disable(level)
-
-
-@contextmanager
-def reading(path: Path, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises over a file into bad input; numbers that are none are no reason for a warning.
-
-    Parameters
-    ----------
-    path
-        The file.
-    kind
-        What it should be, ``a WAV file``.
-
-    Raises
-    ------
-    InputError
-        If the block raises anything.
-    """
-    try:
-        with np.errstate(invalid="ignore"):
-            yield
-    except InputError:
-        raise
-    except Exception as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
-        found = f"a damaged file ({reason[:200]})"
-        raise input_error(path.name, found, kind, "Copy or export it again.") from error
 
 
 class MemoryBudget:

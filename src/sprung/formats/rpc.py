@@ -143,7 +143,7 @@ def _store(path: Path, samples: _Samples, scales: Sequence[float]) -> Store:
 
     def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
         values = np.empty((len(columns), last - first))
-        with reading(path, "an RPC III file"), path.open("rb") as stream:
+        with reading(path.name, "an RPC III file"), path.open("rb") as stream:
             for group in range(first // samples.group, -(-last // samples.group)):
                 begin, end = max(first - group * samples.group, 0), min(last - group * samples.group, samples.group)
                 place = group * samples.group + begin - first

@@ -9,7 +9,7 @@ import numpy as np
 
 from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times, regular_clock
 from sprung.formats.libraries import load_library
-from sprung.formats.reading_errors import check_declared_size, contained, input_error, memory_limit, truncation_error
+from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
 from sprung.formats.sample_store import Samples, Store, split_range
 from sprung.formats.stated_rates import TIME_UNITS
 from sprung.formats.table import split_unit
@@ -47,7 +47,7 @@ class TdmsFormat:
         _refuse_cut_short(path)
         # Given a stream, the library leaves the index beside the file alone, which may be of another recording.
         with path.open("rb") as stream:
-            with contained(file, "TDMS"):
+            with reading(file, "a TDMS file"):
                 content = nptdms.TdmsFile.open(stream)
                 groups = {group.name: group.channels() for group in content.groups()}
                 numbers = sum(len(channel) for channels in groups.values() for channel in channels)
@@ -55,7 +55,7 @@ class TdmsFormat:
                 check_declared_size(numbers, file, 0.0)
             columns: list[Column] = []
             timeless: list[str] = []
-            with contained(file, "TDMS"):
+            with reading(file, "a TDMS file"):
                 zero = _zero([channel for channels in groups.values() for channel in channels])
                 samples = _samples([channel for channels in groups.values() for channel in channels], path)
                 for name, channels in groups.items():
@@ -115,7 +115,7 @@ def _is_time(channel: Any) -> bool:
 
 
 def _times(channel: Any, file: str) -> ChannelClock:
-    with contained(f"{file}: channel '{channel.name}'", "TDMS"):
+    with reading(f"{file}: channel '{channel.name}'", "a TDMS file"):
         samples = np.asarray(channel[:])
     if samples.dtype.kind == "M":
         return clock_from_times((samples - samples[0]) / np.timedelta64(1, "ns") * 1e-9)
@@ -172,14 +172,14 @@ def _store(path: Path, channels: Sequence[str], length: int) -> Store:
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
         nptdms = load_library("nptdms", "tdms", path)
         with path.open("rb") as stream:
-            with contained(path.name, "TDMS"):
+            with reading(path.name, "a TDMS file"):
                 content = nptdms.TdmsFile.open(stream)
                 own = {channel.path: channel for group in content.groups() for channel in group.channels()}
             for begin, end in split_range(first, last, step):
                 values = np.empty((len(columns), end - begin))
                 for row, column in zip(values, columns, strict=True):
                     channel = own[channels[column]]
-                    with contained(f"{path.name}: channel '{channel.name}'", "TDMS"):
+                    with reading(f"{path.name}: channel '{channel.name}'", "a TDMS file"):
                         samples = channel.read_data(begin, end - begin)
                         if len(samples) < end - begin:
                             raise truncation_error(path.name, f"{begin + len(samples)} of {length} samples")
