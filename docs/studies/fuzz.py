@@ -26,7 +26,7 @@ from random import Random
 from types import CodeType, FrameType
 from typing import Any, TypeAlias
 
-from damage import find_non_number
+from damage import spoilt
 from readers import LONGEST, READERS, Broken, Reader, sound_files, tried
 
 import sprung
@@ -108,7 +108,7 @@ def fuzz(reader: Reader, folder: Path, seconds: float, seed: int) -> None:
         if time.monotonic() > end:
             return
         known = number < len(ahead)
-        data = ahead[number] if known else find_non_number([random.choice(files), random.choice(files[-30:])], random)
+        data = ahead[number] if known else spoilt([random.choice(files), random.choice(files[-30:])], random)
         (folder / "current").write_bytes(data)
         peak = _resident()
         try:

@@ -78,6 +78,6 @@ def _store(path: Path, samples: NDArray[Any]) -> Store:
         source = _read(path)[1] if in_memory is None else in_memory
         with reading(path.name, _KIND):
             values = np.array([source[first:last, column] for column in columns], dtype=np.float64)
-        return (values - middle) / full_scale
+            return (values - middle) / full_scale
 
     return store_by_ranges(width, length, get, samples_per_read(width * size))
