@@ -143,11 +143,11 @@ detects release and landing, selects the model and computes its own start values
 information is not in the bound ([the flight phase](fall.md)).
 
 The bound is computed by `sprung.planning` at the true parameters, from the drops that were used. Each free decay begins
-at the last contact of the last tyre. Errors are relative, in units of the bound. *Error* is the root-mean-square error divided
-by the bound, as the mean over the parameters and for the worst parameter; *bias* is the largest mean error; *stated* is the
-standard uncertainty in the results, as the mean over the parameters; *covered* is the fraction of all 95 % intervals
-that contain the true value. Without a load or a weighing the recordings do not determine the absolute scale; masses and rates are
-then evaluated per total mass.
+at the last contact of the last tyre. Errors are relative, in units of the bound. *Error* is the root-mean-square error
+divided by the bound, as the mean over the parameters and for the worst parameter; *bias* is the largest mean error;
+*stated* is the standard uncertainty in the results, as the mean over the parameters; *covered* is the fraction of all 95
+% intervals that contain the true value. Without a load or a weighing the recordings do not determine the absolute scale;
+masses and rates are then evaluated per total mass.
 
 These figures have statistical uncertainties: a root-mean-square error from {many} or from {each} campaigns {error}, a
 mean error {mean_error}. The worst of fifteen parameters is a maximum and therefore biased upwards.
@@ -172,9 +172,9 @@ coverage; the verdicts are those of the whole row.
 
 ## Remaining figures
 
-Of all campaigns on this page, {wrong} used a wrong model of the half-distances (shared or separate), and {incomplete} excluded a
-drop. A parameter that a campaign does not determine counts neither as an error nor as an interval; the number of such cases is in
-[at-the-bound.json](at-the-bound.json), with every parameter of every case.
+Of all campaigns on this page, {wrong} used a wrong model of the half-distances (shared or separate), and {incomplete}
+excluded a drop. A parameter that a campaign does not determine counts neither as an error nor as an interval; the number
+of such cases is in [at-the-bound.json](at-the-bound.json), with every parameter of every case.
 
 ## Reproduction
 

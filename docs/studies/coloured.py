@@ -110,7 +110,8 @@ The paper's car (Table 1) is dropped from blocks of 5 cm, with {NOISE:g} m/s² o
 row has {many} campaigns, simulated and identified as in the [study of accuracy](at-the-bound.md). The noise is
 
 - white;
-- filtered by a first-order low-pass of {milliseconds:g} ms, with the same power: the correlation of successive samples is {kept:.2f};
+- filtered by a first-order low-pass of {milliseconds:g} ms, with the same power: the correlation of successive samples is
+  {kept:.2f};
 - white, with a drift of {DRIFT:g} m/s² of every channel over the recording, of random sign;
 - white, with quantisation to twelve bits over ±10 g, steps of {STEP:.3f} m/s²: {STEP / NOISE:.1f} times the noise.
 
@@ -120,8 +121,8 @@ campaigns with a factor above 1; *covered* is the fraction of all 95 % intervals
 
 ## Results
 
-At least {WANTED:g} % of the intervals are required to contain the true value; {met}. The lowest coverage is {low.coverage:.1f} %
-({KINDS[low.case.measure]}; {low.case.test}).
+At least {WANTED:g} % of the intervals are required to contain the true value; {met}. The lowest coverage is
+{low.coverage:.1f} % ({KINDS[low.case.measure]}; {low.case.test}).
 
 {table(head, rows)}
 

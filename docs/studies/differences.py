@@ -157,8 +157,8 @@ def page(cases: Sequence[dict[str, Any]]) -> str:
     )
     return f"""# Differences between two results
 
-`sprung compare` reports a difference as *likely* or *certain* if a difference as large anywhere in the table would be improbable by
-chance. How often does this happen for an unchanged vehicle, and how small a change is detected?
+`sprung compare` reports a difference as *likely* or *certain* if a difference as large anywhere in the table would be
+improbable by chance. How often does this happen for an unchanged vehicle, and how small a change is detected?
 
 ## Method
 
@@ -171,9 +171,10 @@ compared.
 
 {first}
 
-*RMS of z*: root-mean-square difference in standard uncertainties; 1 if these are correct. *z beyond ±1.96*: single parameters;
-5 % if the uncertainties are correct. *Joint p < 0.05*: all estimated parameters together; 5 % (with an unknown scale, lengths only).
-*Detected*: tables in which any parameter, or any mode, was reported as likely or certain; at most 5 % with Holm's correction.
+*RMS of z*: root-mean-square difference in standard uncertainties; 1 if these are correct. *z beyond ±1.96*: single
+parameters; 5 % if the uncertainties are correct. *Joint p < 0.05*: all estimated parameters together; 5 % (with an
+unknown scale, lengths only). *Detected*: tables in which any parameter, or any mode, was reported as likely or certain;
+at most 5 % with Holm's correction.
 
 ## Vehicle with weaker front dampers
 

@@ -121,23 +121,26 @@ def page(trials: Sequence[Trial]) -> str:
     rows = [_row(kind, [one for one in trials if one.kind == kind]) for kind in kinds]
     return f"""# An engine on its mounts
 
-Eight accelerometers are mounted on the body and the wheels, none on the engine, which has about ten percent of the sprung mass. Is
-the engine detected from its effect on the body, how accurately is it located, and how accurate are the other parameters?
+Eight accelerometers are mounted on the body and the wheels, none on the engine, which has about ten percent of the sprung
+mass. Is the engine detected from its effect on the body, how accurately is it located, and how accurate are the other
+parameters?
 
 ## Method
 
-The paper's car and school bus, and the car with {FRICTION:g} N of dry friction in each suspension. The engine was drawn at random for
-each campaign: 6 to 18 % of the sprung mass, 6 to 15 Hz on its mounts with the body fixed, 3 to 15 % of critical damping, near the
-front axle (of the bus near the rear axle). Ten drops, five with a load; {RATE:g} samples per second, noise {NOISE:g} m/s². The
-campaign file does not mention an engine. Every fourth campaign without friction was identified once more with `extras = []`.
+The paper's car and school bus, and the car with {FRICTION:g} N of dry friction in each suspension. The engine was drawn
+at random for each campaign: 6 to 18 % of the sprung mass, 6 to 15 Hz on its mounts with the body fixed, 3 to 15 % of
+critical damping, near the front axle (of the bus near the rear axle). Ten drops, five with a load; {RATE:g} samples per
+second, noise {NOISE:g} m/s². The campaign file does not mention an engine. Every fourth campaign without friction was
+identified once more with `extras = []`.
 
 ## Results
 
 {table(head, rows)}
 
-*Correct model*: the selected model has an engine, friction if the vehicle has friction, and nothing else. Errors are root-mean-square
-errors; that of the engine's position is relative to the wheelbase. *Error over stated*: root-mean-square error divided by the stated
-standard uncertainty, over all parameters; *covered*: 95 % intervals that contain the true value.
+*Correct model*: the selected model has an engine, friction if the vehicle has friction, and nothing else. Errors are
+root-mean-square errors; that of the engine's position is relative to the wheelbase. *Error over stated*: root-mean-square
+error divided by the stated standard uncertainty, over all parameters; *covered*: 95 % intervals that contain the true
+value.
 
 ## Reproduction
 

@@ -102,23 +102,24 @@ def page(trials: Sequence[Trial]) -> str:
     rows = [_row(vehicle.name, [one for one in trials if one.vehicle == vehicle.name]) for vehicle in VEHICLES]
     return f"""# The flight phase before the landing
 
-From the release on a drop is a known experiment: first the tyres of the dropped wheels carry no force, then the wheels land.
-`sprung.identify(campaign, fall=True)` uses this {{term}}`flight phase` as well. How much information does it contain, and do the
-intervals have the stated coverage?
+From the release on a drop is a known experiment: first the tyres of the dropped wheels carry no force, then the wheels
+land. `sprung.identify(campaign, fall=True)` uses this {{term}}`flight phase` as well. How much information does it
+contain, and do the intervals have the stated coverage?
 
 ## Method
 
 The paper's car and school bus, and the car with dry friction; two drops from {100 * HEIGHT:g} cm (front, left), each with
-and without a load of a tenth of the sprung mass; {DURATION:g} s at {RATE:g} samples per second, noise {NOISE:g} m/s²; total mass
-weighed to 0.1 %. Every campaign was identified twice, from the landing on and from the release on, with the correct model.
+and without a load of a tenth of the sprung mass; {DURATION:g} s at {RATE:g} samples per second, noise {NOISE:g} m/s²;
+total mass weighed to 0.1 %. Every campaign was identified twice, from the landing on and from the release on, with the
+correct model.
 
 ## Results
 
 {table(head, [row for row in rows if row])}
 
 *Error ratio*: root-mean-square error from the release on, divided by that from the landing on, median over the
-parameters. *Error over stated*: root-mean-square error divided by the stated standard uncertainty, over all parameters, from the
-landing on and from the release on. *Covered*: 95 % intervals that contain the true value, likewise.
+parameters. *Error over stated*: root-mean-square error divided by the stated standard uncertainty, over all parameters,
+from the landing on and from the release on. *Covered*: 95 % intervals that contain the true value, likewise.
 
 ## Reproduction
 

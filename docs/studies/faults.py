@@ -141,18 +141,19 @@ The vehicles, each with a different test:
 
 {tests}
 
-Sensors that measure gravity have an offset of {OFFSET:g} m/s² root-mean-square, drawn for every drop. Every fault was introduced
-into the campaigns of each vehicle, one at a time. Place and size were drawn at random within these limits:
+Sensors that measure gravity have an offset of {OFFSET:g} m/s² root-mean-square, drawn for every drop. Every fault was
+introduced into the campaigns of each vehicle, one at a time. Place and size were drawn at random within these limits:
 
 {done}
 
-A fault is *noticed* if the result reports a fault that the result of the sound campaign does not report, and this has the correct code
-or names the affected channel, recording or load. It is *identified* if one reported fault has the correct code and names all of these; if
-the campaign is to be refused, the refusal must name them and state the reason. *Excluded* counts the
-campaigns in which a channel or drop was not used. *Corrected* counts those in which the fault was noticed and all data were used and
-accepted. The *deviation* is the difference of a parameter from that of the sound campaign, in standard uncertainties of the latter,
-for the campaigns that were accepted. *Harm* counts the accepted campaigns with a parameter that deviates by more than
-{FAR:g} of its own standard uncertainties, and in brackets those of them in which nothing was noticed.
+A fault is *noticed* if the result reports a fault that the result of the sound campaign does not report, and this has the
+correct code or names the affected channel, recording or load. It is *identified* if one reported fault has the correct
+code and names all of these; if the campaign is to be refused, the refusal must name them and state the reason. *Excluded*
+counts the campaigns in which a channel or drop was not used. *Corrected* counts those in which the fault was noticed and
+all data were used and accepted. The *deviation* is the difference of a parameter from that of the sound campaign, in
+standard uncertainties of the latter, for the campaigns that were accepted. *Harm* counts the accepted campaigns with a
+parameter that deviates by more than {FAR:g} of its own standard uncertainties, and in brackets those of them in which
+nothing was noticed.
 
 {len(cleans)} sound campaigns were identified, half of them with white noise, a quarter with noise filtered by a first-order
 low-pass of {1000 * TIME_CONSTANT:g} ms and a quarter quantised to twelve bits over ±10 g; drift is not noise here but a
@@ -162,8 +163,8 @@ fault. Any reported fault, and any verdict other than accept, is a false alarm.
 
 Of {everything} faults {noticed} were noticed ({_percent(noticed, everything)}) and {named} identified
 ({_percent(named, everything)}). Of those not noticed {doubted} had the verdict doubtful or reject, or were refused. Wrong
-numbers were accepted {harm} times, {unseen} times without a reported fault. Of {len(cleans)} sound campaigns {len(alarms)} gave a false
-alarm.
+numbers were accepted {harm} times, {unseen} times without a reported fault. Of {len(cleans)} sound campaigns
+{len(alarms)} gave a false alarm.
 
 {table(head, rows)}
 

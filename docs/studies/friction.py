@@ -138,19 +138,20 @@ vehicles without it?
 ## Method
 
 *Friction*: the paper's car and school bus, with friction of 0.5 to 3 % of a wheel's load on each spring and a presliding
-deflection of 0.3 to 0.8 mm (drawn at random), dropped from {100 * HEIGHT:g} cm in four ways, with and without a load of a tenth of
-the sprung mass; {RATE:g} samples per second, noise 0.02 m/s². The drops were simulated with separately written equations and a
-separate solver (`hysteresis.py`: Runge-Kutta, step 0.2 ms; {{term}}`Dahl's model <Dahl model>`). *Another law*: the same with 100 N,
-dampers with twice the rate in rebound, and hysteresis after Bouc and Wen, which is not the model of the fit. *None*: the linear
-vehicles of the study of faults. Every campaign was identified with default options: `sprung.identify(campaign)`.
+deflection of 0.3 to 0.8 mm (drawn at random), dropped from {100 * HEIGHT:g} cm in four ways, with and without a load of a
+tenth of the sprung mass; {RATE:g} samples per second, noise 0.02 m/s². The drops were simulated with separately written
+equations and a separate solver (`hysteresis.py`: Runge-Kutta, step 0.2 ms; {{term}}`Dahl's model <Dahl model>`). *Another
+law*: the same with 100 N, dampers with twice the rate in rebound, and hysteresis after Bouc and Wen, which is not the
+model of the fit. *None*: the linear vehicles of the study of faults. Every campaign was identified with default options:
+`sprung.identify(campaign)`.
 
 ## Results
 
 {table(head, [row for row in rows if row])}
 
-Errors are those of all parameters except the presliding stiffness, in percent of the true value; *covered* is the percentage of
-95 % intervals that contain it. Of {len(sound)} campaigns without friction {added} were given a model term that the vehicle does not
-have.
+Errors are those of all parameters except the presliding stiffness, in percent of the true value; *covered* is the
+percentage of 95 % intervals that contain it. Of {len(sound)} campaigns without friction {added} were given a model term
+that the vehicle does not have.
 
 ## Reproduction
 

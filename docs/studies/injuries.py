@@ -269,7 +269,8 @@ def reads_more(random: np.random.Generator, _: float) -> Change:
 
 
 OF_SENSORS: Sequence[Injury] = (
-    Injury("clipped, wheel", ("clipped",), "a wheel sensor clips at 40 to 80 % of the peak of the free decays", clipped("wheel")),
+    Injury("clipped, wheel", ("clipped",),
+           "a wheel sensor clips at 40 to 80 % of the peak of the free decays", clipped("wheel")),
     Injury("clipped, body", ("clipped",), "a body sensor clips at 40 to 80 % of the peak of the free decays", clipped("body")),
     Injury("flat", ("flat",), "a channel is constant in all drops", everywhere("any", flat)),
     Injury("flat, noisy", ("flat",), "a channel contains only noise in one drop", once(dead)),
@@ -287,14 +288,18 @@ OF_SENSORS: Sequence[Injury] = (
     Injury("corner, all DC", ("corner",),
            "all channels stated as DC have the same high-pass of 0.05 to 2 Hz", corner_unstated("DC", every=True)),
     Injury("corner, all AC", ("corner",), "the high-pass of all channels is not stated", corner_unstated("AC", every=True)),
-    Injury("corner, misstated", ("corner",), "the stated corner frequency of a channel is twice or half the true one", corner_misstated),
+    Injury("corner, misstated", ("corner",),
+           "the stated corner frequency of a channel is twice or half the true one", corner_misstated),
     Injury("offset", ("offset", "gain"), "a sensor is tilted by 15 to 25 degrees", everywhere("any", tilted)),
     Injury("drift, straight", ("drift",), "a channel drifts linearly by 0.1 m/s² over each recording", everywhere("any", ramp)),
-    Injury("drift, random walk", ("drift",), "a channel drifts as a random walk, 0.1 m/s² in one second", everywhere("any", walk)),
+    Injury("drift, random walk", ("drift",),
+           "a channel drifts as a random walk, 0.1 m/s² in one second", everywhere("any", walk)),
     Injury("exchanged, wheels", ("exchanged",), "two wheel channels are exchanged", exchanged("wheel", "wheel")),
     Injury("exchanged, body", ("exchanged",), "two body channels are exchanged", exchanged("body", "body")),
-    Injury("exchanged, body and wheel", ("exchanged",), "a body channel and a wheel channel are exchanged", exchanged("body", "wheel")),
-    Injury("exchanged, one drop", ("exchanged",), "two channels of one drop are exchanged", exchanged("any", "any", in_one=True)),
+    Injury("exchanged, body and wheel", ("exchanged",),
+           "a body channel and a wheel channel are exchanged", exchanged("body", "wheel")),
+    Injury("exchanged, one drop", ("exchanged",),
+           "two channels of one drop are exchanged", exchanged("any", "any", in_one=True)),
     Injury("twist", ("twist",), "the body has a torsion mode at 9 to 15 Hz, with a tenth of its motion", twist),
 )  # fmt: skip
 """Of sensors, their cables and descriptions; and of the body, which is not as stiff as the model has it."""

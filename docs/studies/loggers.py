@@ -155,22 +155,22 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
     met = f"which is not met by: {'; '.join(missing)}" if missing else "which all meet"
     return f"""# Several loggers
 
-Eight wireless loggers, one for each sensor, have clocks without a common origin. The release is one instant for all of them, and
-the motion of the vehicle between the release and the landing follows from the vehicle alone. Each logger that records the release
-therefore determines its time on its own clock, and the fit estimates one delay per logger and drop together with the vehicle
-parameters. The same samples contain information about the vehicle; it is used if the residuals of the flight phase are at the
-noise level.
+Eight wireless loggers, one for each sensor, have clocks without a common origin. The release is one instant for all of
+them, and the motion of the vehicle between the release and the landing follows from the vehicle alone. Each logger that
+records the release therefore determines its time on its own clock, and the fit estimates one delay per logger and drop
+together with the vehicle parameters. The same samples contain information about the vehicle; it is used if the residuals
+of the flight phase are at the noise level.
 
 ## Method
 
-Ten drops of the paper's car (Table 1), empty and with a load, total mass weighed, {NOISE:g} m/s² of noise. Every sensor has its own
-logger, started within {APART:g} s of the others. The clock offsets are arbitrary; the rate error of each clock is up to the value in
-the table. All figures are from `sprung.identify`.
+Ten drops of the paper's car (Table 1), empty and with a load, total mass weighed, {NOISE:g} m/s² of noise. Every sensor
+has its own logger, started within {APART:g} s of the others. The clock offsets are arbitrary; the rate error of each
+clock is up to the value in the table. All figures are from `sprung.identify`.
 
-*Error* is the root-mean-square error divided by the Cramér-Rao bound of the same drops with one common clock, as the mean over
-the parameters, and for the *worst* of them; *stated* is the stated uncertainty divided by that bound. A clock counts as
-*determined* if its stated uncertainty is below 0.1 ms. The others belong to wheels and corners that hardly move in a drop of the other
-axle; for them the table contains the error divided by the stated uncertainty.
+*Error* is the root-mean-square error divided by the Cramér-Rao bound of the same drops with one common clock, as the mean
+over the parameters, and for the *worst* of them; *stated* is the stated uncertainty divided by that bound. A clock counts
+as *determined* if its stated uncertainty is below 0.1 ms. The others belong to wheels and corners that hardly move in a
+drop of the other axle; for them the table contains the error divided by the stated uncertainty.
 
 ## Results
 
@@ -179,11 +179,11 @@ The requirements are clocks within 0.3 ms, and errors of at most {WANTED:g} time
 
 {table(head, body)}
 
-Every parameter of every row is in [loggers.json](loggers.json). The loss relative to one clock is due to the seventy delays, which are
-additional unknowns. The flight phases compensate part of the loss, for some parameters more than all of it, as the bound is that of
-the free decays alone. Slower loggers are interpolated to the rate of the fastest, and begin four of their own samples later, so that
-the interpolation contains no part of the landing. Clock drift within a recording is not modelled; it is included in the stated
-uncertainty of the clocks.
+Every parameter of every row is in [loggers.json](loggers.json). The loss relative to one clock is due to the seventy
+delays, which are additional unknowns. The flight phases compensate part of the loss, for some parameters more than all of
+it, as the bound is that of the free decays alone. Slower loggers are interpolated to the rate of the fastest, and begin
+four of their own samples later, so that the interpolation contains no part of the landing. Clock drift within a recording
+is not modelled; it is included in the stated uncertainty of the clocks.
 
 ## Reproduction
 

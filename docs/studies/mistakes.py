@@ -145,8 +145,10 @@ def forward(place: Place, random: np.random.Generator) -> Place:
 
 OF_TESTS: Sequence[Injury] = (
     Injury("position, mirrored", ("position",), "the lateral position of a body sensor has the wrong sign", placed(mirrored)),
-    Injury("position, 0.3 m", ("position",), "the stated position of a body sensor is 0.3 m too far forward or back", placed(forward)),
-    Injury("position, figures", ("position",), "two digits of the lateral position of a body sensor are exchanged", placed(swapped_digits)),
+    Injury("position, 0.3 m", ("position",),
+           "the stated position of a body sensor is 0.3 m too far forward or back", placed(forward)),
+    Injury("position, figures", ("position",),
+           "two digits of the lateral position of a body sensor are exchanged", placed(swapped_digits)),
     Injury("wrong wheel", ("wrong-wheel",), "a wheel sensor is stated on another wheel", described("wheel", other_wheel)),
     Injury("load exchanged, one", ("load-exchanged",),
            "the recordings of a loaded and an empty drop are exchanged", loads_exchanged(False)),
@@ -156,6 +158,7 @@ OF_TESTS: Sequence[Injury] = (
     Injury("brake", ("brake", "unlike-repeats"),
            "in one drop the dampers of an axle have 1.6 times, its springs 1.15 times their rate", one_drop(brake)),
     Injury("passenger", ("unlike-repeats",), "in one drop the body has 15 % more mass", one_drop(passenger)),
-    Injury("other wheels", ("wheels", "unlike-repeats"), "in one drop other wheels were dropped than stated", one_drop(fewer_wheels)),
+    Injury("other wheels", ("wheels", "unlike-repeats"),
+           "in one drop other wheels were dropped than stated", one_drop(fewer_wheels)),
 )  # fmt: skip
 """Of the test and the campaign file."""

@@ -288,46 +288,47 @@ coverage, and how do other methods and other programs perform with the same reco
 ## Method
 
 The car of the paper's Table 1 is driven over the paper's half-sine bump, {HEIGHT:g} m high and passed in {PASSAGE:g} s,
-once each with the left wheels, with all, with the front wheels and with two diagonal wheels: four recordings of the accelerations of
-its seven degrees of freedom, {RATE:g} Hz, {SECONDS:g} s from the end of the bump on. White noise is {HEADLINE:g} dB below
-the root-mean-square of each channel in the left-wheel recording, the same in all four. No vehicle model is used, the number
-of modes is not given, and the offset of each channel in each recording is unknown.
+once each with the left wheels, with all, with the front wheels and with two diagonal wheels: four recordings of the
+accelerations of its seven degrees of freedom, {RATE:g} Hz, {SECONDS:g} s from the end of the bump on. White noise is
+{HEADLINE:g} dB below the root-mean-square of each channel in the left-wheel recording, the same in all four. No vehicle
+model is used, the number of modes is not given, and the offset of each channel in each recording is unknown.
 
-The Cramér-Rao bound is that for unknown poles, shapes, amplitudes and offsets and known noise. Errors of
-frequencies and damping ratios are in units of the bound; *covered* is the fraction of the 95 % intervals that contain the true value.
-The last two columns are the median errors in percent.
+The Cramér-Rao bound is that for unknown poles, shapes, amplitudes and offsets and known noise. Errors of frequencies and
+damping ratios are in units of the bound; *covered* is the fraction of the 95 % intervals that contain the true value. The
+last two columns are the median errors in percent.
 
 ## The default method
 
 {every["with_all_modes"]} of {every["sets"]} sets gave exactly seven modes. The overall root-mean-square error is
 {every["rmse_over_bound"]:.3f} of the bound, that of the worst of the fourteen numbers {every["worst_rmse_over_bound"]:.3f}
-(requirement: at most {WANTED_RMSE:g}), and {every["covered"]:.1f} % of all intervals contain the true value (requirement: {low:g} to
-{high:g} %). The median error of the worst of the three body modes is {every["body_percent"][0]:.3f} % in frequency and
-{every["body_percent"][1]:.3f} % in damping (requirements: {WANTED_FREQUENCY:g} and {WANTED_DAMPING:g} %). The statistical uncertainty
-of a root-mean-square error from {every["sets"]} sets is {100 / np.sqrt(2 * every["sets"]):.1f} %.
+(requirement: at most {WANTED_RMSE:g}), and {every["covered"]:.1f} % of all intervals contain the true value (requirement:
+{low:g} to {high:g} %). The median error of the worst of the three body modes is {every["body_percent"][0]:.3f} % in
+frequency and {every["body_percent"][1]:.3f} % in damping (requirements: {WANTED_FREQUENCY:g} and {WANTED_DAMPING:g} %).
+The statistical uncertainty of a root-mean-square error from {every["sets"]} sets is
+{100 / np.sqrt(2 * every["sets"]):.1f} %.
 
 {table(head, lines)}
 
 ## Every method, and other programs
 
-The same recordings without noise, and with three noise levels, {SEEDS} seeds each. The table contains the number of the seven poles
-found (within {100 * FOUND:g} % of the true pole, no pole counted twice), and the largest error among the three body modes and
-among the four wheel modes, in percent, as medians over the seeds; a dash means that one of them is not found. The wheel-hop modes are
-pairs 0.003 Hz apart: finding a pole is easy, separating a pair is not. Times are medians at {HEADLINE:g} dB of one thread
-on a shared machine. All our methods select their order themselves; the other programs were given an order of fourteen
-poles, and recordings decimated by a factor of ten. {speed}
+The same recordings without noise, and with three noise levels, {SEEDS} seeds each. The table contains the number of the
+seven poles found (within {100 * FOUND:g} % of the true pole, no pole counted twice), and the largest error among the
+three body modes and among the four wheel modes, in percent, as medians over the seeds; a dash means that one of them is
+not found. The wheel-hop modes are pairs 0.003 Hz apart: finding a pole is easy, separating a pair is not. Times are
+medians at {HEADLINE:g} dB of one thread on a shared machine. All our methods select their order themselves; the other
+programs were given an order of fourteen poles, and recordings decimated by a factor of ten. {speed}
 
 {_methods(rows)}
 
-The method as printed, with a lag of one sample, finds few modes in the presence of noise: its regressor contains as much noise
-as the dependent variable. Frequency-domain methods without a likelihood lose accuracy with damping, as the paper states. `peaks` and
-`emd` are not exact even without noise.
+The method as printed, with a lag of one sample, finds few modes in the presence of noise: its regressor contains as much
+noise as the dependent variable. Frequency-domain methods without a likelihood lose accuracy with damping, as the paper
+states. `peaks` and `emd` are not exact even without noise.
 
 ## One drop
 
-With the left-wheel recording alone the bound for each of the wheel-hop modes is about 100 %: no method can separate the four,
-whatever it prints. The default method finds as many modes as the recording supports, and `sprung modal` states that each may represent
-several.
+With the left-wheel recording alone the bound for each of the wheel-hop modes is about 100 %: no method can separate the
+four, whatever it prints. The default method finds as many modes as the recording supports, and `sprung modal` states that
+each may represent several.
 
 {_methods(one)}
 
@@ -392,9 +393,9 @@ def _beam(rows: Sequence[dict[str, Any]]) -> str:
         )
     return f"""## A bolted beam
 
-Two steel halves joined by bolts and excited by a hammer (github.com/mattiacenedese/BRBtesting, three accelerometers, 12.8 kHz): the
-first two bending modes from 20 ms on, and in windows in which they decay by a factor of e^0.5. Sliding joints are less stiff and
-have more damping: with increasing amplitude frequencies must decrease and damping must increase.
+Two steel halves joined by bolts and excited by a hammer (github.com/mattiacenedese/BRBtesting, three accelerometers, 12.8
+kHz): the first two bending modes from 20 ms on, and in windows in which they decay by a factor of e^0.5. Sliding joints
+are less stiff and have more damping: with increasing amplitude frequencies must decrease and damping must increase.
 
 {table(head, lines)}
 

@@ -184,8 +184,9 @@ def page(cases: Sequence[Case], searches: Sequence[Search]) -> str:
     damping = f"{DAMPING[0]:g} to {DAMPING[1]:g}"
     return f"""# Start values
 
-The optimisation computes its own start values: modulating function estimates, and a grid of usual vehicles. No start value is asked
-of the user. A likelihood may have several local maxima. Is the optimum found the global one for every vehicle?
+The optimisation computes its own start values: modulating function estimates, and a grid of usual vehicles. No start
+value is asked of the user. A likelihood may have several local maxima. Is the optimum found the global one for every
+vehicle?
 
 ## Method
 
@@ -199,9 +200,10 @@ axles, with an error drawn from an uncertainty of {
         100 * WEIGHING:g} % of its mass) or dropped again with a load. Only the wheelbase is
 known.
 
-Every campaign was analysed by the complete `sprung.identify`. Then the same free decays were fitted once more, from a start at the
-true parameters, which converges to the maximum nearest to them. *Gain* is the log-likelihood of the fit without given
-start values minus that of the fit from the true values; the optimum counts as missed if it is below -{SAME:g}.
+Every campaign was analysed by the complete `sprung.identify`. Then the same free decays were fitted once more, from a
+start at the true parameters, which converges to the maximum nearest to them. *Gain* is the log-likelihood of the fit
+without given start values minus that of the fit from the true values; the optimum counts as missed if it is below
+-{SAME:g}.
 
 ## Results
 
