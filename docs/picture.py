@@ -7,7 +7,7 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 
 import sprung
-from sprung.estimate import round_by_uncertainty
+from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import PARAMETERS
 
 SHOWN = ("m_s", "I_yy", "I_xx", "m_uf", "m_ur", "k_sf", "k_sr", "k_tf", "k_tr", "c_sf", "c_sr", "t_f1", "t_r1")

@@ -30,7 +30,7 @@ ROOMS = (
     "cli",
     "drafting",
     "errors",
-    "estimate",
+    "uncertainty",
     "estimation",
     "faults",
     "files",
@@ -49,6 +49,7 @@ ROOMS = (
     "tables",
     "units",
     "vehicle",
+    "vibration",
 )
 
 UNIT = re.compile(

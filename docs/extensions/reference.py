@@ -43,9 +43,10 @@ ROOMS = (
     "campaign",
     "formats",
     "files",
+    "vibration",
     "vehicle",
     "tables",
-    "estimate",
+    "uncertainty",
     "units",
     "errors",
 )

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
-from sprung.estimate import NORMAL_95, Known
-from sprung.planning import Bound, PlannedDrop, PlannedTest, Subject
-from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, quantity
+from sprung.planning import Bound, MeasurementSetup, PlannedDrop, PlannedTest
+from sprung.uncertainty import NORMAL_95, KnownValue
+from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -108,13 +108,15 @@ class Case:
         """Whether load or scales fix masses and rates absolutely; else they are judged per total mass."""
         return self.loaded or bool(self.weighed)
 
-    def known(self, random: np.random.Generator | None = None) -> dict[str, Known]:
+    def known(self, random: np.random.Generator | None = None) -> dict[str, KnownValue]:
         """Give what was weighed: what the scales show this time, or the truth if there is no randomness."""
         names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))
         std = WEIGHING * self.vehicle.total_mass
         draws = np.zeros(len(self.weighed)) if random is None else random.standard_normal(len(self.weighed))
-        truth = [quantity(name, names, values)[0] for name in self.weighed]
-        return {name: Known(x + std * z, std) for name, x, z in zip(self.weighed, truth, draws.tolist(), strict=True)}
+        truth = [evaluate_quantity(name, names, values)[0] for name in self.weighed]
+        return {
+            name: KnownValue(x + std * z, std) for name, x, z in zip(self.weighed, truth, draws.tolist(), strict=True)
+        }
 
     def seed(self, number: int) -> int:
         """Give the seed of a campaign: another one in every case."""
@@ -128,7 +130,7 @@ class Case:
         recordings = tuple(
             replace(one, values=self.measure(one.values, self.noise, random)) for one in clean.recordings
         )
-        return replace(clean, recordings=recordings, known=self.known(np.random.default_rng([seed, 1])))
+        return replace(clean.with_recordings(recordings), known=self.known(np.random.default_rng([seed, 1])))
 
     @cached_property
     def truth(self) -> dict[str, float]:
@@ -209,10 +211,12 @@ class Trial(NamedTuple):
     drops: int
 
 
-def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, Known]) -> Subject:
+def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> MeasurementSetup:
     sensors = _without_noise(vehicle, False).sensors
-    everything = {"wheelbase": Known(vehicle.wheelbase), **known}
-    return Subject(vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION)
+    everything = {"wheelbase": KnownValue(vehicle.wheelbase), **known}
+    return MeasurementSetup(
+        vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION
+    )
 
 
 @lru_cache(maxsize=256)
@@ -231,7 +235,7 @@ def _bound(case: Case, used: tuple[int, ...]) -> Real:
     covariance = Bound(subject, told + PlannedTest(subject, ()).prior).covariance
     gradients = np.eye(len(subject.names))
     if not case.scaled:
-        total, gradient = quantity("total_mass", subject.names, subject.values)
+        total, gradient = evaluate_quantity("total_mass", subject.names, subject.values)
         scales = np.array([PARAMETERS[name].scales for name in subject.names])
         gradients[scales] -= gradient * subject.slopes / total
     spread: Real = np.sqrt(np.einsum("ij,jk,ik->i", gradients, covariance, gradients))

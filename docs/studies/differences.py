@@ -17,7 +17,7 @@ import numpy as np
 from pages import arguments, figures, run, table, tell, write
 
 import sprung
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 NOISE = 0.05
@@ -89,7 +89,7 @@ def attempt(weighed: bool, change: float, seed: int) -> Pair:
 def identified(vehicle: Vehicle, weighed: bool, seed: int) -> sprung.Result:
     """Identify one campaign of four drops, the model being known."""
     random = np.random.default_rng([seed, 11])
-    scales = Known(vehicle.total_mass + float(random.normal(0, 2.0)), 2.0)  # each time it is weighed anew
+    scales = KnownValue(vehicle.total_mass + float(random.normal(0, 2.0)), 2.0)  # each time it is weighed anew
     campaign = sprung.simulate(vehicle, noise=NOISE, seed=seed, known={"total_mass": scales} if weighed else {})
     return sprung.identify(campaign, tracks="shared", extras=(), fall=False)
 

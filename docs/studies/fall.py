@@ -67,7 +67,7 @@ def attempt(which: int, seed: int) -> Trial:
     weight = 0.1 * vehicle.m_s
     load = {"name": "ballast", "items": [{"mass": weight, "position": (-0.4 * vehicle.wheelbase, 0.3, 0.5)}]}
     drops = [{"wheels": wheels, "height": HEIGHT, "load": name} for name in ("empty", "ballast") for wheels in WHEELS]
-    known = {"total_mass": sprung.estimate.Known(vehicle.total_mass, 0.001 * vehicle.total_mass)}
+    known = {"total_mass": sprung.uncertainty.KnownValue(vehicle.total_mass, 0.001 * vehicle.total_mass)}
     campaign = sprung.simulate(
         vehicle, loads=[load], drops=drops, rate=RATE, duration=DURATION, noise=NOISE, seed=seed, known=known
     )

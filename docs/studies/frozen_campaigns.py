@@ -19,8 +19,8 @@ from outcomes import INJURIES
 from wireless import wireless
 
 import sprung
-from sprung.estimate import Known
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, quantity
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, evaluate_quantity
 
 Agreement = Literal["linear", "nonlinear"]
 """How closely two programs must agree: to 1e-6 of each value, or to 0.02 standard errors (nonlinear laws, faults corrected)."""
@@ -61,12 +61,12 @@ def _car(**more: float) -> sprung.Campaign:
 
 def _weighed(name: str) -> float:
     parameters = TABLE_1_CAR.parameters
-    return quantity(name, tuple(parameters), np.array(list(parameters.values())))[0]
+    return evaluate_quantity(name, tuple(parameters), np.array(list(parameters.values())))[0]
 
 
 def _rubbing(vehicle: Vehicle, **more: float) -> sprung.Campaign:
     own = Vehicle.from_parameters(vehicle.parameters | more, name=vehicle.name)
-    known = {"total_mass": Known(own.total_mass)}
+    known = {"total_mass": KnownValue(own.total_mass)}
     return measured(own, seed=1, rate=250.0, duration=2.6, loads=loads_of(own), known=known)
 
 
@@ -81,14 +81,14 @@ def _fault(name: str, vehicle: int, seed: int = 1) -> sprung.Campaign:
 
 def _total_mass_too_large() -> sprung.Campaign:
     campaign = _car()
-    return replace(campaign, known={"total_mass": Known(1.09 * TABLE_1_CAR.total_mass, 10.0)})
+    return replace(campaign, known={"total_mass": KnownValue(1.09 * TABLE_1_CAR.total_mass, 10.0)})
 
 
 def _two_vehicles() -> sprung.Campaign:
     """Return drops of which every second one is another vehicle's."""
     one, other = FLEET[0].campaign(1), replace(FLEET[0], vehicle=_OTHER).campaign(1)
     pairs = zip(one.recordings, other.recordings, strict=True)
-    return replace(one, recordings=tuple(pair[i % 2] for i, pair in enumerate(pairs)))
+    return one.with_recordings(pair[i % 2] for i, pair in enumerate(pairs))
 
 
 _OTHER = Vehicle.from_parameters(
@@ -103,7 +103,7 @@ FROZEN: tuple[FrozenCampaign, ...] = (
     FrozenCampaign("separate tracks", lambda: sprung.simulate(Vehicle.from_parameters(_APART | _TRACKS), **_HALF)),
     FrozenCampaign(
         "axle masses known",
-        lambda: replace(_car(), known={name: Known(_weighed(name), 1.0) for name in AXLES}),
+        lambda: replace(_car(), known={name: KnownValue(_weighed(name), 1.0) for name in AXLES}),
     ),
     FrozenCampaign("no load, nothing weighed", lambda: sprung.simulate(TABLE_1_CAR, **{**_HALF, "loads": []})),
     FrozenCampaign("eight loggers", lambda: wireless(loads=()).campaign),

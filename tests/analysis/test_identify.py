@@ -11,7 +11,7 @@ import pytest
 import sprung
 from sprung.campaign import ModelChoice
 from sprung.errors import InputError
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 
 DATA = Path(__file__).parents[1] / "data"
@@ -147,7 +147,12 @@ def test_one_drop_says_what_it_cannot_tell() -> None:
 
 
 def test_what_is_known_exactly_stays_and_makes_the_rest_known() -> None:
-    known = {"total_mass": Known(SCHOOL_BUS.total_mass, 5.0), "a": Known(2.22), "t_f2": Known(0.4), "t_r2": Known(0.5)}
+    known = {
+        "total_mass": KnownValue(SCHOOL_BUS.total_mass, 5.0),
+        "a": KnownValue(2.22),
+        "t_f2": KnownValue(0.4),
+        "t_r2": KnownValue(0.5),
+    }
     result = sprung.identify(sprung.simulate(SCHOOL_BUS, noise=0.02, seed=2, known=known))
     assert result.fit.tracks == "separate"  # a known t_2 says so
     for name, value in {"a": 2.22, "b": SCHOOL_BUS.wheelbase - 2.22, "t_f2": 0.4, "t_r2": 0.5}.items():
@@ -164,7 +169,7 @@ def test_what_is_known_exactly_stays_and_makes_the_rest_known() -> None:
 
 def test_knowledge_that_contradicts_the_recordings_is_doubted() -> None:
     load = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
-    wrong = {"total_mass": Known(1.1 * TABLE_1_CAR.total_mass, 2.0)}
+    wrong = {"total_mass": KnownValue(1.1 * TABLE_1_CAR.total_mass, 2.0)}
     result = sprung.identify(sprung.simulate(TABLE_1_CAR, loads=[load], noise=0.005, seed=3, known=wrong))
     assert result.verdict.state != "accept"
     assert any("total_mass" in reason for reason in result.verdict.reasons)

@@ -22,7 +22,7 @@ from sprung.vehicle import PARAMETERS, TABLE_1_CAR
 DATA = Path(__file__).resolve().parents[1] / "data"
 SAVED = Path(__file__).resolve().parents[1] / "report"
 ROOMS = (
-    *("errors", "estimate", "campaign", "assessment", "planning", "checking"),
+    *("errors", "uncertainty", "campaign", "assessment", "planning", "checking"),
     *("results", "modal_survey", "analysis", "study", "paper"),
 )
 LINES = 10  # of any record in a console, by the issue
@@ -167,7 +167,7 @@ def test_a_comparison_as_a_table(result: Result, tmp_path: Path) -> None:
 
 def test_small_mappings_are_written_out_and_large_ones_counted(result: Result) -> None:
     known = repr(sprung.simulate(TABLE_1_CAR, drops=[{}], duration=0.6, known={"total_mass": 1551.8}))
-    assert "known={total_mass: Known(value=1551.8)}" in " ".join(known.split())
+    assert "known={total_mass: KnownValue(value=1551.8)}" in " ".join(known.split())
     assert "noise=8 by name: body_fl, body_fr, body_rl, body_rr, ..." in " ".join(repr(result.fit).split())
 
 
@@ -230,7 +230,7 @@ def test_known_quantities_become_records_and_impossible_ones_are_refused(campaig
     assert changed.known["total_mass"].value == 1551.8
     assert changed.known["m_s"].std == 2
     assert changed.wheelbase is not None
-    assert changed.wheelbase.exact
+    assert changed.wheelbase.is_exact
     bad: Any
     for bad, message in (({"total_mass": -1551.8}, "positive"), ({"totl_mass": 1.0}, "Did you mean 'total_mass'")):
         with pytest.raises(InputError, match=message):

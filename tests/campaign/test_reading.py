@@ -10,7 +10,7 @@ import pytest
 
 from sprung.campaign import read, read_vehicle
 from sprung.errors import InputError
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY
 
@@ -22,7 +22,7 @@ FL = np.arange(100) % 5 + 9.0  # what the fixture writes into body_fl
 def test_a_sound_campaign(folder: Folder) -> None:
     campaign = read(folder())
     assert campaign.name == "car"
-    assert campaign.wheelbase == Known(2.76)
+    assert campaign.wheelbase == KnownValue(2.76)
     assert [load.name for load in campaign.loads] == ["empty", "ballast"]
     assert campaign.loads[0] == EMPTY
     assert [drop.label for drop in campaign.drops] == ["one", "two"]
@@ -44,7 +44,7 @@ def test_folder_and_file_are_the_same_and_the_folder_names_the_vehicle(folder: F
 
 def test_known_quantities_are_numbers_or_values_with_uncertainty(folder: Folder) -> None:
     campaign = read(folder(("[known]", "[known]\na = 1.25\nc_tf = 0\ntotal_mass = { value = 1550, std = 5 }")))
-    assert campaign.known == {"a": Known(1.25), "c_tf": Known(0.0), "total_mass": Known(1550, 5)}
+    assert campaign.known == {"a": KnownValue(1.25), "c_tf": KnownValue(0.0), "total_mass": KnownValue(1550, 5)}
 
 
 @pytest.mark.parametrize(
@@ -198,8 +198,8 @@ def test_a_vehicle_file(vehicle_file: Folder) -> None:
     assert file.vehicle.name == "car"
     assert file.vehicle.k_sr == 22000
     assert file.vehicle.cg_height == 0.55
-    assert file.wheelbase == Known(2.76)
-    assert file.known == {"m_s": Known(1380)}
+    assert file.wheelbase == KnownValue(2.76)
+    assert file.known == {"m_s": KnownValue(1380)}
     assert [sensor.channel for sensor in file.sensors] == ["body_fl", "body_fr", "body_rl"]
     assert [load.name for load in file.loads] == ["empty", "ballast"]
     assert [drop.label for drop in file.drops] == ["empty_pitch_front", "ballast_bounce"]
@@ -214,9 +214,12 @@ def test_importing_the_room_loads_no_pandas() -> None:
 @pytest.mark.parametrize(
     ("name", "load_mass", "known"),
     # From data/README.md and the two campaign files.
-    [("sedan", 200.0, {}), ("leafbus", 470.0, {"total_mass": Known(5240, 5), "a": Known(2.22), "b": Known(1.73)})],
+    [
+        ("sedan", 200.0, {}),
+        ("leafbus", 470.0, {"total_mass": KnownValue(5240, 5), "a": KnownValue(2.22), "b": KnownValue(1.73)}),
+    ],
 )
-def test_the_development_campaigns(shared: Path, name: str, load_mass: float, known: dict[str, Known]) -> None:
+def test_the_development_campaigns(shared: Path, name: str, load_mass: float, known: dict[str, KnownValue]) -> None:
     campaign = read(shared / "data" / name)
     assert campaign.name == name
     assert dict(campaign.known) == known

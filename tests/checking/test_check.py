@@ -29,7 +29,7 @@ def changed(campaign: Campaign, change: dict[str, Any], drop: int = 0) -> Campai
 
 def spoilt(campaign: Campaign, values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Campaign:
     """Give the first recording other values."""
-    return replace(campaign, recordings=(replace(campaign.recordings[0], values=values), *campaign.recordings[1:]))
+    return campaign.with_recordings((replace(campaign.recordings[0], values=values), *campaign.recordings[1:]))
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_a_drop_left_out(car: Campaign) -> None:
 def test_a_start_that_the_fit_moved_changes_no_other_moment(car: Campaign, seen: Check, samples: int) -> None:
     """`check` and a report say one number for one drop, whatever the fit makes of it."""
     prepared = prepare(car)
-    moved = prepared._replace(decays=tuple(decay.moved(samples) for decay in prepared.decays))
+    moved = prepared._replace(decays=tuple(decay.shifted(samples) for decay in prepared.decays))
     for one, decay, before in zip(check_prepared(car, moved).drops, moved.decays, seen.drops, strict=True):
         assert one.end == pytest.approx(before.end)
         assert replace(one, end=before.end, fit_start=None, why_fit="") == before

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sprung.estimate import Known
 from sprung.estimation import FitStatistics, characteristics_of
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, characteristic, wheel_loads
 
 UNEVEN = replace(TABLE_1_CAR, y_s=0.02, d_ksf=600.0, name="uneven")
@@ -30,8 +30,8 @@ def fit_of(vehicle: Vehicle, relative_covariance: np.ndarray) -> FitStatistics:
     return FitStatistics(
         names=names, values=values, slopes=slopes, relative_covariance=relative_covariance,
         covariance=relative_covariance * np.outer(slopes, slopes), undetermined=np.zeros((len(names), 0)),
-        noise=np.ones(8), residual=np.ones((1, 8)), inflation=1.0, fitted=(), contradictions={}, loglikelihood=0.0,
-        iterations=1, converged=True, starts_agreeing=1, starts=1,
+        noise=np.ones(8), residual=np.ones((1, 8)), inflation=1.0, fitted=(), residuals=(), contradictions={},
+        loglikelihood=0.0, iterations=1, converged=True, starts_agreeing=1, starts=1,
     )  # fmt: skip
 
 
@@ -83,7 +83,7 @@ def test_what_was_known_exactly_is_known() -> None:
     names = list(TABLE_1_CAR.parameters)
     total = TABLE_1_CAR.total_mass
     found = characteristics_of(
-        fit_of(TABLE_1_CAR, correlated(len(names), 0.003)), {"total_mass": Known(total)}, TABLE_1_CAR.model()
+        fit_of(TABLE_1_CAR, correlated(len(names), 0.003)), {"total_mass": KnownValue(total)}, TABLE_1_CAR.model()
     )
     assert (found["total_mass"].status, found["total_mass"].value, found["total_mass"].std) == ("known", total, 0.0)
 

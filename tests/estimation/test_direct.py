@@ -8,23 +8,23 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from sprung.estimate import Known
 from sprung.estimation.modulating_functions import modulating_function_estimate
 from sprung.estimation.records import Records
 from sprung.estimation.starts import VehicleSize
 from sprung.preprocess import prepare
 from sprung.simulation import simulate
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, record_of
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, parse_record
 from strategies import vehicles
 
-BAGS = record_of(
+BAGS = parse_record(
     Load,
     {
         "name": "bags",
         "items": [{"mass": 140, "position": (-1.0, 0.2, 0.5)}, {"mass": 100, "position": (-2.9, 0.0, 0.5)}],
     },
 )
-CRATES = record_of(
+CRATES = parse_record(
     Load,
     {
         "name": "crates",
@@ -34,12 +34,12 @@ CRATES = record_of(
 
 
 def start(
-    vehicle: Vehicle, load: Load | None, noise: float = 0.0, known: dict[str, Known] | None = None
+    vehicle: Vehicle, load: Load | None, noise: float = 0.0, known: dict[str, KnownValue] | None = None
 ) -> dict[str, float] | None:
     campaign = simulate(vehicle, loads=[] if load is None else [load], noise=noise, seed=1, rate=500, duration=3.2)
     records = Records.of(prepare(campaign).decays)
     models = [vehicle.model(campaign.load(name)) for name in records.loads]
-    given = {"wheelbase": Known(vehicle.wheelbase, 0.0)} | (known or {})
+    given = {"wheelbase": KnownValue(vehicle.wheelbase, 0.0)} | (known or {})
     return modulating_function_estimate(records.runs, models, campaign.sensors, VehicleSize.of(given, campaign.sensors))
 
 
@@ -61,7 +61,7 @@ def test_noise_does_not_bend_it() -> None:
 
 
 def test_a_weighed_vehicle_needs_no_load() -> None:
-    weighed = {"total_mass": Known(TABLE_1_CAR.total_mass, 0.0)}
+    weighed = {"total_mass": KnownValue(TABLE_1_CAR.total_mass, 0.0)}
     found = start(TABLE_1_CAR, None, noise=0.02, known=weighed)
     # The share of the wheels in the total is a usual one: a few percent off the scale.
     wrong = errors(found, TABLE_1_CAR)
@@ -76,7 +76,7 @@ def test_it_says_when_it_cannot() -> None:
     blind = np.array([0.0] * 4 + [np.nan] * 4)[:, None]
     records = Records.of([replace(decay, values=decay.values + blind) for decay in prepare(campaign).decays])
     models = [TABLE_1_CAR.model() for _ in records.loads]
-    outline = VehicleSize.of({"wheelbase": Known(TABLE_1_CAR.wheelbase, 0.0)}, campaign.sensors)
+    outline = VehicleSize.of({"wheelbase": KnownValue(TABLE_1_CAR.wheelbase, 0.0)}, campaign.sensors)
     assert modulating_function_estimate(records.runs, models, campaign.sensors, outline) is None
 
 

@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.campaign import Campaign
-from sprung.estimate import Known
 from sprung.estimation import Estimates, FitStatistics, fit_jointly, to_estimates
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays, simulate
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     SCHOOL_BUS,
     TABLE_1_CAR,
@@ -23,13 +23,13 @@ from sprung.vehicle import (
     Sensor,
     Vehicle,
     Wheel,
-    record_of,
+    parse_record,
     seven_degrees_of_freedom,
 )
 from strategies import vehicles
 
 # Off the centreline and off the centre of gravity, so that ΔM is full.
-LOAD = record_of(
+LOAD = parse_record(
     Load,
     {
         "name": "bags",
@@ -79,7 +79,7 @@ def test_identify_undoes_simulate_with_a_load(vehicle: Vehicle) -> None:
 def test_identify_undoes_simulate_with_axle_weights(vehicle: Vehicle) -> None:
     """Axle loads and no added mass: enough, because they hold the total mass."""
     front = vehicle.m_s * vehicle.b / vehicle.wheelbase + 2 * vehicle.m_uf
-    known = {"front_axle_mass": Known(front), "rear_axle_mass": Known(vehicle.total_mass - front)}
+    known = {"front_axle_mass": KnownValue(front), "rear_axle_mass": KnownValue(vehicle.total_mass - front)}
     campaign = free_decays(vehicle, states=4, seed=2, rate=250, known=known)
     found, estimates = fit(campaign, vehicle)
     assert found.converged
@@ -172,12 +172,11 @@ def test_left_and_right_are_alike() -> None:
 def test_the_order_of_channels_changes_nothing(order: list[int]) -> None:
     campaign = free_decays(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], states=3, noise=0.02, seed=8, rate=250)
     shuffled = replace(
-        campaign,
-        sensors=tuple(campaign.sensors[i] for i in order),
-        recordings=tuple(
+        campaign.with_recordings(
             replace(r, values=r.values[order], channels=tuple(r.channels[i] for i in order))
             for r in campaign.recordings
         ),
+        sensors=tuple(campaign.sensors[i] for i in order),
     )
     here, _ = fit(campaign, TABLE_1_CAR, start=TABLE_1_CAR.parameters)
     there, _ = fit(shuffled, TABLE_1_CAR, start=TABLE_1_CAR.parameters)
@@ -187,9 +186,8 @@ def test_the_order_of_channels_changes_nothing(order: list[int]) -> None:
 def test_a_later_clock_and_another_offset_change_nothing() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=9)
     offsets = np.linspace(-3, 3, 8)[:, None]
-    moved = replace(
-        campaign,
-        recordings=tuple(replace(r, start=r.start + 1234.5, values=r.values + offsets) for r in campaign.recordings),
+    moved = campaign.with_recordings(
+        replace(r, start=r.start + 1234.5, values=r.values + offsets) for r in campaign.recordings
     )
     here, _ = fit(campaign, TABLE_1_CAR)
     there, _ = fit(moved, TABLE_1_CAR)
@@ -200,7 +198,7 @@ def test_a_channel_left_out_costs_certainty_only() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=10)
     spoilt = np.array(campaign.recordings[0].values)
     spoilt[5] = np.nan
-    less = replace(campaign, recordings=(replace(campaign.recordings[0], values=spoilt), *campaign.recordings[1:]))
+    less = campaign.with_recordings((replace(campaign.recordings[0], values=spoilt), *campaign.recordings[1:]))
     here, _ = fit(campaign, TABLE_1_CAR)
     there, _ = fit(less, TABLE_1_CAR)
     spread = np.sqrt(np.diag(there.relative_covariance))
@@ -214,7 +212,7 @@ def test_errors_match_their_bars_over_seeds() -> None:
     scores = []
     for seed in range(60):
         random = np.random.default_rng(seed)
-        weighed = {"total_mass": Known(TABLE_1_CAR.total_mass + 5 * random.standard_normal(), 5.0)}
+        weighed = {"total_mass": KnownValue(TABLE_1_CAR.total_mass + 5 * random.standard_normal(), 5.0)}
         campaign = free_decays(TABLE_1_CAR, states=4, noise=0.05, seed=seed, rate=200, duration=2.0, known=weighed)
         found, _ = fit(campaign, TABLE_1_CAR, start=TABLE_1_CAR.parameters)
         error = np.log(found.values / np.array([TABLE_1_CAR.parameters[name] for name in names]))
@@ -230,11 +228,10 @@ def test_body_sensors_alone_are_enough_for_the_body() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=11)
     body = [i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body"]
     blind = replace(
-        campaign,
-        sensors=tuple(campaign.sensors[i] for i in body),
-        recordings=tuple(
+        campaign.with_recordings(
             replace(r, values=r.values[body], channels=tuple(r.channels[i] for i in body)) for r in campaign.recordings
         ),
+        sensors=tuple(campaign.sensors[i] for i in body),
     )
     found, estimates = fit(blind, TABLE_1_CAR)
     assert found.converged
@@ -269,7 +266,7 @@ def test_everything_known_leaves_nothing_to_fit() -> None:
 
 @pytest.mark.parametrize("std", [1e-300, 1e-6, 1e-3])
 def test_a_very_small_uncertainty_is_no_trouble(std: float) -> None:
-    known = {"total_mass": Known(TABLE_1_CAR.total_mass, std)}
+    known = {"total_mass": KnownValue(TABLE_1_CAR.total_mass, std)}
     campaign = simulate(TABLE_1_CAR, noise=0.02, seed=13, known=known)
     found, estimates = fit(campaign, TABLE_1_CAR)
     assert found.converged
@@ -277,7 +274,7 @@ def test_a_very_small_uncertainty_is_no_trouble(std: float) -> None:
 
 
 def test_an_exact_quantity_that_cannot_be_is_named() -> None:
-    known = {"total_mass": Known(0.8 * TABLE_1_CAR.total_mass)}
+    known = {"total_mass": KnownValue(0.8 * TABLE_1_CAR.total_mass)}
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=14, known=known)
     found, _ = fit(campaign, TABLE_1_CAR)
     assert found.contradictions["total_mass"] > 10
@@ -291,7 +288,7 @@ def test_a_contradiction_is_a_distance_in_standard_uncertainties_of_the_differen
     gradient = np.array([{"m_s": 1.0, "m_uf": 2.0, "m_ur": 2.0}.get(name, 0.0) for name in told.names])
     own = float(gradient @ told.covariance @ gradient) ** 0.5
     stated = float(gradient @ told.values) + 4 * np.hypot(own, std)
-    campaign = replace(plain, known={**plain.known, "total_mass": Known(stated, std)})
+    campaign = replace(plain, known={**plain.known, "total_mass": KnownValue(stated, std)})
     found, _ = fit(campaign, TABLE_1_CAR)
     assert abs(stated - truth) > 3 * std
     assert found.contradictions["total_mass"] == pytest.approx(4.0, rel=0.05)

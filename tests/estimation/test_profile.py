@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from sprung.campaign import Campaign
-from sprung.estimate import Estimate, Known
 from sprung.estimation import FitResult, FitStatistics, Likelihood, estimate_of, fit_linear, profiled, uncertainty_of
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
+from sprung.uncertainty import Estimate, KnownValue
 from sprung.vehicle import TABLE_1_CAR, Rows
 
 Real = NDArray[np.float64]
@@ -24,9 +24,9 @@ CHI_SQUARED_95 = 3.841458820694124
 """95 % quantile of χ² with one degree of freedom, from any table."""
 
 
-def drops(seed: int, noise: float, known: dict[str, Known] | None = None) -> Campaign:
+def drops(seed: int, noise: float, known: dict[str, KnownValue] | None = None) -> Campaign:
     """Three short decays, scale known: at 2 m/s² of noise they hardly show the roll, at 0.05 everything."""
-    weighed = {"total_mass": Known(TABLE_1_CAR.total_mass)} if known is None else known
+    weighed = {"total_mass": KnownValue(TABLE_1_CAR.total_mass)} if known is None else known
     return free_decays(TABLE_1_CAR, states=3, noise=noise, seed=seed, rate=100, duration=1.5, known=weighed)
 
 
@@ -36,17 +36,17 @@ def body_alone(campaign: Campaign) -> Campaign:
         replace(one, values=one.values[chosen], channels=tuple(one.channels[i] for i in chosen))
         for one in campaign.recordings
     )
-    return replace(campaign, sensors=tuple(campaign.sensors[i] for i in chosen), recordings=recordings)
+    return replace(campaign.with_recordings(recordings), sensors=tuple(campaign.sensors[i] for i in chosen))
 
 
-def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, Known]]:
+def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, KnownValue]]:
     known = dict(campaign.known)
     assert campaign.wheelbase is not None
     known["wheelbase"] = campaign.wheelbase
     decays = prepare(campaign).decays
     models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
     optimum = fit_linear(decays, models, campaign.sensors, known, start=TRUTH)
-    return optimum, uncertainty_of(optimum, decays), known
+    return optimum, uncertainty_of(optimum), known
 
 
 def both(campaign: Campaign, name: str) -> tuple[Estimate, Estimate]:
@@ -72,7 +72,7 @@ class LongWay:
     def __init__(self, campaign: Campaign) -> None:
         decays = prepare(campaign).decays
         models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
-        self.likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
+        self.likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
         self.free = [name for name in NAMES if name not in ("m_s", "b", "t_f")]
         self.samples = len(decays) * decays[0].samples
 
@@ -121,7 +121,7 @@ def test_the_interval_ends_where_a_likelihood_maximised_the_long_way_has_fallen_
 @pytest.mark.parametrize("name", ["m_s", "k_tf", "c_sr", "a", "t_f", "total_mass", "front_axle_mass"])
 def test_well_determined_quantities_keep_their_intervals(name: str) -> None:
     """Where the likelihood is a parabola, its profile and its curvature say the same; with a scale of 0.3 % besides."""
-    known = {"total_mass": Known(1.002 * TABLE_1_CAR.total_mass, 0.003 * TABLE_1_CAR.total_mass)}
+    known = {"total_mass": KnownValue(1.002 * TABLE_1_CAR.total_mass, 0.003 * TABLE_1_CAR.total_mass)}
     curvature, profile = both(drops(seed=1, noise=0.02, known=known), name)
     assert (curvature.interval_from, profile.interval_from) == ("curvature", "profile")
     low, high = limits(curvature)
@@ -134,10 +134,10 @@ def test_well_determined_quantities_keep_their_intervals(name: str) -> None:
 
 def test_inflation_widens_the_profile_as_it_widens_the_curvature() -> None:
     """Drops of two different cars disagree; the weighing is as good as it was, and alone decides about the mass."""
-    campaign = drops(seed=2, noise=0.02, known={"total_mass": Known(1.001 * TABLE_1_CAR.total_mass, 5.0)})
+    campaign = drops(seed=2, noise=0.02, known={"total_mass": KnownValue(1.001 * TABLE_1_CAR.total_mass, 5.0)})
     other = replace(TABLE_1_CAR, k_sf=1.03 * TABLE_1_CAR.k_sf)
     differs = free_decays(other, states=3, noise=0.02, seed=2, rate=100, duration=1.5)
-    mixed = replace(campaign, recordings=(*campaign.recordings[:2], differs.recordings[2]))
+    mixed = campaign.with_recordings((*campaign.recordings[:2], differs.recordings[2]))
     optimum, fit, known = fitted(mixed)
     assert fit.inflation > 4
     for name in ("total_mass", "k_sr", "t_r"):

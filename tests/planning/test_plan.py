@@ -11,8 +11,8 @@ from hypothesis import given, settings
 
 import sprung
 from sprung.errors import InputError
-from sprung.estimate import Known
 from sprung.planning import Bound, Plan, PlanRow
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 from strategies import vehicles
 
@@ -199,7 +199,9 @@ def test_a_campaign_goes_on_from_its_own_error_bars() -> None:
             assert own[name] == pytest.approx(estimate.percent, rel=1e-3)
     assert plan.next_step.enough
     # What the step promises, it keeps.
-    kept = sprung.identify(dataclasses.replace(campaign, known={"total_mass": Known(TABLE_1_CAR.total_mass, 1.55)}))
+    kept = sprung.identify(
+        dataclasses.replace(campaign, known={"total_mass": KnownValue(TABLE_1_CAR.total_mass, 1.55)})
+    )
     for name, percent in bound(plan, "total mass").percents.items():
         assert percent is not None
         assert kept.parameters[name].percent == pytest.approx(percent, rel=0.1)

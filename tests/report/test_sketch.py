@@ -13,12 +13,12 @@ import pytest
 
 import sprung
 from sprung.campaign import Campaign, ModelChoice
-from sprung.estimate import Known
 from sprung.report import Disc, Drawing, Stroke, Words, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
 from sprung.report.sketch.labels import Box, Label, place_labels, text_box
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle
 
-KNOWN = {"a": Known(1.25), "b": Known(1.51), "t_f": Known(0.74), "t_r": Known(0.70, 0.01)}
+KNOWN = {"a": KnownValue(1.25), "b": KnownValue(1.51), "t_f": KnownValue(0.74), "t_r": KnownValue(0.70, 0.01)}
 CORNERS = [("fl", 0.1, 0.7), ("fr", 0.1, -0.7), ("rl", -2.9, 0.7), ("rr", -2.9, -0.7)]
 SENSORS = (
     *(Sensor(channel=f"body_{name}", on="body", position=(x, y, 0.6)) for name, x, y in CORNERS),
@@ -28,7 +28,7 @@ LOAD = Load(name="sand", items=(Item(mass=140, position=(-1.0, 0.3, 0.7)),))
 
 
 def campaign(**changes: Any) -> Campaign:
-    whole = Campaign("car", SENSORS, (), (), (EMPTY, LOAD), Known(2.76), cg_height=0.55, wheel_height=0.3, known=KNOWN)
+    whole = Campaign("car", SENSORS, (), (EMPTY, LOAD), KnownValue(2.76), cg_height=0.55, wheel_height=0.3, known=KNOWN)
     return replace(whole, **changes)
 
 
@@ -92,7 +92,7 @@ def test_everything_known_is_written() -> None:
 
 
 def test_separate_half_distances() -> None:
-    separate = {"t_f1": Known(0.5), "t_f2": Known(0.6), "t_r1": Known(0.55), "t_r2": Known(0.65)}
+    separate = {"t_f1": KnownValue(0.5), "t_f2": KnownValue(0.6), "t_r1": KnownValue(0.55), "t_r2": KnownValue(0.65)}
     [plan, _] = vehicle_sketch(campaign(known=separate)).drawings
     assert {"t_f1", "t_f2", "t_r1", "t_r2", "0.5 m", "0.6 m", "0.55 m", "0.65 m"} <= set(words(plan))
     [plan, _] = vehicle_sketch(campaign(known={}, model=ModelChoice(tracks="separate"))).drawings
@@ -141,8 +141,8 @@ def test_usual_vehicles_are_legible(vehicle: Vehicle) -> None:
 
 def test_short_half_distances_apart_are_legible() -> None:
     """Those of the paper's bus: 0.4 m beside a wheelbase of 3.95 m; the dampers' are not known."""
-    known = {"t_f2": Known(0.4), "t_r2": Known(0.5), "a": Known(2.22)}
-    for drawing in vehicle_sketch(campaign(wheelbase=Known(3.95), known=known)).drawings:
+    known = {"t_f2": KnownValue(0.4), "t_r2": KnownValue(0.5), "a": KnownValue(2.22)}
+    for drawing in vehicle_sketch(campaign(wheelbase=KnownValue(3.95), known=known)).drawings:
         assert_legible(drawing)
 
 

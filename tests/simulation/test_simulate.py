@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from sprung.campaign import Drop, ModelChoice
 from sprung.errors import InputError
-from sprung.estimate import Known
 from sprung.simulation import default_drops, default_sensors, simulate
+from sprung.uncertainty import KnownValue
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import (
     EMPTY,
@@ -44,7 +44,7 @@ def test_defaults_are_eight_sensors_and_five_drops_for_each_load() -> None:
     assert {drop.height for drop in campaign.drops} == {0.05}
     assert campaign.loads == (EMPTY, SANDBAGS)
     assert campaign.name == "School bus"
-    assert campaign.wheelbase == Known(SCHOOL_BUS.wheelbase)
+    assert campaign.wheelbase == KnownValue(SCHOOL_BUS.wheelbase)
     assert campaign.known == {}
     assert campaign.model == ModelChoice()
     assert [recording.name for recording in campaign.recordings] == [drop.file for drop in campaign.drops]
@@ -96,7 +96,7 @@ def test_mappings_as_in_a_campaign_file_are_as_good_as_records() -> None:
         loads=[SANDBAGS],
         drops=[drop],
         seed=3,
-        known={"total_mass": Known(1551.8, 2.0), "a": Known(1.25)},
+        known={"total_mass": KnownValue(1551.8, 2.0), "a": KnownValue(1.25)},
         model=ModelChoice(tracks="shared"),
     )
     mappings = simulate(
@@ -111,7 +111,7 @@ def test_mappings_as_in_a_campaign_file_are_as_good_as_records() -> None:
     assert_array_equal(records.recordings[0].values, mappings.recordings[0].values)
     for field in ("name", "sensors", "drops", "loads", "wheelbase", "known", "model"):
         assert getattr(records, field) == getattr(mappings, field)
-    assert records.known["total_mass"] == Known(1551.8, 2.0)
+    assert records.known["total_mass"] == KnownValue(1551.8, 2.0)
 
 
 def test_the_default_drops_and_sensors_may_be_given_too() -> None:
@@ -142,9 +142,11 @@ def test_repeated_drops_are_numbered_and_given_files_kept() -> None:
 
 def test_what_the_vehicle_and_the_user_know_is_in_the_campaign() -> None:
     bus = Vehicle.from_parameters(SCHOOL_BUS.parameters, cg_height=0.9, name="Bus")
-    campaign = simulate(bus, drops=[Drop(start=0.6, end=2.0)], known={"wheelbase": Known(3.96, 0.01)}, duration=2.0)
+    campaign = simulate(
+        bus, drops=[Drop(start=0.6, end=2.0)], known={"wheelbase": KnownValue(3.96, 0.01)}, duration=2.0
+    )
     assert (campaign.name, campaign.cg_height) == ("Bus", 0.9)
-    assert campaign.wheelbase == Known(3.96, 0.01)
+    assert campaign.wheelbase == KnownValue(3.96, 0.01)
     assert campaign.known == {}
     assert (campaign.drops[0].start, campaign.drops[0].end) == (0.6, 2.0)
 

@@ -15,17 +15,17 @@ import sprung
 from command_line import Run, run
 from layouts import check_view_is_whole
 from sprung.errors import InputError
-from sprung.estimate import Known
 from sprung.report import comparison_view
 from sprung.study.scatter import scatters
 from sprung.study.significance import holm, joint
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 WORN = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"c_sf": 1400.0}, name="worn car")
 
 
 def identified(vehicle: Vehicle, seed: int, weighed: bool = True, **options: object) -> sprung.Result:
-    known = {"total_mass": Known(vehicle.total_mass, 2.0)} if weighed else {}
+    known = {"total_mass": KnownValue(vehicle.total_mass, 2.0)} if weighed else {}
     campaign = sprung.simulate(vehicle, noise=0.05, seed=seed, known=known, rate=250, duration=2)
     return sprung.identify(campaign, **{"tracks": "shared", "extras": (), "fall": False, **options})  # type: ignore[arg-type]
 
@@ -159,7 +159,9 @@ def test_another_model_is_named(same: list[sprung.Result]) -> None:
 
 def test_what_was_known_in_both_is_given(same: list[sprung.Result]) -> None:
     def with_known(seed: int, k: float) -> sprung.Result:
-        campaign = sprung.simulate(TABLE_1_CAR, noise=0.05, seed=seed, known={"k_tf": Known(k)}, rate=250, duration=2)
+        campaign = sprung.simulate(
+            TABLE_1_CAR, noise=0.05, seed=seed, known={"k_tf": KnownValue(k)}, rate=250, duration=2
+        )
         return sprung.identify(campaign, tracks="shared", extras=(), fall=False)
 
     found = sprung.compare([with_known(1, 192000.0), with_known(2, 192000.0), with_known(3, 200000.0), same[0]])

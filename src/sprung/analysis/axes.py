@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from sprung.estimate import NORMAL_95, Estimate
 from sprung.estimation import FitStatistics
+from sprung.uncertainty import NORMAL_95, Estimate
 from sprung.vehicle import Heights
 
 ABOUT_ROLL_AXIS = "I_xx_roll_axis"

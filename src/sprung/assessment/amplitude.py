@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment.bodies import BodyMotion, body_rows
-from sprung.assessment.sliding import Trace, follow_mode
+from sprung.assessment.body_motion import BodyMotion, body_rows
+from sprung.assessment.mode_tracking import AmplitudeCurve, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
-from sprung.modal import Mode, modes_of
 from sprung.progress import Progress, counted, silent
 from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, free_decay
+from sprung.vibration import Mode, compute_modes
 
 Real = NDArray[np.float64]
 
@@ -62,13 +62,13 @@ class ModeAmplitude:
     mode: str
     frequency: float
     damping_ratio: float
-    records: tuple[Trace, ...]
-    simulated: tuple[Trace, ...]
-    model: Trace
+    records: tuple[AmplitudeCurve, ...]
+    simulated: tuple[AmplitudeCurve, ...]
+    model: AmplitudeCurve
     load: str = EMPTY.name
 
 
-def mode_amplitudes(
+def follow_modes(
     fit: FitStatistics,
     model: LinearModel | NonlinearModel,
     sensors: Sequence[Sensor],
@@ -97,7 +97,7 @@ def mode_amplitudes(
     """
     linear = model.linear if isinstance(model, NonlinearModel) else model
     matrices = linear.matrices(fit.values)
-    modes = [mode for mode in modes_of(matrices) if mode.pole.imag != 0]
+    modes = [mode for mode in compute_modes(matrices) if mode.pole.imag != 0]
     rows = body_rows(fit, sensors)
     told = [one for one in motions if np.isfinite(one.measured).all()]
     found = []

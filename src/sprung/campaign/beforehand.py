@@ -7,14 +7,14 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS
 
-Given: TypeAlias = Known | float | Mapping[str, float]
+Given: TypeAlias = KnownValue | float | Mapping[str, float]
 """A known quantity: a record, a number (exact), or {value, std} as in a campaign file."""
 
 
-def as_known(given: Given, where: str, problems: Problems) -> Known | None:
+def as_known(given: Given, where: str, problems: Problems) -> KnownValue | None:
     """Return a known quantity as a record.
 
     Parameters
@@ -35,19 +35,19 @@ def as_known(given: Given, where: str, problems: Problems) -> Known | None:
         if not {"value"} <= given.keys() <= {"value", "std"}:
             problems.add(where, repr(dict(given)), "{value, std}", "Give the value, and std if it has one.")
             return None
-        given = Known(**given)
-    elif not isinstance(given, Known):
+        given = KnownValue(**given)
+    elif not isinstance(given, KnownValue):
         if isinstance(given, bool) or not isinstance(given, int | float):
             problems.add(where, repr(given), "a number, or {value, std}", "Correct it.")
             return None
-        given = Known(float(given))
+        given = KnownValue(float(given))
     if not (math.isfinite(given.value) and math.isfinite(given.std) and given.std >= 0):
         problems.add(where, repr(given), "a finite value, and a std that is not negative", "Correct it.")
         return None
     return given
 
 
-def known_quantities(given: Mapping[str, Given], where: str, problems: Problems) -> dict[str, Known]:
+def known_quantities(given: Mapping[str, Given], where: str, problems: Problems) -> dict[str, KnownValue]:
     """Return known quantities as records, as far as they are possible.
 
     Parameters
@@ -64,7 +64,7 @@ def known_quantities(given: Mapping[str, Given], where: str, problems: Problems)
     dict
         By name.
     """
-    known: dict[str, Known] = {}
+    known: dict[str, KnownValue] = {}
     allowed = PARAMETERS.keys() | DERIVED.keys()
     for name, quantity in given.items():
         place = f"{where}['{name}']"

@@ -12,7 +12,7 @@ from sprung.campaign.plausibility import LIMITS, implausible
 from sprung.campaign.schema import KNOWABLE, CampaignFile, VehicleFileSchema
 from sprung.campaign.sizes import SMALLEST, check_sizes, check_together
 from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.units import acceleration_factor
 from sprung.vehicle import EXTRAS, PARAMETERS, Sensor
 
@@ -71,7 +71,11 @@ def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
         ("load", "name"): [("name", load.name, None) for load in file.load],
         # "./a.csv" is "a.csv"; one file may hold several drops, each in its window.
         ("drop", "file"): [
-            ("files" if drop.files else "file", ", ".join(str(PurePath(one)) for one in drop.recordings), drop.window)
+            (
+                "files" if drop.files else "file",
+                ", ".join(str(PurePath(one)) for one in drop.recording_files),
+                drop.window,
+            )
             for drop in file.drop
         ],
         ("drop", "name"): [("name", drop.name or "", None) for drop in file.drop],
@@ -183,9 +187,9 @@ def _check_model(draft: Draft[CampaignFile], problems: Problems) -> None:
         problems.add(draft.where("model", "tracks"), found, "t_f and t_r, which springs and dampers share", do)
 
 
-def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, Known]:
+def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, KnownValue]:
     """Give what is known and possible: the wheelbase too."""
-    known: dict[str, Known] = {}
+    known: dict[str, KnownValue] = {}
     for name, measured in draft.file.known.items():
         where = draft.where("known", name)
         if name not in KNOWABLE:
@@ -218,7 +222,7 @@ def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, Kn
     return known
 
 
-def contradict(one: Known, other: Known) -> bool:
+def contradict(one: KnownValue, other: KnownValue) -> bool:
     """Say whether two statements about one quantity cannot both hold.
 
     Parameters
@@ -230,19 +234,19 @@ def contradict(one: Known, other: Known) -> bool:
     return abs(one.value - other.value) > max(allowed, ROUNDING * abs(other.value))
 
 
-def _sum(parts: Iterable[Known]) -> Known:
+def _sum(parts: Iterable[KnownValue]) -> KnownValue:
     parts = tuple(parts)
-    return Known(sum(part.value for part in parts), math.hypot(*(part.std for part in parts)))
+    return KnownValue(sum(part.value for part in parts), math.hypot(*(part.std for part in parts)))
 
 
-def _said(known: Known) -> str:
-    return f"{known.value:.10g}" if known.exact else f"{known.value:.10g} ± {known.std:.3g}"
+def _said(known: KnownValue) -> str:
+    return f"{known.value:.10g}" if known.is_exact else f"{known.value:.10g} ± {known.std:.3g}"
 
 
-def _check_sums(draft: Draft[CampaignFile], known: Mapping[str, Known], problems: Problems) -> None:
+def _check_sums(draft: Draft[CampaignFile], known: Mapping[str, KnownValue], problems: Problems) -> None:
     """Two axles make a vehicle: in weight and in length."""
     parameters = getattr(draft.file, "parameters", {})
-    lengths = {name: Known(parameters[name]) if name in parameters else known.get(name) for name in ("a", "b")}
+    lengths = {name: KnownValue(parameters[name]) if name in parameters else known.get(name) for name in ("a", "b")}
     masses = {name: known.get(name) for name in ("front_axle_mass", "rear_axle_mass")}
     for section, name, unit, parts in (("known", "total_mass", "kg", masses), ("vehicle", "wheelbase", "m", lengths)):
         given = {part: value for part, value in parts.items() if value is not None}

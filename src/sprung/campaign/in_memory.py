@@ -12,8 +12,9 @@ from sprung.errors import Problems
 from sprung.vehicle import EMPTY
 
 if TYPE_CHECKING:
-    from sprung.campaign.campaign import Campaign, Drop
-    from sprung.estimate import Known
+    from sprung.campaign.campaign import Campaign
+    from sprung.campaign.drop import Drop
+    from sprung.uncertainty import KnownValue
     from sprung.vehicle import Heights, Load, Sensor
 
 
@@ -53,8 +54,8 @@ def check_statements(
     sensors: Sequence[Sensor],
     loads: Sequence[Load],
     drops: Sequence[Drop],
-    known: Mapping[str, Known],
-    wheelbase: Known | None,
+    known: Mapping[str, KnownValue],
+    wheelbase: KnownValue | None,
     heights: Heights,
     whole: bool = True,
     problems: Problems,
@@ -98,5 +99,5 @@ def check_statements(
     check_quantities(draft, problems)
 
 
-def _measured(known: Known) -> Measured:
+def _measured(known: KnownValue) -> Measured:
     return Measured.model_construct(value=known.value, std=known.std)

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from sprung.campaign.campaign import Drop, ModelChoice, TestRecord
-from sprung.estimate import Known
+from sprung.campaign.campaign import ModelChoice, TestRecord
+from sprung.campaign.drop import Drop
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
 
 SCHEMA = 1
@@ -33,9 +34,9 @@ class Measured(BaseModel):
         return {"value": given} if isinstance(given, int | float) and not isinstance(given, bool) else given
 
     @property
-    def known(self) -> Known:
+    def known(self) -> KnownValue:
         """The same as the record of the estimate room."""
-        return Known(self.value, self.std)
+        return KnownValue(self.value, self.std)
 
 
 class VehicleSection(BaseModel):

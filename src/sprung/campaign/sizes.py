@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from sprung.campaign.sentences import Place
     from sprung.campaign.understanding import Draft
     from sprung.errors import Problems
-    from sprung.estimate import Known
+    from sprung.uncertainty import KnownValue
     from sprung.vehicle import Load
 
 SMALLEST = 1e-6
@@ -147,7 +147,7 @@ def _of_loads(draft: Draft[CampaignFile]) -> Iterator[Sized]:
             yield ("load", index, "added", name), "load mass" if name == "mass" else quantity, value
 
 
-def check_together(draft: Draft[CampaignFile], known: Mapping[str, Known], problems: Problems) -> None:
+def check_together(draft: Draft[CampaignFile], known: Mapping[str, KnownValue], problems: Problems) -> None:
     """Check what sizes say of each other: masses of masses, inertias of masses, and places of the wheelbase.
 
     Parameters

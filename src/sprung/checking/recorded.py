@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Recording
 from sprung.display import shown
-from sprung.preprocess import DropObservation, Mark
+from sprung.preprocess import DropObservation, MarkedSamples
 
 Real = NDArray[np.float64]
 Drawn = NDArray[np.float32]
@@ -17,7 +16,7 @@ Drawn = NDArray[np.float32]
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Recorded:
+class PlottedRecording:
     """One drop's whole recording, in SI, put right as far as it could be.
 
     Attributes
@@ -35,22 +34,20 @@ class Recorded:
     start: float
     rate: float
     values: Drawn
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[MarkedSamples, ...] = ()
 
     @classmethod
-    def of(cls, seen: DropObservation, as_read: Recording) -> Recorded:
+    def of(cls, seen: DropObservation) -> PlottedRecording:
         """Take what a recording shows.
 
         Parameters
         ----------
         seen
             What its drop shows.
-        as_read
-            The same before anything was left out.
         """
-        values = seen.recording.values
-        if values.shape == as_read.values.shape:
-            values = np.where(np.isnan(values).any(axis=1, keepdims=True), as_read.values, values)
+        values, as_read = seen.recording.values, seen.drop.recording.values
+        if values.shape == as_read.shape:
+            values = np.where(np.isnan(values).any(axis=1, keepdims=True), as_read, values)
         return cls(seen.recording.start, seen.recording.rate, values.astype(np.float32), seen.marks)
 
     @property

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import NORMAL_95, Estimate, Known
 from sprung.estimation.estimates import estimate_of
 from sprung.estimation.statistics import FitStatistics
+from sprung.uncertainty import NORMAL_95, Estimate, KnownValue
 from sprung.vehicle import CHARACTERISTICS, DERIVED, WHEELS, LinearModel, characteristic, wheel_loads
 
 Real = NDArray[np.float64]
@@ -21,7 +21,7 @@ _SIDES = {"l": "left", "r": "right"}
 _AXLES = {"f": "front", "r": "rear"}
 
 
-def characteristics_of(fit: FitStatistics, known: Mapping[str, Known], empty: LinearModel) -> dict[str, Estimate]:
+def characteristics_of(fit: FitStatistics, known: Mapping[str, KnownValue], empty: LinearModel) -> dict[str, Estimate]:
     """Estimate what follows from the parameters: `CHARACTERISTICS` and the static wheel loads.
 
     The standard uncertainty is that of the gradient under the joint covariance of all parameters.

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimate import NORMAL_95, Estimate, Known, Ratio
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
-from sprung.modal import leading_entry
-from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
+from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
+from sprung.vehicle import LOAD_MASS, PARAMETERS, evaluate_quantity
+from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ class Estimates:
     correlation: Correlation
 
 
-def to_estimates(fit: FitStatistics, known: Mapping[str, Known]) -> Estimates:
+def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimates:
     """Say what the fit allows to be said.
 
     Parameters
@@ -125,7 +125,7 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, Known]) -> Estimates:
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 
-def estimate_of(fit: FitStatistics, known: Mapping[str, Known], name: str) -> Estimate:
+def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> Estimate:
     """Say what the fit says of one quantity.
 
     Parameters
@@ -139,9 +139,9 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, Known], name: str) -> Es
     -------
     Estimate
     """
-    value, gradient = quantity(name, fit.names, fit.values)
+    value, gradient = evaluate_quantity(name, fit.names, fit.values)
     unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
-    if name in known and known[name].exact:
+    if name in known and known[name].is_exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
     std = fit.spread(gradient * fit.slopes, fit.size(name) if name in fit.names else value)
@@ -162,7 +162,7 @@ def _interval(name: str, value: float, std: float) -> tuple[float, float]:
 
 
 def _scale(fit: FitStatistics) -> Scale:
-    total, gradient = quantity("total_mass", fit.names, fit.values)
+    total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
@@ -199,7 +199,7 @@ def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tup
             together[i, np.argmax(shares[i])] = True
     for direction, moved in zip(directions.T, together.T, strict=True):
         names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
-        leading = direction[leading_entry(direction)]
+        leading = direction[largest_entry(direction)]
         ways = [
             f"{name} {'up' if part * leading > 0 else 'down'}"
             for name, part, moves in zip(fit.names, direction, moved, strict=True)

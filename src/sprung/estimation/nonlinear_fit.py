@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import Known
 from sprung.estimation.fit import NEAR, FitResult
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate, identifiable_subspace
 from sprung.estimation.time_stepping import SteppedLikelihood, SteppedLikelihoodAt
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import NonlinearModel, Rows, Sensor
 
 Real = NDArray[np.float64]
@@ -39,7 +39,7 @@ def fit_nonlinear(
     decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     *,
     start: Mapping[str, float],
     states: Real,
@@ -105,7 +105,7 @@ def score_stepped_terms(
     decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     *,
     values: Mapping[str, float],
     states: Real,
@@ -195,7 +195,7 @@ def _climb(
     decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     typical: Mapping[str, float],
     states: Real,
     tilting: bool,

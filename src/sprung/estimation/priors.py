@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import Known
-from sprung.vehicle import PARAMETERS, quantity
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import PARAMETERS, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -102,14 +102,14 @@ class PriorsAndConstraints:
     """
 
     coordinates: Coordinates
-    statements: Mapping[str, Known]
+    statements: Mapping[str, KnownValue]
 
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
         """Names, values and sizes of error that count as one; of the exact statements, and of the others."""
         chosen = {}
         for exact in (True, False):
-            those = {name: known for name, known in self.statements.items() if known.exact == exact}
+            those = {name: known for name, known in self.statements.items() if known.is_exact == exact}
             values = np.array([known.value for known in those.values()])
             std = np.array([known.std for known in those.values()])
             sizes = np.abs(values) if exact else np.maximum(std, _FINEST * np.abs(values))
@@ -122,7 +122,7 @@ class PriorsAndConstraints:
         if not names:
             return np.zeros(0), np.zeros((0, len(u)))
         values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
-        found = [quantity(name, self.coordinates.names, values) for name in names]
+        found = [evaluate_quantity(name, self.coordinates.names, values) for name in names]
         rows = np.array([gradient for _, gradient in found]) * slopes
         sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero
         return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
@@ -137,7 +137,7 @@ class PriorsAndConstraints:
 
     def change(self, name: str, u: Real, step: Real) -> float:
         """Give by how much a quantity changes with a step of the coordinates, to first order, SI."""
-        _, gradient = quantity(name, self.coordinates.names, self.coordinates.values(u))
+        _, gradient = evaluate_quantity(name, self.coordinates.names, self.coordinates.values(u))
         return float(gradient * self.coordinates.slopes(u) @ step)
 
     def bind(self, u: Real) -> Real:

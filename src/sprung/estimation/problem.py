@@ -220,7 +220,7 @@ class EstimationProblem:
             missed = without.prior(point.u).residual
             gain += float(every @ every - missed @ missed)
             away = self.priors.change(name, point.u, move) / known.value
-            if not known.exact or abs(away) > _EXACT_ENOUGH:
+            if not known.is_exact or abs(away) > _EXACT_ENOUGH:
                 found[name] = max(gain, 0.0) ** 0.5
         return found
 

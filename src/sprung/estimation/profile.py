@@ -14,12 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import NORMAL_95, Estimate, Known
 from sprung.estimation.fit import FitResult
 from sprung.estimation.priors import PriorsAndConstraints
 from sprung.estimation.problem import CLOSE_BY, EstimationProblem, Iterate
 from sprung.estimation.statistics import FitStatistics
-from sprung.vehicle import PARAMETERS, quantity
+from sprung.uncertainty import NORMAL_95, Estimate, KnownValue
+from sprung.vehicle import PARAMETERS, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class Profile:
     @cached_property
     def value(self) -> float:
         """At the summit, SI."""
-        return quantity(self.name, self.fit.names, self.fit.values)[0]
+        return evaluate_quantity(self.name, self.fit.names, self.fit.values)[0]
 
     def interval(self) -> tuple[float | None, float | None]:
         """Give the 95 % interval, SI.
@@ -102,12 +102,12 @@ class Profile:
         """
         priors, u, inflation = self.optimum.problem.priors, self.optimum.point.u, self.fit.inflation
 
-        def weighed(name: str, known: Known) -> Known:
-            found, _ = quantity(name, self.fit.names, priors.coordinates.values(u))
-            return Known(found + (known.value - found) / inflation, known.std / inflation**0.5)
+        def weighed(name: str, known: KnownValue) -> KnownValue:
+            found, _ = evaluate_quantity(name, self.fit.names, priors.coordinates.values(u))
+            return KnownValue(found + (known.value - found) / inflation, known.std / inflation**0.5)
 
         statements = {
-            name: known if known.exact or inflation == 1 else weighed(name, known)
+            name: known if known.is_exact or inflation == 1 else weighed(name, known)
             for name, known in priors.statements.items()
         }
         return EstimationProblem(self.optimum.problem.likelihood, PriorsAndConstraints(priors.coordinates, statements))
@@ -115,12 +115,12 @@ class Profile:
     def _held(self, value: float, near: Real) -> Iterate | None:
         """Climb as high as it goes where the quantity has one value exactly; give None where no vehicle has it."""
         priors = self._climb.priors
-        held = replace(priors, statements={**priors.statements, self.name: Known(value)})
+        held = replace(priors, statements={**priors.statements, self.name: KnownValue(value)})
         with np.errstate(all="ignore"):  # out of all bounds it goes where nothing fulfils everything
             u = held.bind(near)
             values = held.coordinates.values(u)
-            found = [(quantity(name, self.fit.names, values)[0], one) for name, one in held.statements.items()]
-        if not all(abs(there - one.value) <= _FULFILLED * abs(one.value) for there, one in found if one.exact):
+            found = [(evaluate_quantity(name, self.fit.names, values)[0], one) for name, one in held.statements.items()]
+        if not all(abs(there - one.value) <= _FULFILLED * abs(one.value) for there, one in found if one.is_exact):
             return None
         return replace(self._climb, priors=held).maximise(u, enough=_ENOUGH, damping=CLOSE_BY)
 
@@ -134,7 +134,7 @@ class Profile:
     @cached_property
     def _direction(self) -> tuple[Real, float]:
         """Give where everything goes when the quantity moves by one, to first order, and its standard uncertainty."""
-        _, gradient = quantity(self.name, self.fit.names, self.fit.values)
+        _, gradient = evaluate_quantity(self.name, self.fit.names, self.fit.values)
         slope = gradient * self.fit.slopes / self._scale
         together = self.fit.relative_covariance @ slope
         variance = float(slope @ together)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import NEUTRAL, Sensor
 
 BODY_FREQUENCIES = (1.0, 1.6, 2.6)
@@ -93,7 +93,7 @@ class VehicleSize(NamedTuple):
     half_track: float
 
     @classmethod
-    def of(cls, known: Mapping[str, Known], sensors: Sequence[Sensor]) -> VehicleSize:
+    def of(cls, known: Mapping[str, KnownValue], sensors: Sequence[Sensor]) -> VehicleSize:
         """Gather what is known beforehand, the wheelbase included; the rest is taken from the sensors' places."""
         value = {name: one.value for name, one in known.items()}
         places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
@@ -109,7 +109,9 @@ class VehicleSize(NamedTuple):
         return self.mass * (1 - 4 * _WHEEL_SHARE)
 
 
-def start_grid(outline: VehicleSize, known: Mapping[str, Known], engine: bool = False) -> Iterator[dict[str, float]]:
+def start_grid(
+    outline: VehicleSize, known: Mapping[str, KnownValue], engine: bool = False
+) -> Iterator[dict[str, float]]:
     """Make vehicles of every usual kind, of one size.
 
     Parameters

@@ -13,17 +13,14 @@ from sprung.campaign import Campaign
 from sprung.estimation import (
     NEAR,
     FitResult,
-    Likelihood,
-    LikelihoodAt,
     autocorrelation_inflation,
     fit_linear,
-    residual_records,
 )
 from sprung.faults.changes import silenced, without_drops
 from sprung.faults.tally import Noise, ResidualTable, noise_of, tally_of
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection import choose_model
-from sprung.vehicle import LinearModel, Rows, Tracks
+from sprung.selection import choose_structure
+from sprung.vehicle import LinearModel, Tracks
 
 Real = NDArray[np.float64]
 
@@ -78,10 +75,7 @@ class CandidateFit:
     def walking(self) -> NDArray[np.bool_]:
         """Of which channels what is left walks slowly, shape (channel,): means over some time keep most of it."""
         kept = energy = np.zeros(len(self.campaign.sensors))
-        point = self.optimum.point
-        for record, decay in zip(
-            residual_records(point.place.fitted(point.weights), self.decays), self.decays, strict=True
-        ):
+        for record, decay in zip(self.optimum.residuals, self.decays, strict=True):
             length = max(int(_SLOWLY * decay.rate), 1)
             count = decay.samples // length
             left = np.nan_to_num(record[:, : count * length]).reshape(len(record), count, length)
@@ -93,19 +87,7 @@ class CandidateFit:
     @cached_property
     def inflation(self) -> float:
         """By how much its records tell less than white ones."""
-        return max(colour_left(self.decays, self.optimum), self.optimum.disagreement)
-
-    def left_by(self, decays: Sequence[FreeDecay]) -> Real:
-        """Give what this vehicle leaves of other decays, whatever their states; sums of squares, shape (decay, channel)."""
-        return self._at(decays).misfit(self.optimum.point.weights)[0]
-
-    def states_of(self, decays: Sequence[FreeDecay]) -> Real:
-        """Give {X, Ẋ} of this vehicle at the start of other decays, SI, shape (decay, state)."""
-        return self._at(decays).states(self.optimum.point.weights)
-
-    def _at(self, decays: Sequence[FreeDecay]) -> LikelihoodAt:
-        rows = Rows.of([sensor.row for sensor in self.campaign.sensors], self.optimum.names)
-        return Likelihood.of(decays, self.models, rows).at(self.optimum.values)
+        return max(colour_left(self.optimum), self.optimum.disagreement)
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,14 +149,16 @@ class Bench:
             Whether one step from the direct start will do.
         """
         decays = self._decays(campaign) if decays is None else decays
-        choice = choose_model(campaign, self.tracks, self.extras)
+        choice = choose_structure(campaign, self.tracks, self.extras)
         sensors, known = campaign.sensors, choice.known
         starts, enough = (1, np.inf) if roughly else (_STARTS, NEAR)
-        optimum = fit_linear(decays, choice.models, sensors, known, start=start, starts=starts, enough=enough)
+        optimum = fit_linear(decays, choice.linear_models, sensors, known, start=start, starts=starts, enough=enough)
         noise = (
             self.base.noise if self._as_recorded(campaign) and "base" in self.__dict__ else noise_of(decays, optimum)
         )
-        return CandidateFit(campaign, decays, choice.models, optimum, tally_of(self.files, decays, optimum), noise)
+        return CandidateFit(
+            campaign, decays, choice.linear_models, optimum, tally_of(self.files, decays, optimum), noise
+        )
 
     def after(self, trial: CandidateFit) -> Bench:
         """Give the bench on which what was tried is the campaign."""
@@ -183,22 +167,19 @@ class Bench:
     def _as_recorded(self, campaign: Campaign) -> bool:
         """Say whether a campaign's samples are what they were."""
         before, after = ([one.high_pass for one in each.sensors] for each in (self.campaign, campaign))
-        return campaign.recordings is self.campaign.recordings and before == after
+        return campaign.recordings == self.campaign.recordings and before == after
 
     def _decays(self, campaign: Campaign) -> tuple[FreeDecay, ...]:
         """Give the decays of a campaign that was changed: the same samples, as long as nobody has touched them."""
         if not self._as_recorded(campaign):
             return prepare(campaign).decays
-        named = zip(campaign.drops, campaign.recordings, strict=True)
-        loads = {recording.name: drop.load for drop, recording in named}
+        loads = {drop.recording.name: drop.load for drop in campaign.drops}
         return tuple(replace(decay, load=loads[decay.file]) for decay in self.decays)
 
 
-def colour_left(decays: Sequence[FreeDecay], optimum: FitResult) -> float:
+def colour_left(optimum: FitResult) -> float:
     """Give by how much the residuals of a fit tell less than white ones."""
-    point = optimum.point
-    left = residual_records(point.place.fitted(point.weights), decays)
-    return float(autocorrelation_inflation(left, [decay.rate for decay in decays]).max())
+    return float(autocorrelation_inflation(optimum.residuals, [decay.rate for decay in optimum.decays]).max())
 
 
 def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
@@ -223,7 +204,7 @@ def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -
     # The clocks of several loggers have been set in these, and only in these.
     shifts = [round((starts.get(one.file, one.start) - one.start) * one.rate) for one in decays]
     return tuple(
-        one.moved(max(shift, -one.earlier.shape[1])) if shift < one.samples / 2 else one
+        one.shifted(max(shift, -one.earlier.shape[1])) if shift < one.samples / 2 else one
         for one, shift in zip(decays, shifts, strict=True)
     )
 
@@ -231,7 +212,6 @@ def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -
 def _cut(campaign: Campaign, spans: Mapping[str, Span]) -> Campaign:
     campaign = without_drops(*(one.name for one in campaign.recordings if one.name not in spans))(campaign)
     drops = [
-        replace(drop, start=spans[recording.name][0], end=spans[recording.name][1])
-        for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
+        replace(drop, start=spans[drop.recording.name][0], end=spans[drop.recording.name][1]) for drop in campaign.drops
     ]
     return replace(campaign, drops=tuple(drops))

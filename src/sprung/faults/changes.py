@@ -51,7 +51,7 @@ def scaled(channel: int, factor: float) -> Change:
             replace(one, full_scale=tuple(full(s) if i == channel else s for i, s in enumerate(one.full_scale)))
             for one in _with_samples(campaign, how).recordings
         ]
-        return replace(campaign, recordings=tuple(recordings))
+        return campaign.with_recordings(recordings)
 
     return change
 
@@ -101,10 +101,7 @@ def relabelled(loads: Mapping[str, str]) -> Change:
     """Say of some drops that they had another load, by the names of their recordings."""
 
     def change(campaign: Campaign) -> Campaign:
-        drops = [
-            replace(drop, load=loads.get(recording.name, drop.load))
-            for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-        ]
+        drops = [replace(drop, load=loads.get(drop.recording.name, drop.load)) for drop in campaign.drops]
         return replace(campaign, drops=tuple(drops))
 
     return change
@@ -128,13 +125,7 @@ def without_drops(*files: str) -> Change:
     """Leave drops out, by the names of their recordings."""
 
     def change(campaign: Campaign) -> Campaign:
-        kept = [
-            (drop, recording)
-            for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-            if recording.name not in files
-        ]
-        drops, recordings = (drop for drop, _ in kept), (recording for _, recording in kept)
-        return replace(campaign, drops=tuple(drops), recordings=tuple(recordings))
+        return replace(campaign, drops=tuple(drop for drop in campaign.drops if drop.recording.name not in files))
 
     return change
 
@@ -147,7 +138,7 @@ def _like(sensor: Sensor, other: Sensor) -> Sensor:
 def _with_samples(campaign: Campaign, how: _How, only: str | None = None) -> Campaign:
     """Change the samples of all recordings, or of one."""
     changed = [_changed(one, how) if only in (None, one.name) else one for one in campaign.recordings]
-    return replace(campaign, recordings=tuple(changed))
+    return campaign.with_recordings(changed)
 
 
 def _changed(recording: Recording, how: _How) -> Recording:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
-from sprung.estimate import round_by_uncertainty
 from sprung.faults.bench import Bench
 from sprung.faults.changes import Change, described
 from sprung.faults.corners import corners
 from sprung.faults.hypotheses import Hypothesis
 from sprung.faults.suspicion import MATTERS
+from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]

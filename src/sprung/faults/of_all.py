@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimation import residual_records
 from sprung.faults.bench import Bench, CandidateFit
 from sprung.faults.changes import load_moved, nothing, relabelled
 from sprung.faults.hypotheses import Hypothesis
@@ -65,8 +64,10 @@ def exchanged_loads(bench: Bench) -> Iterator[Hypothesis]:
 
 def _better_labels(bench: Bench, trial: CandidateFit, loads: list[str]) -> dict[str, str]:
     """Give each drop the load with which this vehicle explains it best."""
-    decays, weights = bench.decays, trial.optimum.point.weights
-    costs = [trial.left_by([replace(decay, load=load) for decay in decays]) @ weights for load in loads]
+    decays, weights = bench.decays, trial.optimum.weights
+    costs = [
+        trial.optimum.residual_sums_of([replace(decay, load=load) for decay in decays]) @ weights for load in loads
+    ]
     return {decay.file: loads[int(best)] for decay, best in zip(decays, np.argmin(costs, axis=0), strict=True)}
 
 
@@ -119,9 +120,8 @@ def twist(bench: Bench) -> Fault | None:
     moving = np.array(body)[shape**2 > _MOVING]
     if not explained[wheels].all() or explained[moving].any():
         return None
-    point = base.optimum.point
     excess = -np.diag(bench.noise.level[body] ** 2 * base.tally.counts[:, body].sum(axis=0))
-    for record in residual_records(point.place.fitted(point.weights), bench.decays):
+    for record in base.optimum.residuals:
         left = np.nan_to_num(record[body])
         excess += left @ left.T
     part = float(shape @ excess @ shape) / max(float(np.trace(excess)), np.finfo(float).tiny)

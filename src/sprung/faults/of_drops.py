@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimate import Known
 from sprung.estimation import NEAR, fit_linear
 from sprung.faults.bench import Bench, CandidateFit
 from sprung.faults.changes import exchanged, relabelled, silenced, without_drops
@@ -20,6 +19,7 @@ from sprung.faults.measured import meanings
 from sprung.faults.of_channels import without
 from sprung.faults.tally import ResidualTable
 from sprung.preprocess import FreeDecay
+from sprung.uncertainty import KnownValue
 
 Real = NDArray[np.float64]
 
@@ -83,7 +83,7 @@ class WithoutDrop:
             if load != self.decay.load:
                 what = f"it moves like a drop with the load '{load}', not '{self.decay.load}'; it was taken for one"
                 fault = Fault("load-exchanged", file, what, "Correct load = ... of this drop in the campaign file.")
-                tally = self._tally(bench, self.trial.left_by([replace(self.decay, load=load)])[0])
+                tally = self._tally(bench, self.trial.optimum.residual_sums_of([replace(self.decay, load=load)])[0])
                 yield Hypothesis(fault, "repaired", relabelled({file: load}), tally, self.trial)
 
     def _other_vehicle(self, bench: Bench) -> Iterator[tuple[Fault, Real, int]]:
@@ -99,9 +99,9 @@ class WithoutDrop:
     def _fitted(self, bench: Bench, free: tuple[str, ...]) -> Real:
         """Give what is left of the drop by itself where some parameters may be others, shape (channel,)."""
         values = self.trial.optimum.parameters
-        known = {name: Known(value) for name, value in values.items() if name not in free}
+        known = {name: KnownValue(value) for name, value in values.items() if name not in free}
         optimum = fit_linear([self.decay], self.trial.models, bench.campaign.sensors, known, start=values, enough=NEAR)
-        left: Real = optimum.point.evaluation.residual[0]
+        left: Real = optimum.residual_sums[0]
         return left
 
     def _other_clock(self, bench: Bench) -> Iterator[tuple[Fault, Real, int]]:
@@ -109,7 +109,9 @@ class WithoutDrop:
         there = counts > 0
 
         def left(by: list[float]) -> Real:
-            return self.trial.left_by([replace(self.decay, rate=self.decay.rate * (1 + one)) for one in by])
+            return self.trial.optimum.residual_sums_of(
+                [replace(self.decay, rate=self.decay.rate * (1 + one)) for one in by]
+            )
 
         by, step = 0.0, _CLOCKS
         for _ in range(3):  # each time more finely
@@ -125,7 +127,7 @@ class WithoutDrop:
         counts, file = bench.base.tally.counts[self.drop], self.decay.file
         channels = np.flatnonzero(counts).tolist()
         silent = [without(self.decay, channel) for channel in channels]
-        states, left = self.trial.states_of(silent), self.trial.left_by(silent)
+        states, left = self.trial.optimum.states_of(silent), self.trial.optimum.residual_sums_of(silent)
         for channel, rest, state in zip(channels, left, states, strict=True):
             there = counts.copy()
             there[channel] = 0
@@ -149,7 +151,7 @@ class WithoutDrop:
         file, sensors = self.decay.file, bench.campaign.sensors
         pairs = list(combinations(np.flatnonzero(bench.base.tally.counts[self.drop]).tolist(), 2))
         swapped = [_swapped(self.decay, *pair) for pair in pairs]
-        for pair, left in zip(pairs, self.trial.left_by(swapped) if pairs else (), strict=True):
+        for pair, left in zip(pairs, self.trial.optimum.residual_sums_of(swapped) if pairs else (), strict=True):
             names = ", ".join(sensors[channel].channel for channel in pair)
             what = "the two are exchanged in this drop, as all other drops show; they were changed about"
             fault = Fault("exchanged", f"{file}: {names}", what, "Exchange the two columns of this recording.")

@@ -10,9 +10,9 @@ from scipy.fft import dct
 from scipy.stats import f as fisher
 
 from sprung.errors import Fault
-from sprung.estimation import FitResult, residual_records
+from sprung.estimation import FitResult
 from sprung.faults.tally import noise_of, tally_of
-from sprung.preprocess import FreeDecay, rounding
+from sprung.preprocess import FreeDecay, quantisation_variance
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -55,7 +55,7 @@ def walking_slowly(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seq
     if not tally_of([decay.file for decay in decays], decays, optimum).explained(noise_of(decays, optimum)):
         return ()
     slow, fast = slowness(decays, optimum)
-    fast = np.maximum(fast, rounding(decays))
+    fast = np.maximum(fast, quantisation_variance(decays))
     drops = np.sum([one.usable for one in decays], axis=0)
     most = _MORE * fisher.isf(_CHANCE, np.maximum(_SLOWEST * drops, 1), np.maximum((_LAST - _FIRST) * drops, 1))
     walks = (slow > most * fast) & [sensor.high_pass is None for sensor in sensors]
@@ -72,9 +72,8 @@ def walking_slowly(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seq
 
 def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Real]:
     """Give the mean power, (m/s²)², of what is left: its slowest half periods, and faster ones; shape (channel,) each."""
-    point = optimum.point
     slow = fast = drops = np.zeros(len(decays[0].values))
-    for record in residual_records(point.place.fitted(point.weights), decays):
+    for record in optimum.residuals:
         power = np.nan_to_num(dct(record, norm="ortho")[:, 1 : _LAST + 1]) ** 2
         slow, fast = slow + power[:, :_SLOWEST].mean(axis=1), fast + power[:, _FIRST:].mean(axis=1)
         drops = drops + ~np.isnan(record[:, 0])

@@ -8,10 +8,11 @@ from typing import Literal
 import numpy as np
 
 from sprung.campaign import Campaign
-from sprung.estimation import FaultScore, FitResult, corrections, score_faults
+from sprung.estimation import FitResult
 from sprung.faults.bench import colour_left
 from sprung.faults.corners import MATTERS as CORNER_MATTERS
 from sprung.faults.corners import Corners, corners
+from sprung.faults.fault_scores import FaultScore, score_faults
 from sprung.faults.tally import noise_of, tally_of
 from sprung.preprocess import FreeDecay
 
@@ -54,7 +55,7 @@ def suspicious(campaign: Campaign, decays: Sequence[FreeDecay], optimum: FitResu
         return "senseless"
     listed, found = _listed(campaign, decays, optimum)
     gain = max((one.gain for one in listed if abs(one.value) > MATTERS[one.kind]), default=0.0)
-    colour, enough = max(colour_left(decays, optimum), 1.0), max(SURE, MOST_OF_IT * tally.unexplained(noise))
+    colour, enough = max(colour_left(optimum), 1.0), max(SURE, MOST_OF_IT * tally.unexplained(noise))
     # That drops differ has been allowed for in what all corners gain together.
     together = found is not None and found.matter and found.gain > SURE and found.worth > enough
     if (gain > enough and gain > SURE * colour) or together:
@@ -88,7 +89,7 @@ def _listed(
 
 def _stands_out(optimum: FitResult, colour: float) -> bool:
     """Say whether one drop contradicts the others by far more than these each other, and than coloured noise does."""
-    squares, directions = corrections(*optimum.problem.by_drop(optimum.point))
+    squares, directions = optimum.drop_corrections
     *others, most = np.sort(squares).tolist()
     chance = colour * float(np.max(directions + _CHANCE * np.sqrt(2 * directions)))
     return most > chance and bool(others) and most > _FAR * max(float(np.mean(others)), 1.0)

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment import moments, sensor_noise
-from sprung.estimation import FitResult, residual_records
-from sprung.preprocess import FreeDecay
+from sprung.estimation import FitResult
+from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
 
 Real = NDArray[np.float64]
 
@@ -103,7 +102,7 @@ class ResidualTable:
 
 def tally_of(files: Sequence[str], decays: Sequence[FreeDecay], optimum: FitResult) -> ResidualTable:
     """Tell what a fit leaves; the rows are those of `files`, whether they were fitted or not."""
-    left = optimum.point.evaluation.residual
+    left = optimum.residual_sums
     residual, counts = np.zeros((len(files), left.shape[1])), np.zeros((len(files), left.shape[1]))
     for decay, of_decay in zip(decays, left, strict=True):
         row = files.index(decay.file)
@@ -119,9 +118,8 @@ def noise_of(decays: Sequence[FreeDecay], optimum: FitResult) -> Noise:
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
-    point = optimum.point
-    left = residual_records(point.place.fitted(point.weights), decays)
-    noise = sensor_noise(decays, moments(left))
+    left = optimum.residuals
+    noise = estimate_sensor_noise(decays, pool_moments(left))
     few = noise.samples < _FEW
     rough = np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
     level = np.sqrt(np.where(few, rough, noise.variance) + noise.added)

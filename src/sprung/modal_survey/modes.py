@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from sprung.campaign import Campaign, CampaignSource, campaign_from
 from sprung.display import shown
 from sprung.errors import Problems
-from sprung.estimate import Named
-from sprung.modal import DEFAULT
+from sprung.modal import DEFAULT_METHOD
 from sprung.modal_survey.identified import LoadModes, modal_analysis
 from sprung.modal_survey.recordings import RECORDINGS, is_recordings, modes_of_arrays, modes_of_recordings
 from sprung.preprocess import FreeDecay, prepare
 from sprung.progress import Progress, silent
+from sprung.uncertainty import NamedValues
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +29,7 @@ _SEVERAL = 3
 
 
 @shown
-class ModesByLoad(Named[LoadModes]):
+class ModesByLoad(NamedValues[LoadModes]):
     """The modes of every load, by its name."""
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -51,7 +51,7 @@ class ModesByLoad(Named[LoadModes]):
 
 def modes(
     source: CampaignSource | Real | Sequence[Real],
-    method: str = DEFAULT,
+    method: str = DEFAULT_METHOD,
     order: int | None = None,
     *,
     rate: float | None = None,

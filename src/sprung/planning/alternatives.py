@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimate import Known
-from sprung.planning.bound import Bound
-from sprung.planning.subject import PlannedDrop, PlannedTest
-from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, quantity
+from sprung.planning.cramer_rao import Bound
+from sprung.planning.setup import PlannedDrop, PlannedTest
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -92,7 +92,7 @@ class Alternative:
     cost: Cost | None = None
     times: float = 1.0
     added: tuple[PlannedDrop, ...] = ()
-    statements: Mapping[str, Known] = field(default_factory=dict)
+    statements: Mapping[str, KnownValue] = field(default_factory=dict)
     instead: tuple[PlannedDrop, ...] | None = None
     rate: float | None = None
 
@@ -144,9 +144,9 @@ def _weighings(test: PlannedTest) -> Iterator[Alternative]:
     subject = test.subject
     std = SCALES * subject.vehicle.total_mass
 
-    def weighed(*names: str) -> dict[str, Known]:
-        values = {name: quantity(name, subject.names, subject.values)[0] for name in names}
-        return {name: Known(value, std) for name, value in values.items() if name not in subject.known}
+    def weighed(*names: str) -> dict[str, KnownValue]:
+        values = {name: evaluate_quantity(name, subject.names, subject.values)[0] for name in names}
+        return {name: KnownValue(value, std) for name, value in values.items() if name not in subject.known}
 
     axles = weighed("front_axle_mass", "rear_axle_mass")
     total = weighed("total_mass") if axles else {}

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
-from sprung.modal import Diagram, stabilisation_diagram
+from sprung.modal import StabilisationDiagram, stabilisation_diagram
 from sprung.modal_survey import LoadModes
 from sprung.plot.drawing import chosen, drawn, single
 from sprung.report import (
@@ -51,7 +51,10 @@ def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | N
 
 
 def stabilisation(
-    of: LoadModes | Mapping[str, LoadModes] | Diagram | Result, load: str | None = None, *, axes: Axes | None = None
+    of: LoadModes | Mapping[str, LoadModes] | StabilisationDiagram | Result,
+    load: str | None = None,
+    *,
+    axes: Axes | None = None,
 ) -> Axes:
     """Draw a stabilisation diagram: natural frequencies of models of growing order, and where they stay.
 
@@ -103,16 +106,14 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     Raises
     ------
     InputError
-        If there is no such mode or load, its shape is not held, or the result was rejected.
+        If there is no such mode or load, or the result was rejected.
     """
+    if result.verdict.state == "reject":
+        do = "Read result.verdict.reasons; sprung.modes finds modes without a vehicle model."
+        raise InputError([Problem(f"mode {name}", "a rejected result, which has no modes", "accept or doubtful", do)])
     load = chosen(load or next(iter(result.modes)), list(result.modes), "load")
     modes = {one.name: one for one in result.modes[load]}
     found = modes[chosen(name, list(modes), "mode")]
-    if not found.motion or result.verdict.state == "reject":
-        what = "no shape" if not found.motion else "a rejected result"
-        raise InputError(
-            [Problem(f"mode {name}", what, "a result that holds its shape", "Identify the campaign again.")]
-        )
     car, axes = wire_car(result), single(axes)
     rise = (car.swing(found.motion) * np.exp(1j * phase)).real
     moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)
@@ -140,9 +141,11 @@ def _decays(result: Result, load: str | None) -> LoadDecays:
     return by_load[chosen(load or next(iter(by_load)), list(by_load), "load")]
 
 
-def _diagram(of: LoadModes | Mapping[str, LoadModes] | Diagram | Result, load: str | None) -> tuple[str, Diagram]:
+def _diagram(
+    of: LoadModes | Mapping[str, LoadModes] | StabilisationDiagram | Result, load: str | None
+) -> tuple[str, StabilisationDiagram]:
     match of:
-        case Diagram():
+        case StabilisationDiagram():
             return load or "", of
         case Result():
             decays = _decays(of, load)

@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.estimate import round_by_uncertainty
 from sprung.report.layout import figures, hanging, table
 from sprung.report.terminal import COLOURS
 from sprung.study import Comparison, Difference, Joint, Quantity, Scatter, Told
 from sprung.tables import unit_text
+from sprung.uncertainty import round_by_uncertainty
 
 _WORDS = {
     "none": "none to be seen",

@@ -8,7 +8,6 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.errors import Fault
-from sprung.estimate import Estimate, round_by_uncertainty
 from sprung.report.layout import hanging, laid_out, table
 from sprung.report.plan import next_line
 from sprung.report.words import record_of
@@ -23,6 +22,7 @@ from sprung.results import (
     ratios_table,
 )
 from sprung.tables import unit_text
+from sprung.uncertainty import Estimate, round_by_uncertainty
 
 COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
 

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 from rich.console import Group, RenderableType
 
-from sprung.estimate import round_by_uncertainty
 from sprung.report.layout import hanging, table
 from sprung.study import TrueValue
 from sprung.tables import unit_text
+from sprung.uncertainty import round_by_uncertainty
 
 _USUAL = 2.0
 """Standard errors within which 95 of 100 differences lie."""

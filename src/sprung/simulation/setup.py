@@ -22,9 +22,9 @@ from sprung.campaign import (
     recording_names,
 )
 from sprung.errors import Problems, did_you_mean
-from sprung.estimate import Known
 from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
 from sprung.simulation.sensing import Sensing
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ class Setup:
     loads: tuple[Load, ...]
     drops: tuple[Drop, ...]
     sensing: Sensing
-    known: dict[str, Known]
+    known: dict[str, KnownValue]
     model: ModelChoice
 
     @classmethod
@@ -118,7 +118,9 @@ class Setup:
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
         sensing = Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
-        stated = {"wheelbase": Known(vehicle.wheelbase)} | known_quantities(known or {}, "simulate: known", problems)
+        stated = {"wheelbase": KnownValue(vehicle.wheelbase)} | known_quantities(
+            known or {}, "simulate: known", problems
+        )
         _check_plausible(vehicle, chosen_sensors, all_loads, chosen_drops, stated, problems)
         return cls(
             vehicle,
@@ -148,22 +150,23 @@ class Setup:
         sensors, rate = self.sensing.sensors, self.sensing.rate
         parameters = self.vehicle.parameters
         S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
-        recordings = [
-            Recording(
-                name=name,
-                channels=tuple(sensor.channel for sensor in sensors),
-                values=self.sensing.readings(S @ acceleration, random),
-                start=0.0,
-                rate=rate,
-                history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
+        recorded = [
+            drop.with_recording(
+                Recording(
+                    name=name,
+                    channels=tuple(sensor.channel for sensor in sensors),
+                    values=self.sensing.readings(S @ acceleration, random),
+                    start=0.0,
+                    rate=rate,
+                    history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
+                )
             )
             for drop, name, acceleration in zip(drops, recording_names(drops), accelerations, strict=True)
         ]
         return Campaign(
             name=self.vehicle.name,
             sensors=sensors,
-            drops=tuple(drops),
-            recordings=tuple(recordings),
+            drops=tuple(recorded),
             loads=self.loads,
             wheelbase=self.known["wheelbase"],
             cg_height=self.vehicle.cg_height,
@@ -179,7 +182,7 @@ def _check_plausible(
     sensors: Sequence[Sensor],
     loads: Sequence[Load],
     drops: Sequence[Drop],
-    known: Mapping[str, Known],
+    known: Mapping[str, KnownValue],
     problems: Problems,
 ) -> None:
     """Add a problem for everything that a vehicle file may not state either."""

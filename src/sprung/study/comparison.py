@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from sprung.display import shown
 from sprung.errors import Problems
-from sprung.estimate import NORMAL_95
 from sprung.results import Result, load
 from sprung.study.scatter import Scatter, scatters, told_by
 from sprung.study.significance import Joint, holm, joint, two_sided
+from sprung.uncertainty import NORMAL_95
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS
 
 if TYPE_CHECKING:

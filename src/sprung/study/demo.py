@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Literal
 
 from sprung.campaign import Campaign
-from sprung.estimate import Known
 from sprung.simulation import simulate
+from sprung.uncertainty import KnownValue
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import SCHOOL_BUS, WHEELS, Sensor, Wheel
 
@@ -59,11 +59,11 @@ def demo_campaign(seed: int = 1) -> Campaign:
         offset=0.02 * STANDARD_GRAVITY,
         seed=seed,
         known={
-            "total_mass": Known(DEMO_VEHICLE.total_mass, 5.0),
-            "a": Known(DEMO_VEHICLE.a),
-            "b": Known(DEMO_VEHICLE.b),
-            "t_f2": Known(0.4),
-            "t_r2": Known(0.5),
+            "total_mass": KnownValue(DEMO_VEHICLE.total_mass, 5.0),
+            "a": KnownValue(DEMO_VEHICLE.a),
+            "b": KnownValue(DEMO_VEHICLE.b),
+            "t_f2": KnownValue(0.4),
+            "t_r2": KnownValue(0.5),
         },
     )
 

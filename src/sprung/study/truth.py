@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sprung.display import shown
-from sprung.estimate import Estimate
 from sprung.results import Result
+from sprung.uncertainty import Estimate
 from sprung.vehicle import Vehicle
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sprung.estimate import Estimate, round_by_uncertainty
+from sprung.uncertainty import Estimate, round_by_uncertainty
 
 _FINEST = 6
 """Decimal places of a frequency in Hz or a damping ratio: no test tells more, and what stands further right is rounding."""

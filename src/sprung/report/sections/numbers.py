@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from markupsafe import Markup
 
-from sprung.estimate import Estimate, round_by_uncertainty
 from sprung.report.pictures.parameters import half_width, limits_percent
 from sprung.report.sections.context import Context
 from sprung.report.words import symbol as parts_of
 from sprung.results import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
 from sprung.tables import Table, unit_text, value_cells
+from sprung.uncertainty import Estimate, round_by_uncertainty
 
 _CLOSE = 0.9
 """Correlation from which two parameters are to be read together."""
@@ -81,10 +81,8 @@ def _limit(limit: float | None, std: float | None) -> str:
     return "an open end" if limit is None else round_by_uncertainty(limit, std or abs(limit) or 1.0)[0]
 
 
-def known(result: Result) -> Context | None:
-    """Hold what was known beforehand against what was found."""
-    if result.setup is None:
-        return None
+def known(result: Result) -> Context:
+    """Return the table of what was known beforehand beside its estimates."""
     headers = ("quantity", "known before", "±", "found", "± ", "unit", "the recordings")
     rows = []
     for name, one in result.setup.known.items():

@@ -1,0 +1,205 @@
+"""Sums over samples of decaying exponentials, without any array of the size of the records.
+
+Whatever the fit needs from the samples are inner products of e^{λk} and k e^{λk} with each other and with the records; k counts
+the samples and λ is per sample. The first have closed forms (geometric sums). The second factorise: the sample
+k = bL + l has e^{λk} = e^{λbL} e^{λl}, so one product of the records, cut into blocks of L samples, with a table of L rows, and
+one with a table over the blocks, give them all.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex128]
+Real = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+BLOCK_LENGTH = 128
+"""Samples in a block: a usual record has a dozen of them, so that both tables are small."""
+
+_FLAT = 0.05
+"""Below this change of the exponent over the record the closed forms cancel, and the few sums are added up directly."""
+
+
+def exponential_moments(
+    exponent: Complex, group: Index, last: Complex, samples: Index, powers: int = 3
+) -> list[Complex]:
+    """Sum powers of k times exponentials over the samples k = 0 ... N - 1.
+
+    Parameters
+    ----------
+    exponent
+        Logarithm of z, shape (group, ...).
+    group
+        Which group each record belongs to, shape (record,).
+    last
+        z^N, shape (record, ...).
+    samples
+        N; broadcasts with that.
+    powers
+        How many sums are wanted.
+
+    Returns
+    -------
+    list of ndarray
+        Σ z^k, Σ k z^k and Σ k² z^k, as many as wanted, each of shape (record, ...).
+
+    Notes
+    -----
+    Geometric sums and their derivatives by the exponent. With 1 - z taken from expm1, only exponents that hardly change
+    over the record would cancel; those are summed directly.
+    """
+    flat = np.abs(exponent) * samples.max() < _FLAT
+    safe = np.where(flat, -1.0, exponent)
+    scale = (-1 / np.expm1(safe))[group]
+    found = [(1 - last) * scale]
+    if powers > 1:
+        z, end = np.exp(safe)[group], samples * last
+        found.append((z * found[0] - end) * scale)
+        found.append((z * (2 * found[1] + found[0]) - samples * end) * scale)
+    if flat.any():
+        counts = np.broadcast_to(samples, last.shape)
+        for where in map(tuple, np.argwhere(flat[group])):
+            k = np.arange(counts[where])
+            powers_of_z = np.exp(exponent[(group[where[0]], *where[1:])] * k)
+            for power, sums in enumerate(found):
+                sums[where] = (k**power * powers_of_z).sum()
+    return found[:powers]
+
+
+def exponential_gram(exponent: Complex, samples: Index, group: Index | None = None, secular: bool = True) -> Complex:
+    """Give the inner products of e^{λk} and k e^{λk} with each other, all of them centred over the record.
+
+    Centred, because every channel of every record has an offset of its own.
+
+    Parameters
+    ----------
+    exponent
+        λ of each group of records per sample, dimensionless, shape (group, mode).
+    samples
+        N of each record, shape (record,).
+    group
+        Which group each record belongs to, shape (record,); to one of its own where left out.
+    secular
+        Whether those with k e^{λk} are wanted.
+
+    Returns
+    -------
+    ndarray
+        Conjugated by rows; shape (record, twice as many modes, twice as many modes), or with half of both where only e^{λk} is
+        wanted.
+    """
+    powers = 3 if secular else 1
+    of_record = np.arange(len(exponent)) if group is None else group
+    count = samples[:, None]
+    last = np.exp(exponent[of_record] * count)
+    mean = exponential_moments(exponent, of_record, last, count, powers)
+    pair = exponential_moments(
+        exponent.conj()[:, :, None] + exponent[:, None, :],
+        of_record,
+        last.conj()[:, :, None] * last[:, None, :],
+        count[:, None],
+        powers,
+    )
+    if secular:
+        modes = exponent.shape[1]
+        whole = np.empty((len(last), 2 * modes, 2 * modes), dtype=np.complex128)
+        whole[:, :modes, :modes], whole[:, modes:, modes:] = pair[0], pair[2]
+        whole[:, :modes, modes:] = whole[:, modes:, :modes] = pair[1]
+        sums = np.concatenate(mean[:2], axis=1)
+    else:
+        whole, sums = pair[0], mean[0]
+    whole -= (sums.conj() / count)[:, :, None] * sums[:, None, :]
+    return whole
+
+
+def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
+    """Centre a record and cut it into blocks, the last one filled with zeros.
+
+    Parameters
+    ----------
+    values
+        Of any one unit, shape (channel, time).
+    usable
+        Which channels are used, shape (channel,); the others become zero.
+
+    Returns
+    -------
+    ndarray
+        In the unit of the values, shape (block, channel, BLOCK).
+    """
+    channels, samples = values.shape
+    count, rest = divmod(samples, BLOCK_LENGTH)
+    cut = np.zeros((count + (rest > 0), channels, BLOCK_LENGTH))
+    chosen = np.ones(channels, dtype=bool) if usable is None else usable
+    mean = np.where(chosen, values.mean(axis=1), 0.0)[:, None]
+    whole = values[:, : count * BLOCK_LENGTH].reshape(channels, count, BLOCK_LENGTH)
+    np.subtract(whole.swapaxes(0, 1), mean, out=cut[:count], where=chosen[:, None])
+    if rest:
+        np.subtract(values[:, count * BLOCK_LENGTH :], mean, out=cut[count, :, :rest], where=chosen[:, None])
+    return cut
+
+
+def correlate_with_exponentials(
+    blocked: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
+) -> Complex:
+    """Give the inner products of records with exponentials.
+
+    Parameters
+    ----------
+    blocked
+        Records cut by `split_into_blocks`, one after the other, those of one group beside each other, of any one
+        unit, shape (block, channel, BLOCK).
+    counts
+        How many blocks each record has, shape (record,).
+    exponent
+        λ of each group per sample, dimensionless, shape (group, mode).
+    group
+        Which group each record belongs to, ascending, shape (record,).
+    secular
+        Whether those with k e^{λk} are wanted.
+
+    Returns
+    -------
+    ndarray
+        Σ conj(e^{λk}) y_k and, if wanted, Σ k conj(e^{λk}) y_k, in the unit of the records; shape
+        (record, channel, 1 or 2, mode).
+    """
+    ends = np.cumsum(counts)
+    of_block = np.concatenate([np.arange(count) for count in counts])
+    inside = np.arange(BLOCK_LENGTH)[:, None]
+    flat = []
+    for number, poles in enumerate(exponent):
+        fine = exponentials(poles.conj())
+        table = np.concatenate([fine, inside * fine], axis=1) if secular else fine
+        own = ends[group == number]
+        begin = own[0] - counts[np.searchsorted(group, number)]
+        flat.append(blocked[begin : own[-1]].reshape(-1, BLOCK_LENGTH) @ table.view(float))
+    products = np.concatenate(flat).view(complex).reshape(*blocked.shape[:2], -1, exponent.shape[1])
+    coarse = np.exp(exponent.conj()[:, None] * (BLOCK_LENGTH * np.arange(counts.max())[:, None]))
+    products *= coarse[np.repeat(group, counts), of_block][:, None, None]
+    if secular:
+        products[:, :, 1] += (BLOCK_LENGTH * of_block)[:, None, None] * products[:, :, 0]
+    return np.add.reduceat(products, np.concatenate([[0], ends[:-1]]), axis=0)
+
+
+def exponentials(exponent: Complex, samples: int = BLOCK_LENGTH) -> Complex:
+    """Give e^{λk}, as products of a few exponentials.
+
+    Parameters
+    ----------
+    exponent
+        λ per sample, dimensionless, shape (mode,).
+    samples
+        How many.
+
+    Returns
+    -------
+    ndarray
+        Dimensionless, shape (samples, mode).
+    """
+    width = 1 << (samples.bit_length() // 2)
+    across = np.exp(exponent * (width * np.arange(-(-samples // width))[:, None]))
+    product = across[:, None] * np.exp(exponent * np.arange(width)[:, None])
+    return product.reshape(-1, exponent.size)[:samples]

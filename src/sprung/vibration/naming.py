@@ -1,0 +1,217 @@
+"""Names of modes, from their shapes: what moves, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag
+from scipy.optimize import linear_sum_assignment
+
+from sprung.vehicle import Matrices, Rows, Sensor
+from sprung.vibration.modes import Mode, eigenmodes, group_real_pairs, modal_assurance_criterion
+
+Real = NDArray[np.float64]
+
+_BODY = ("body bounce", "body pitch", "body roll")
+
+# Patterns of the wheels A front left, B front right, C rear left, D rear right. Left and right move alike in the first two
+# sets, oppositely in the other two; in each of these pairs either the axles move on their own, or all four wheels together.
+_HOP = {
+    ("front axle hop", "rear axle hop"): np.array([[1, 1, 0, 0], [0, 0, 1, 1]]) / np.sqrt(2),
+    ("wheel bounce", "wheel pitch"): np.array([[1, 1, 1, 1], [-1, -1, 1, 1]]) / 2,
+}
+_TRAMP = {
+    ("front axle tramp", "rear axle tramp"): np.array([[1, -1, 0, 0], [0, 0, 1, -1]]) / np.sqrt(2),
+    ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
+}
+
+_ENGINE = "engine bounce"
+
+MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), _ENGINE)
+"""Every name that a mode may get. Of the eight names of wheel modes one vehicle has four: for hop and for tramp either those of
+the axles or those of all four wheels."""
+
+_PAPER_NAMES = {
+    **{name: name for name in (*_BODY, "wheel bounce", "wheel pitch", "wheel roll")},
+    "rear axle hop": "wheel bounce",
+    "rear axle tramp": "wheel pitch",
+    "front axle hop": "wheel roll",
+    "front axle tramp": "wheel articulation",
+    "wheel warp": "wheel articulation",
+}
+"""Table 3 of the paper: the shapes of the modes of the bus of Tables 4 and 5, and the names it gives to their frequencies."""
+
+LEAST_SIMILARITY = 0.6
+"""Modal assurance criterion with a template below which a shape gets no name. A wheel that hops alone is half hop and half
+tramp of its axle, 0.5, and so are the wheels of an axle a quarter of a period apart: neither name would be true."""
+
+_TIE = 1e-9
+"""Part of the similarity by which a set of names has to be better than one before it: more than rounding."""
+
+_HALF_WHEELBASE, _HALF_TRACK = 1.35, 0.7
+"""Levers, m, where no sensor tells better ones: those of a car. They only weigh angles against displacements."""
+
+
+def paper_name(name: str | None) -> str | None:
+    """Return what the paper's Table 3 calls a mode.
+
+    Parameters
+    ----------
+    name
+        One of `MODE_NAMES`, or None.
+
+    Returns
+    -------
+    str or None
+        None where the paper has no such mode.
+    """
+    return None if name is None else _PAPER_NAMES.get(name)
+
+
+def name_modes(
+    modes: Sequence[Mode], half_wheelbase: float = _HALF_WHEELBASE, half_track: float = _HALF_TRACK
+) -> tuple[Mode, ...]:
+    """Name each mode after the template that its shape is most like, no name twice but for pairs of real poles.
+
+    Names are assigned to all modes of a vehicle at once, so that the sum of their similarities is largest.
+
+    Bounce against pitch of the body: the mode with the larger share of bounce once the pitch angle is multiplied by
+    half the wheelbase. That is, both ends of the body move the same way in body bounce, opposite ways in body pitch:
+    the point at rest lies outside the wheelbase in the first, between the axles in the second. Whether a mode is one of
+    the two at all is decided by their shares together.
+
+    Wheel modes: on a vehicle with unlike axles each axle vibrates on its own, its wheels in phase (hop) or in opposition
+    (tramp). Where the axles are alike all four wheels move by the same amount: bounce, pitch, roll or warp. Whichever is
+    closer to the shapes is taken, for hop and tramp separately; the limit is where one axle moves 0.41 (tan 22.5°) times
+    as far as the other.
+
+    Parameters
+    ----------
+    modes
+        Shapes in the coordinates of a vehicle: its seven, or these and its engine's.
+    half_wheelbase, half_track
+        Levers that make pitch and roll angles comparable with displacements, m.
+
+    Returns
+    -------
+    tuple of Mode
+        The same modes, in the order of undamped natural frequency; ``name`` None where a shape is like no template.
+    """
+    groups = group_real_pairs(modes)
+    if not groups:
+        return ()
+    # The body counts at its four corners, and an engine as much, of which it is a large part.
+    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])[: len(groups[0][0].shape)]
+    shapes = [scale[:, None] * np.stack([mode.shape for mode in group], axis=1) for group in groups]
+    best, name_of = -np.inf, dict[int, str]()
+    for (hop, of_hop), (tramp, of_tramp) in product(_HOP.items(), _TRAMP.items()):
+        names = (*_BODY, *hop, *tramp, _ENGINE)
+        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T)
+        # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
+        alike = np.stack(
+            [
+                np.append(
+                    modal_assurance_criterion(shape[:7], templates).mean(axis=0),
+                    modal_assurance_criterion(shape, _alone(scale)).mean(axis=0),
+                )
+                for shape in shapes
+            ]
+        )
+        rows, columns = linear_sum_assignment(alike, maximize=True)
+        total = float(alike[rows, columns].sum())
+        if total > best + _TIE:
+            best = total
+            like = alike.copy()
+            like[:, :2] = alike[:, :2].sum(axis=1, keepdims=True)
+            found = zip(rows.tolist(), columns.tolist(), strict=True)
+            name_of = {row: names[column] for row, column in found if like[row, column] >= LEAST_SIMILARITY}
+    return tuple(replace(mode, name=name_of.get(i)) for i, group in enumerate(groups) for mode in group)
+
+
+def _alone(scale: Real) -> Real:
+    """Return the shapes in which nothing but one of the coordinates after the seventh moves, shape (coordinate, shape)."""
+    return np.eye(len(scale))[:, 7:]
+
+
+def compute_modes(matrices: Matrices) -> tuple[Mode, ...]:
+    """Give the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), with their names.
+
+    Parameters
+    ----------
+    matrices
+        M, C and K.
+
+    Returns
+    -------
+    tuple of Mode
+        Shapes in its coordinates, in the order of undamped natural frequency; the two real poles of an overdamped
+        mode follow each other under one name.
+
+    Examples
+    --------
+    >>> from sprung.vehicle import SCHOOL_BUS
+    >>> [f"{mode.name} {mode.frequency:.3f}" for mode in compute_modes(SCHOOL_BUS.matrices())][:3]
+    ['body roll 1.071', 'body bounce 2.015', 'body pitch 2.812']
+    """
+    sprung, pitch, roll = np.diag(matrices.M)[:3]
+    return name_modes(eigenmodes(matrices), float(np.sqrt(pitch / sprung)), float(np.sqrt(roll / sprung)))
+
+
+def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
+    """Turn shapes at the sensors into shapes in the seven coordinates, by least squares.
+
+    Parameters
+    ----------
+    modes
+        Shapes at the sensors, in their order.
+    sensors
+        Where they sit.
+    a
+        Front axle to the body's centre of gravity, m; unknown, the body turns about the middle of its sensors, which
+        stand around the middle of the wheelbase.
+
+    Returns
+    -------
+    tuple of Mode
+        Without names and spreads; a coordinate no sensor tells of stays at rest.
+    """
+    places = _body_places(sensors)
+    if a is None:
+        a = -float(places[:, 0].min() + places[:, 0].max()) / 2 if len(places) else 0.0
+    rows = Rows.of([sensor.row for sensor in sensors], ("a",)).at([a])
+    inverse = np.linalg.pinv(rows)
+    return tuple(replace(mode, shape=inverse @ mode.shape, name=None, uncertainty=None) for mode in modes)
+
+
+def name_modes_at_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
+    """Name modes identified from records: `expand_to_coordinates`, then `name_modes`, with the sensors' spread as levers.
+
+    Parameters
+    ----------
+    modes
+        Shapes at the sensors, in their order.
+    sensors
+        Where they sit.
+    a
+        Front axle to the body's centre of gravity, m, if known.
+
+    Returns
+    -------
+    tuple of Mode
+        Shapes in the seven coordinates, named, in the order of undamped natural frequency.
+    """
+    spread = np.ptp(_body_places(sensors), axis=0) / 2 if len(_body_places(sensors)) else np.zeros(2)
+    return name_modes(
+        expand_to_coordinates(modes, sensors, a),
+        float(spread[0]) or _HALF_WHEELBASE,
+        float(spread[1]) or _HALF_TRACK,
+    )
+
+
+def _body_places(sensors: Sequence[Sensor]) -> Real:
+    places = [sensor.position[:2] for sensor in sensors if sensor.on == "body" and sensor.position is not None]
+    return np.array(places, dtype=float).reshape(-1, 2)
