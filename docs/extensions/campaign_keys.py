@@ -13,7 +13,7 @@ from sprung.campaign.keys import EXAMPLES, UNIT
 from sprung.campaign.published import campaign_schema
 from sprung.campaign.schema import VehicleFileSchema
 from sprung.report import drawing_svg, vehicle_sketch
-from sprung.report.style import alone_style
+from sprung.report.drawing.style import alone_style
 from sprung.study import demo_campaign
 from sprung.vehicle import PARAMETERS
 
