@@ -9,8 +9,8 @@ from typing import Any
 
 import tomli_w
 
-from sprung.campaign.keys import EXAMPLES, UNIT
-from sprung.campaign.published import campaign_schema
+from sprung.campaign.json_schema import campaign_schema
+from sprung.campaign.key_examples import EXAMPLES, UNIT
 from sprung.campaign.schema import VehicleFileSchema
 from sprung.report import drawing_svg, vehicle_sketch
 from sprung.report.drawing.style import alone_style

@@ -26,11 +26,11 @@ from random import Random
 from types import CodeType, FrameType
 from typing import Any, TypeAlias
 
-from damage import spoilt
+from damage import find_non_number
 from readers import LONGEST, READERS, Broken, Reader, sound_files, tried
 
 import sprung
-from sprung.formats.refusals import allowance
+from sprung.formats.reading_errors import memory_limit
 
 Arc: TypeAlias = tuple[CodeType, int, int]
 
@@ -108,14 +108,14 @@ def fuzz(reader: Reader, folder: Path, seconds: float, seed: int) -> None:
         if time.monotonic() > end:
             return
         known = number < len(ahead)
-        data = ahead[number] if known else spoilt([random.choice(files), random.choice(files[-30:])], random)
+        data = ahead[number] if known else find_non_number([random.choice(files), random.choice(files[-30:])], random)
         (folder / "current").write_bytes(data)
         peak = _resident()
         try:
             with following:
                 read = tried(reader, place, data)
             grown = _resident() - peak
-            if number > len(ahead) and grown > allowance(len(data)):
+            if number > len(ahead) and grown > memory_limit(len(data)):
                 raise Broken(f"{grown / 1e6:.0f} MB outside of Python for a file of {len(data)} bytes")
         except Broken as broken:
             _say("broken", _keep(folder, data, "broken"), f"{_where(broken)}: {broken}")

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import sprung
-from sprung.campaign.keys import KEYS
+from sprung.campaign.key_examples import KEYS
 from sprung.campaign.schema import KNOWABLE
 from sprung.vehicle import PARAMETERS
 

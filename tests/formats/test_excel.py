@@ -12,7 +12,7 @@ import pytest
 import sprung
 from command_line import copy_sedan
 from sprung.errors import InputError
-from sprung.formats import Table, optional, read_table
+from sprung.formats import Table, libraries, read_table
 from sprung.formats.excel import ExcelFormat
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -143,7 +143,7 @@ def test_without_the_library_it_says_how_to_install_it(tmp_path: Path, monkeypat
     def missing(name: str) -> None:
         raise ImportError(f"No module named '{name}'")
 
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     assert 'pip install "sprung[excel]"' in refusal(path)
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, BinaryIO
 import numpy as np
 
 from sprung.errors import InputError, Problem
-from sprung.formats.refusals import reading
-from sprung.formats.store import Store, by_ranges, samples_at_once
+from sprung.formats.reading_errors import reading
+from sprung.formats.sample_store import Store, samples_per_read, store_by_ranges
 from sprung.formats.table import Table
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def _store(path: Path, sound: _Sound) -> Store:
         values /= half
         return values
 
-    return by_ranges(sound.channels, sound.count, get, samples_at_once(block))
+    return store_by_ranges(sound.channels, sound.count, get, samples_per_read(block))
 
 
 def _raw(content: bytes, sound: _Sound) -> NDArray[np.generic]:

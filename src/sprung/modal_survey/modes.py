@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Campaign, CampaignSource, campaign_from
+from sprung.campaign import Campaign, CampaignSource, resolve_campaign
 from sprung.display import shown
 from sprung.errors import Problems
 from sprung.modal import DEFAULT_METHOD
@@ -122,7 +122,7 @@ def modes(
         )
         return ModesByLoad({RECORDINGS: found})
     _refuse("arrays and recordings", start=start)
-    campaign = campaign_from(source, progress)
+    campaign = resolve_campaign(source, progress)
     decays = prepare(campaign, progress).decays
     if not decays:
         problems = Problems()
