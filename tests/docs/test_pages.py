@@ -91,7 +91,7 @@ def test_the_public_names_are_described(built: Path) -> None:
     for name in (
         "vehicle.PARAMETERS",
         "estimation.FitResult",
-        "vibration.Modes",
+        "modal.ModeSet",
         "study.Comparison",
         "errors.InputError",
     ):
