@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 GROUP = "sprung.formats"
 HEAD = 8192
@@ -51,7 +51,7 @@ class Format(Protocol):
         """Say whether the file is of this format, from its name and its first bytes."""
         ...
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read it.
 
         Raises
@@ -68,7 +68,7 @@ def formats() -> dict[str, Format]:
     return {name: entry.load()() for name, entry in found.items()}
 
 
-def read_table(path: Path, others: Collection[str] = ()) -> Table:
+def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
     """Read a file in whatever known format it is.
 
     Parameters
@@ -80,7 +80,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> Table:
 
     Returns
     -------
-    Table
+    SampleTable
 
     Raises
     ------

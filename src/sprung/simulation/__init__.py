@@ -3,11 +3,10 @@
 from sprung.simulation.arguments import default_drops, default_sensors
 from sprung.simulation.bump_passage import half_sine_bumps
 from sprung.simulation.decay_campaign import free_decays
-from sprung.simulation.drops import DEFAULT_HEIGHT, simulate
+from sprung.simulation.drops import simulate
 from sprung.simulation.setup import SimulationSetup
 
 __all__ = [
-    "DEFAULT_HEIGHT",
     "SimulationSetup",
     "default_drops",
     "default_sensors",

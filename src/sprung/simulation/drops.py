@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sprung.campaign import Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
+from sprung.campaign import DEFAULT_HEIGHT, Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
 from sprung.simulation.setup import SimulationSetup, check_not_negative
@@ -24,9 +24,6 @@ from sprung.vehicle import (
     nonlinear_elements,
     simulate_nonlinear_drops,
 )
-
-DEFAULT_HEIGHT = 0.05
-"""Height of the blocks where a drop does not say, m."""
 
 
 def simulate(
