@@ -48,11 +48,28 @@ class Format(Protocol):
     """
 
     def claims(self, path: Path, head: bytes) -> bool:
-        """Say whether the file is of this format, from its name and its first bytes."""
+        """Return whether a file is of this format.
+
+        Parameters
+        ----------
+        path
+            The file.
+        head
+            Its first 8192 bytes.
+        """
         ...
 
     def read(self, path: Path) -> SampleTable:
-        """Read it.
+        """Read a file.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        SampleTable
 
         Raises
         ------
@@ -63,7 +80,7 @@ class Format(Protocol):
 
 
 def formats() -> dict[str, Format]:
-    """Give every installed format by its name, sprung's own first."""
+    """Return every installed format by its name, sprung's own first."""
     found = {entry.name: entry for entry in (*_OWN, *entry_points(group=GROUP))}
     return {name: entry.load()() for name, entry in found.items()}
 
