@@ -38,7 +38,7 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.response import Motion, affine_response, drive_over_half_sine_bump, free_decay
 from sprung.vehicle.sensor import Sensor
-from sprung.vehicle.stepping import Sensitivities, Stepper, Trajectory
+from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
@@ -85,7 +85,6 @@ __all__ = [
     "Positive",
     "Row",
     "Rows",
-    "Sensitivities",
     "Sensor",
     "Stepper",
     "Tracks",

@@ -1,7 +1,7 @@
-"""Drops and decays of a vehicle with nonlinear forces: stepped so finely that nothing of it shows.
+"""Drops and decays of a vehicle with nonlinear elements, by time steps short enough to leave no visible error.
 
-With dry friction, uneven dampers or springs that stiffen there are no exact pieces to put together as in `drop_from_blocks`.
-All motions are stepped at once; the ground, which pushes and never pulls, is one more force.
+With dry friction, rebound damping or progressive springs there are no linear segments as in `drop_from_blocks`. All motions
+are stepped at once; the ground, which pushes and never pulls, is one more nonlinear element.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 
-_FINEST = 2e-4
-"""s of a step at most."""
+_LONGEST_STEP = 2e-4
+"""s."""
 
-_SETTLING = 60
-"""Newton steps to find how a vehicle rests on its blocks."""
+_ITERATIONS = 60
+"""Newton steps at most to find the rest position on blocks."""
 
 
 class BlockSupport(NamedTuple):
@@ -46,7 +46,7 @@ class BlockSupport(NamedTuple):
     load
         What is on it.
     wheels
-        Which of them have blocks under them.
+        The wheels with blocks under them.
     height
         Of the blocks, m.
     """
@@ -64,14 +64,14 @@ def simulate_nonlinear_drops(
     start: float = 0.0,
     gravity: float = STANDARD_GRAVITY,
 ) -> list[Motion]:
-    """Release a vehicle from blocks, several times, and sample what follows.
+    """Simulate several drops from blocks of a vehicle with nonlinear elements.
 
     Parameters
     ----------
     vehicle
-        With forces that no matrix carries.
+        With nonlinear elements.
     blocks
-        How it rests each time; friction holds nothing then.
+        How it rests before each drop, without friction forces.
     step
         Sampling interval, s.
     samples
@@ -84,34 +84,31 @@ def simulate_nonlinear_drops(
     Returns
     -------
     list of Motion
-        Displacement from where the vehicle rests with its load, velocity and acceleration, each (coordinate, samples).
+        Displacement from static equilibrium with the load, velocity and acceleration, each (coordinate, samples).
     """
-    names, values = tuple(vehicle.parameters), np.array(list(vehicle.parameters.values()))
-    on_ground = ground_contact_elements(vehicle.extras)
-    loads = list({block.load.name: block.load for block in blocks}.values())
-    models = [_model(vehicle, names, on_ground, load, gravity) for load in loads]
-    kind = np.array([[load.name for load in loads].index(block.load.name) for block in blocks])
-    n = len(models[0].sag(values))
-    begin = np.zeros((len(blocks), 2 * n))
-    for state, block, which in zip(begin, blocks, kind, strict=True):
-        rest = Ground.under(vehicle, block.load, gravity).rest(_heights(block)) + models[which].sag(values)
-        state[:n] = _at_rest(models[which], values, rest, _heights(block))
-    return _sampled(models, kind, values, begin, step, samples, start)
+    values = np.array(list(vehicle.parameters.values()))
+    models, kind = _models(vehicle, [block.load for block in blocks], ground_contact_elements(vehicle.extras), gravity)
+    states = np.zeros((len(blocks), models[0].state_size))
+    for state, block, which in zip(states, blocks, kind, strict=True):
+        heights = np.array([block.height if station in block.wheels else 0.0 for station in WHEELS])
+        linear = Ground.under(vehicle, block.load, gravity).rest(heights) + models[which].sag(values)
+        state[: len(linear)] = _rest(models[which], values, linear, heights)
+    return _sample(models, kind, values, states, step, samples, start)
 
 
 def simulate_nonlinear_decays(
     vehicle: Vehicle, loads: Sequence[Load], states: Array, step: float, samples: int
 ) -> list[Motion]:
-    """Let a vehicle vibrate from given states, tyres always on the ground.
+    """Simulate free decays of a vehicle with nonlinear elements from given states, its tyres always on the ground.
 
     Parameters
     ----------
     vehicle
-        With forces that no matrix carries.
+        With nonlinear elements.
     loads
-        What is on it each time.
+        What is on it in each decay.
     states
-        {X, Ẋ} from where it rests with its load, SI, shape (decay, 2n); friction holds nothing at first.
+        {X, Ẋ} from static equilibrium with the load, SI, shape (decay, 2n), without friction forces.
     step
         Sampling interval, s.
     samples
@@ -122,69 +119,67 @@ def simulate_nonlinear_decays(
     list of Motion
         One for each state.
     """
-    names, values = tuple(vehicle.parameters), np.array(list(vehicle.parameters.values()))
-    different = list({load.name: load for load in loads}.values())
-    models = [_model(vehicle, names, (), load, STANDARD_GRAVITY) for load in different]
-    kind = np.array([[load.name for load in different].index(load.name) for load in loads])
-    begin, sag = states.copy(), np.array([model.sag(values) for model in models])[kind]
-    begin[:, : sag.shape[1]] += sag
-    return _sampled(models, kind, values, begin, step, samples, 0.0)
+    values = np.array(list(vehicle.parameters.values()))
+    models, kind = _models(vehicle, loads, (), STANDARD_GRAVITY)
+    initial, sag = states.copy(), np.array([model.sag(values) for model in models])[kind]
+    initial[:, : sag.shape[1]] += sag
+    return _sample(models, kind, values, initial, step, samples, 0.0)
 
 
-def _model(
-    vehicle: Vehicle, names: tuple[str, ...], more: Sequence[NonlinearElement], load: Load, gravity: float
-) -> NonlinearModel:
+def _models(
+    vehicle: Vehicle, loads: Sequence[Load], contact: Sequence[NonlinearElement], gravity: float
+) -> tuple[list[NonlinearModel], NDArray[np.int64]]:
+    """Return a model for each different load, and which of them each of the loads has."""
     elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights)
-    forces = [*nonlinear_elements(vehicle.tracks, vehicle.extras), *more]
-    return NonlinearModel.of(elements, forces, names, load, vehicle.heights, gravity)
+    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras), *contact]
+    names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
+    models = [NonlinearModel.of(elements, nonlinear, names, load, vehicle.heights, gravity) for load in different]
+    order = [load.name for load in different]
+    return models, np.array([order.index(load.name) for load in loads])
 
 
-def _heights(block: BlockSupport) -> Array:
-    return np.array([block.height if station in block.wheels else 0.0 for station in WHEELS])
-
-
-def _at_rest(model: NonlinearModel, values: Array, rest: Array, heights: Array) -> Array:
-    """Find how a vehicle rests on blocks, X from the empty one at rest on the ground; shape (coordinate,)."""
+def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) -> Array:
+    """Return the rest position on blocks, X from the empty vehicle at rest on the ground, shape (coordinate,)."""
     forces, K = model.forces, model.linear.matrices(values).K
-    G, offsets = forces.rows.at(values), model.offsets(values)[0]
+    G, offsets = forces.rows.at(values), model.travel_offsets(values)[0]
     tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
-    pull = -K @ model.sag(values)
-    pull[WHEELS_AT] -= tyres * heights
-    lifted = np.zeros(forces.number)
-    lifted[-4:] = heights
-    X = rest
-    for _ in range(_SETTLING):
-        travel = G @ X - lifted + offsets
-        nothing = np.zeros_like(travel)
-        answer = forces.answer(values, ElementInput(travel, nothing, nothing, nothing))
-        left = K @ X + pull + G.T @ answer.force
-        X = X - np.linalg.solve(K + (G.T * answer.by_travel) @ G, left)
-        if np.abs(left).max() < 1e-9 * np.abs(pull).max():
+    load = -K @ model.sag(values)
+    load[WHEELS_AT] -= tyres * heights
+    raised = np.zeros(forces.number)
+    raised[-4:] = heights
+    X = start
+    for _ in range(_ITERATIONS):
+        travel = G @ X - raised + offsets
+        zero = np.zeros_like(travel)
+        found = forces.evaluate(values, ElementInput(travel, zero, zero, zero))
+        residual = K @ X + load + G.T @ found.force
+        X = X - np.linalg.solve(K + (G.T * found.by_travel) @ G, residual)
+        if np.abs(residual).max() < 1e-9 * np.abs(load).max():
             break
     return X
 
 
-def _sampled(
+def _sample(
     models: Sequence[NonlinearModel],
     kind: NDArray[np.int64],
     values: Array,
-    begin: Array,
+    states: Array,
     step: float,
     samples: int,
     start: float,
 ) -> list[Motion]:
-    every = max(math.ceil(step / _FINEST), 1)
-    memories = np.zeros((len(begin), len(models[0].forces.remembering)))
+    every = max(math.ceil(step / _LONGEST_STEP), 1)
+    with_memory = models[0].forces.with_memory
+    memories = np.zeros((len(states), len(with_memory)))
     if start > 0:
-        first = Stepper.of(models, [start / every] * len(models), kind, values).follow(begin, memories, every)
-        begin, memories = first.states[-1], first.memories[-1][:, models[0].forces.remembering]
+        before = Stepper.of(models, [start / every] * len(models), kind, values).integrate(states, memories, every)
+        states, memories = before.states[-1], before.memories[-1][:, with_memory]
     stepper = Stepper.of(models, [step / every] * len(models), kind, values)
-    path = stepper.follow(begin, memories, every * (samples - 1))
+    trajectory = stepper.integrate(states, memories, every * (samples - 1))
     motions = []
     for drop, which in enumerate(kind.tolist()):
-        states, forces = path.states[::every, drop].T, path.forces[::every, drop].T
-        rows = models[which].accelerations(values)[0]
-        acceleration = rows @ np.vstack([states, forces, np.ones((1, states.shape[1]))])
+        X, forces = trajectory.states[::every, drop].T, trajectory.forces[::every, drop].T
+        acceleration = models[which].accelerations(values)[0] @ np.vstack([X, forces, np.ones((1, X.shape[1]))])
         sag = models[which].sag(values)[:, None]
-        motions.append(Motion(states[: len(sag)] - sag, states[len(sag) :], acceleration))
+        motions.append(Motion(X[: len(sag)] - sag, X[len(sag) :], acceleration))
     return motions
