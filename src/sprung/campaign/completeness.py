@@ -82,7 +82,7 @@ def missing_in_file(draft: Draft[CampaignFile]) -> Iterator[Missing]:
             where = draft.where("sensor", index)
             yield Missing(_item(("sensor", index, "position")), Problem(where, "no position", "where it sits, m", do))
     for index, load in zip(draft.numbered("load"), file.load, strict=True):
-        if load.name != EMPTY.name and not load.described and ("load", index, "items") not in draft.gaps:
+        if load.name != EMPTY.name and not load.is_described and ("load", index, "items") not in draft.gaps:
             where, do = draft.where("load", index), "A load needs items = [...] or added = {...}."
             yield Missing(_item(("load", index, "items")), Problem(where, "neither items nor added", "what it is", do))
     for index, drop in zip(draft.numbered("drop"), file.drop, strict=True):

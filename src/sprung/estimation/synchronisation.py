@@ -23,7 +23,8 @@ from sprung.errors import SprungError
 from sprung.estimation.closed_form import Likelihood
 from sprung.estimation.fit import FitResult
 from sprung.preprocess import DropObservation, FreeDecay, FromFlight
-from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, with_separate_tracks
+from sprung.simulation import drop_from_blocks
+from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
 

@@ -9,10 +9,12 @@ import numpy as np
 
 from sprung.campaign import Campaign, Drop, Given, ModelChoice
 from sprung.errors import Problems
+from sprung.simulation.ground import tyre_rates
+from sprung.simulation.half_sine_bump import drive_over_half_sine_bump
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, Wheel, drive_over_half_sine_bump, tyre_rates
+from sprung.vehicle import Load, Sensor, Vehicle, Wheel
 
 
 def half_sine_bumps(

@@ -13,21 +13,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.simulation.ground import Ground
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.elements import (
+from sprung.vehicle import (
+    WHEELS,
+    WHEELS_AT,
+    ElementInput,
+    Load,
+    Motion,
     NonlinearElement,
+    NonlinearModel,
+    Stepper,
+    Vehicle,
+    Wheel,
     ground_contact_elements,
     nonlinear_elements,
     seven_degrees_of_freedom,
 )
-from sprung.vehicle.force_laws import ElementInput
-from sprung.vehicle.ground import Ground
-from sprung.vehicle.kinematics import WHEELS, WHEELS_AT, Wheel
-from sprung.vehicle.load import Load
-from sprung.vehicle.nonlinear import NonlinearModel
-from sprung.vehicle.response import Motion
-from sprung.vehicle.stepping import Stepper
-from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
 
