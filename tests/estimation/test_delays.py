@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from sprung.campaign import LoggerClock
 from sprung.estimation import FitResult, fit_linear, uncertainty_of
 from sprung.estimation.closed_form import Likelihood
-from sprung.preprocess import FreeDecay, FromFlight, prepare
+from sprung.preprocess import FlightLikelihood, FreeDecay, prepare
 from sprung.simulation import free_decays
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, parse_record
 
@@ -38,9 +38,9 @@ def clocks(late: float = 0.0, std: float = 0.05, follows: float = 0.0) -> tuple[
             str(number),
             group,
             0.0,
-            late=late if number == 1 else 0.0,
-            std=std,
-            follows={"c_sf": follows * (number == 1)},
+            delay=late if number == 1 else 0.0,
+            delay_std=std,
+            d_delay_d_parameter={"c_sf": follows * (number == 1)},
         )
         for number, group in enumerate(groups)
     )
@@ -69,7 +69,7 @@ def flown(those: list[FreeDecay], at: Real) -> list[FreeDecay]:
     random = np.random.default_rng(5)
     for i in (0, 1):
         told = random.standard_normal((17, 3)) / (0.003 * (at @ ONTO)[:, None])
-        flight = FromFlight(APART, at @ ONTO, told @ random.standard_normal(3), told @ told.T, 0.0, 0)
+        flight = FlightLikelihood(APART, at @ ONTO, told @ random.standard_normal(3), told @ told.T, 0.0, 0)
         those[i] = replace(those[i], flight=flight)
     return those
 
@@ -80,7 +80,7 @@ def test_what_flights_tell_adds_to_cost_gradient_and_information() -> None:
     plain, told = likelihood(decays()), likelihood(with_flights)
     before, after = (fit.at(values).evaluate(WEIGHTS) for fit in (plain, told))
     flights = [one.flight for one in with_flights if one.flight is not None]
-    missed = sum(flight.missed(values @ ONTO) for flight in flights)
+    missed = sum(flight.chi_square_at(values @ ONTO) for flight in flights)
     assert cost(told, values) - cost(plain, values) == pytest.approx(missed, rel=1e-9)
     assert after.penalty - before.penalty == pytest.approx(missed, rel=1e-9)
     gradient = sum(ONTO @ (flight.gradient - flight.information @ ((values - at) @ ONTO)) for flight in flights)
@@ -124,7 +124,7 @@ def test_delays_are_where_brute_force_finds_them() -> None:
     found = likelihood(those).at(values).delays(WEIGHTS, np.zeros((15, 15)))[0]
 
     def at(late: Real) -> float:
-        told = [replace(clock, late=float(one), std=1e-9) for clock, one in zip(clocks(), late, strict=True)]
+        told = [replace(clock, delay=float(one), delay_std=1e-9) for clock, one in zip(clocks(), late, strict=True)]
         residual, _ = likelihood([replace(those[0], clocks=tuple(told))]).at(values).misfit(WEIGHTS)
         return float((residual @ WEIGHTS).sum() + np.sum((late / 0.05) ** 2))
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
-from sprung.formats import optional
+from sprung.formats import libraries
 from sprung.formats.mdf import MdfFormat
 
 if TYPE_CHECKING:
@@ -71,7 +71,7 @@ def test_channels_on_another_clock_are_read_at_the_times_of_the_others(tmp_path:
     np.testing.assert_array_equal(table.take()[0], VALUES[0])
     np.testing.assert_allclose(table.take()[1], np.sin(2 * np.pi * 3 * TIME), atol=1e-4)
     np.testing.assert_allclose(table.take()[2], -table.take()[1], atol=1e-12)
-    assert table.resampled[1].share == pytest.approx(0.1)
+    assert table.resampled[1].rate_ratio == pytest.approx(0.1)
     assert table.notes == ("on another clock, and read at the times of the others: slow, slower",)
 
 
@@ -80,7 +80,7 @@ def test_channels_too_slow_for_wheels_are_spoilt(tmp_path: Path) -> None:
     table = read(written(tmp_path, *groups))
     assert table.channels == ("a", "slow")
     assert np.isnan(table.take()[1:]).all()
-    assert str(table.spoilt(1)) == (
+    assert str(table.find_non_number(1)) == (
         "x.mf4: channel 'slow': found 50 samples from 0 to 2.45 s at 20 Hz; expected the clock that most samples of "
         "the file are on, 200 samples from 0 to 0.0995 s at 2000 Hz. "
         "Export all channels that are needed at one rate and over one time."
@@ -151,7 +151,7 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     def missing(name: str) -> None:
         raise ImportError(f"No module named '{name}'")
 
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'pip install "sprung\[mdf\]"'):
         MdfFormat().read(path)
 

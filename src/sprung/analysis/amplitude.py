@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.analysis.stand import Fitted
-from sprung.assessment import BodyMotion, ModeAmplitude, mode_amplitudes
+from sprung.assessment import BodyMotion, ModeAmplitude, follow_modes
 from sprung.progress import Progress, silent
 from sprung.vehicle import EMPTY
 
@@ -32,5 +32,5 @@ def amplitudes_of(
     grounded = replace(choice, unilateral_tyres=False)
     model = grounded.nonlinear_models[load] if choice.is_nonlinear else choice.linear_models[load]
     own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
-    found = mode_amplitudes(fitted.fit, model, fitted.campaign.sensors, own, progress)
+    found = follow_modes(fitted.fit, model, fitted.campaign.sensors, own, progress)
     return tuple(replace(one, load=load) for one in found)

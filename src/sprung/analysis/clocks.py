@@ -8,16 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.analysis.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 from sprung.campaign import Campaign, LoggerClock
 from sprung.checking import ClockReport
-from sprung.estimation import (
-    FitResult,
-    FitStatistics,
-    clear_of_splines,
-    mask_unsynchronised,
-    synchronise_at_release,
-    synchronise_by_decay,
-)
+from sprung.estimation import FitResult, FitStatistics, clear_of_splines
 from sprung.preprocess import FreeDecay, Prepared
 from sprung.vehicle import Vehicle, with_separate_tracks
 
@@ -52,7 +46,7 @@ def clock_reports(
 def _reported(clocks: Sequence[LoggerClock], late: Real, covariance: Real) -> Iterator[ClockReport]:
     """Refer every clock to the first one: whose sample was taken later shows less than it would."""
     variance = np.diag(covariance) + covariance[0, 0] - 2 * covariance[0]
-    own = np.array([clock.ahead for clock in clocks]) - late
+    own = np.array([clock.offset for clock in clocks]) - late
     for clock, ahead, squared in zip(clocks, (own - own[0]).tolist(), variance.tolist(), strict=True):
         std = float(np.hypot(max(squared, 0.0) ** 0.5, _DRIFT if ahead else 0.0))
         yield ClockReport(clock.name, ahead, std)
@@ -94,7 +88,7 @@ def set_clocks(
         timed = synchronise_by_decay(released, optimum)
         known = {
             decay.file: [
-                replace(clock, ahead=_moment(late, optimum.parameters))
+                replace(clock, offset=_moment(late, optimum.parameters))
                 for clock, late in zip(decay.clocks, other.clocks, strict=True)
             ]
             for decay, other in zip(released, timed, strict=True)
@@ -130,7 +124,7 @@ def told_by_flights(
     """
     if not any(decay.clocks for decay in prepared.decays):
         return None
-    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.seen}
+    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.observations}
     flown = _released(
         campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], optimum
     )
@@ -141,7 +135,8 @@ def told_by_flights(
     found = fit(decays)
     values = with_separate_tracks(found.parameters)
     missed = sum(
-        one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
+        one.chi_square_at(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)]))
+        for one in told
     )
     worse = max(float(np.max(found.noise / optimum.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
     return (decays, found) if found.converged and worse < _NO_WORSE else None
@@ -152,7 +147,7 @@ def _released(
 ) -> list[FreeDecay]:
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
     vehicle = Vehicle.nearest(optimum.parameters, name=campaign.name, **campaign.heights.by_key)
-    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.seen}
+    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.observations}
     return [
         synchronise_at_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
         for decay in decays
@@ -161,7 +156,7 @@ def _released(
 
 def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:
     """Give what a logger's clock showed at a moment that is the same for all, s."""
-    return clock.ahead - clock.expected(parameters)
+    return clock.offset - clock.expected_delay(parameters)
 
 
 def _told_before(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> FreeDecay:
@@ -173,9 +168,14 @@ def _told_before(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Ma
     known = {clock.name: clock for clock in before}
     if not all(clock.name in known for clock in decay.clocks):
         return decay
-    earliest = min((clock.ahead - _moment(known[clock.name], parameters) for clock in decay.clocks), default=0.0)
+    earliest = min((clock.offset - _moment(known[clock.name], parameters) for clock in decay.clocks), default=0.0)
     clocks = [
-        replace(clock, late=old.late + clock.ahead - old.ahead - earliest, std=old.std, follows=old.follows)
+        replace(
+            clock,
+            delay=old.delay + clock.offset - old.offset - earliest,
+            delay_std=old.delay_std,
+            d_delay_d_parameter=old.d_delay_d_parameter,
+        )
         for clock, old in ((clock, known[clock.name]) for clock in decay.clocks)
     ]
     return replace(decay, clocks=tuple(clocks))

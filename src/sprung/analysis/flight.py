@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
-from sprung.preprocess import Flight, FreeDecay, Prepared, flights
+from sprung.preprocess import Flight, FreeDecay, Prepared, find_flights
 from sprung.progress import Progress, Step, silent
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
 from sprung.simulation import BlockSupport, simulate_nonlinear_drops
@@ -104,7 +104,7 @@ def fly(
     Flown or None
         None where no drop can be used so, or where the vehicle did something during the fall that the model does not have.
     """
-    found = flights(prepared.decays, prepared.seen)
+    found = find_flights(prepared.decays, prepared.observations)
     if not any(found):
         return None
     progress(Step("using the fall"))

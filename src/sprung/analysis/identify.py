@@ -20,8 +20,16 @@ from sprung.analysis.planned import to_design
 from sprung.analysis.profiles import check_asked, profiles_of
 from sprung.analysis.stand import Fitted
 from sprung.analysis.starting import start_values
-from sprung.assessment import BodyMotion, Misfit, ModeAmplitude, body_motions, judge, judge_residuals, validate_drops
-from sprung.campaign import CampaignSource, campaign_from
+from sprung.assessment import (
+    BodyMotion,
+    Misfit,
+    ModeAmplitude,
+    body_motions,
+    cross_validate_drops,
+    decide_verdict,
+    estimate_model_error,
+)
+from sprung.campaign import CampaignSource, resolve_campaign
 from sprung.checking import check_prepared
 from sprung.errors import Omissions
 from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
@@ -142,7 +150,7 @@ def identify_campaign(
     """
     tracks, extras = model_options(tracks, extras)
     begin = start_values(start)
-    campaign = campaign_from(campaign, progress)
+    campaign = resolve_campaign(campaign, progress)
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
     options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
@@ -191,10 +199,10 @@ def result_of(
     looked_at = check_prepared(campaign, prepared)
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, choice.known)
-    misfit = judge_residuals(fit, decays)
+    misfit = estimate_model_error(fit, decays)
     motions = body_motions(fit, decays, campaign.sensors)
-    validated = validate_drops(optimum, fit, decays, channels, motions)
-    verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
+    validated = cross_validate_drops(optimum, fit, decays, channels, motions)
+    verdict = decide_verdict(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(profile, optimum, fit, choice.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]

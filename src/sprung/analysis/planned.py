@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.analysis.stand import Fitted
-from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, subject_of_fit
+from sprung.planning import PlannedDrop, PlannedTest, completed_test, setup_from_fit
 from sprung.simulation import DEFAULT_HEIGHT
 from sprung.vehicle import LOAD_MASS, parameter_names
 
@@ -18,7 +18,7 @@ def to_design(fitted: Fitted) -> PlannedTest:
     campaign, decays = fitted.campaign, fitted.prepared.decays
     choice = fitted.choice.with_terms(fitted.choice.linear_terms)
     fit = fitted.fit.only(parameter_names(choice.tracks, choice.terms))
-    subject = subject_of_fit(
+    subject = setup_from_fit(
         fit,
         choice.tracks,
         choice.terms,
@@ -32,7 +32,7 @@ def to_design(fitted: Fitted) -> PlannedTest:
     used = {decay.file for decay in decays}
     dropped = [
         PlannedDrop(campaign.load(seen.drop.load), seen.wheels, seen.drop.height or DEFAULT_HEIGHT)
-        for seen in fitted.prepared.seen
+        for seen in fitted.prepared.observations
         if seen.recording.name in used
     ]
-    return campaign_of_fit(subject, fit, dropped)
+    return completed_test(subject, fit, dropped)

@@ -21,7 +21,7 @@ from sprung.estimation import (
     uncertainty_of,
 )
 from sprung.faults import Hypothesis, Suspicion, suspicious
-from sprung.preprocess import FreeDecay, Prepared, leave_out, prepare
+from sprung.preprocess import FreeDecay, Prepared, exclude_drops, prepare
 from sprung.progress import Progress, Step
 from sprung.selection import (
     ENGINE,
@@ -141,12 +141,12 @@ def begun(
     wanted = choose_structure(campaign, tracks, None if extras is None else tuple(extras))
     # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
     choice = wanted.with_terms(tuple(extra for extra in wanted.linear_terms if extra != ENGINE))
-    prepared = leave_out(campaign, prepare(campaign, progress) if changes else prepared, left_out)
+    prepared = exclude_drops(campaign, prepare(campaign, progress) if changes else prepared, left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
         campaign,
         prepared,
-        lambda known: leave_out(campaign, prepare(known, progress), left_out),
+        lambda known: exclude_drops(campaign, prepare(known, progress), left_out),
         lambda decays: _ascend(campaign, choice, decays, None, NEAR, progress, guess),
     )
     start = None if first is None else first.parameters

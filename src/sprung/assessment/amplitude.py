@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment.bodies import BodyMotion, body_rows
-from sprung.assessment.sliding import Trace, follow_mode
+from sprung.assessment.body_motion import BodyMotion, body_rows
+from sprung.assessment.mode_tracking import AmplitudeCurve, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.progress import Progress, counted, silent
@@ -62,13 +62,13 @@ class ModeAmplitude:
     mode: str
     frequency: float
     damping_ratio: float
-    records: tuple[Trace, ...]
-    simulated: tuple[Trace, ...]
-    model: Trace
+    records: tuple[AmplitudeCurve, ...]
+    simulated: tuple[AmplitudeCurve, ...]
+    model: AmplitudeCurve
     load: str = EMPTY.name
 
 
-def mode_amplitudes(
+def follow_modes(
     fit: FitStatistics,
     model: LinearModel | NonlinearModel,
     sensors: Sequence[Sensor],

@@ -9,11 +9,12 @@ from typing import Any, Literal
 
 import numpy as np
 
-from sprung.campaign import FILE, SCHEMA_FILE, kind_of, schema_text
+from sprung.campaign import CAMPAIGN_FILE, SCHEMA_FILE, drop_kind, schema_text
 from sprung.display import shown
+from sprung.drafting.detected_drop import DetectedDrop, SensorPlace
+from sprung.drafting.detection import RejectedEvent
 from sprung.errors import Problem
 from sprung.files import atomic_write
-from sprung.preprocess import FoundDrop, Place, Refusal
 from sprung.vehicle import Wheel
 
 
@@ -47,7 +48,7 @@ class DraftSensor:
     """
 
     channel: str
-    on: Place
+    on: SensorPlace
     corner: Wheel | None
     unit: str | None
     written: str | None
@@ -84,14 +85,14 @@ class DraftDrop:
     window: tuple[float, float] | None
     load: str | None
     wheels: tuple[Wheel, ...]
-    found: FoundDrop
+    found: DetectedDrop
     notes: tuple[str, ...]
     proposed: bool = False
 
     @property
     def kind(self) -> str | None:
         """What such a drop is called."""
-        return kind_of(self.wheels) if self.wheels else None
+        return drop_kind(self.wheels) if self.wheels else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,14 +122,14 @@ class DraftFile:
     start: float
     end: float
     drops: int
-    refused: tuple[Refusal, ...]
+    refused: tuple[RejectedEvent, ...]
     events: int
     left_out: Mapping[str, str]
 
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Draft:
+class DraftCampaign:
     """A drafted campaign.
 
     Attributes
@@ -166,7 +167,7 @@ class Draft:
     @property
     def path(self) -> Path:
         """Where the campaign file goes."""
-        return self.folder / FILE
+        return self.folder / CAMPAIGN_FILE
 
     def write(self, *, overwrite: bool = False) -> Path:
         """Write the campaign file and, for editors, its JSON Schema beside it; whole or not at all.
@@ -186,7 +187,7 @@ class Draft:
         InputError
             If such files would be overwritten, with their list, or the folder cannot be written to.
         """
-        files = {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()}
+        files = {SCHEMA_FILE: schema_text().encode(), CAMPAIGN_FILE: self.text.encode()}
         atomic_write(self.folder, files, overwrite=overwrite)
         return self.path
 

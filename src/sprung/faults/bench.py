@@ -204,7 +204,7 @@ def without_looking_at_wheels(campaign: Campaign, decays: Sequence[FreeDecay]) -
     # The clocks of several loggers have been set in these, and only in these.
     shifts = [round((starts.get(one.file, one.start) - one.start) * one.rate) for one in decays]
     return tuple(
-        one.moved(max(shift, -one.earlier.shape[1])) if shift < one.samples / 2 else one
+        one.shifted(max(shift, -one.earlier.shape[1])) if shift < one.samples / 2 else one
         for one, shift in zip(decays, shifts, strict=True)
     )
 

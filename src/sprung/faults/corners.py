@@ -13,8 +13,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FaultScore, FitResult, LikelihoodAt, identifiable_subspace
-from sprung.preprocess import FreeDecay, by_corner
+from sprung.estimation import FitResult, LikelihoodAt, identifiable_subspace
+from sprung.faults.fault_scores import FaultScore
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -151,7 +152,7 @@ def corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequence[S
     place, point, problem = optimum.point.place, optimum.point, optimum.problem
     if not isinstance(place, LikelihoodAt):
         return None
-    changes = [by_corner(decay) for decay in decays]
+    changes = [differentiate_by_cutoff(decay) for decay in decays]
     open_ = np.flatnonzero(np.any([change.any(axis=1) for change in changes], axis=0)).tolist()
     if not open_:
         return None

@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 
 from sprung.errors import Fault
-from sprung.estimation import FaultScore
 from sprung.faults.bench import CandidateFit
 from sprung.faults.changes import Change
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.tally import ResidualTable
 
 Remedy = Literal["repaired", "left out", "named"]

@@ -13,7 +13,7 @@ from sprung.faults.changes import Change, advanced, described, scaled
 from sprung.faults.coupled import of_corners, with_corner
 from sprung.faults.heard import ChannelPrediction
 from sprung.faults.suspicion import SURE
-from sprung.preprocess import coupled
+from sprung.preprocess import is_ac_coupled
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS
 
@@ -98,7 +98,7 @@ def meanings(heard: ChannelPrediction, noise: float, walks: Real | None = None) 
         return
     yield from _turned_or_scaled(heard)
     yield _late(heard)
-    if all(coupled(decay)[heard.channel] for decay in heard.decays):
+    if all(is_ac_coupled(decay)[heard.channel] for decay in heard.decays):
         yield _coupled_otherwise(heard)
     yield from _other_wheels(heard)
     yield _other_place(heard)

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimation import FaultScore
 from sprung.faults.bench import Bench, CandidateFit
 from sprung.faults.changes import Change, exchanged, silenced
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.heard import ChannelPrediction
 from sprung.faults.hypotheses import Hypothesis
 from sprung.faults.measured import ChannelFaultHypothesis, Numbers, meanings

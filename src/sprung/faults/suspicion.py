@@ -8,10 +8,11 @@ from typing import Literal
 import numpy as np
 
 from sprung.campaign import Campaign
-from sprung.estimation import FaultScore, FitResult, score_faults
+from sprung.estimation import FitResult
 from sprung.faults.bench import colour_left
 from sprung.faults.corners import MATTERS as CORNER_MATTERS
 from sprung.faults.corners import Corners, corners
+from sprung.faults.fault_scores import FaultScore, score_faults
 from sprung.faults.tally import noise_of, tally_of
 from sprung.preprocess import FreeDecay
 

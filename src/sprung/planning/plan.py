@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import InputError, SprungError
 from sprung.planning.alternatives import Alternative, Cost, alternatives, bound
-from sprung.planning.bound import Bound, two_figures
-from sprung.planning.subject import PlannedTest
+from sprung.planning.cramer_rao import Bound, two_figures
+from sprung.planning.setup import PlannedTest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -97,7 +98,8 @@ class Plan:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the standard uncertainty to expect of each parameter, %, a row for each alternative; NaN: not determined."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         rows = {row.label: {} if row.bound is None else dict(row.bound.percents) for row in self.rows}
         return pd.DataFrame.from_dict(rows, orient="index").astype(float).rename_axis("alternative")
@@ -129,7 +131,7 @@ class Plan:
         return {**head, **told, "unidentifiable": silent}
 
 
-def draw_up(test: PlannedTest, wanted: float = 1.0) -> Plan:
+def tabulate_alternatives(test: PlannedTest, wanted: float = 1.0) -> Plan:
     """Draw up the table of alternatives to a test.
 
     Parameters
@@ -161,7 +163,7 @@ def draw_up(test: PlannedTest, wanted: float = 1.0) -> Plan:
     )
 
 
-def draw_up_rejected(
+def tabulate_rejected(
     vehicle: str, wanted: float, noise: Mapping[str, float], rate: float, reasons: Sequence[str]
 ) -> Plan:
     """Return a plan that promises nothing: every bound would be one of a vehicle that is not known.

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import ROUGHLY, Recording, merged
+from sprung.campaign import CLOCK_STD, Recording, merge_loggers
 from sprung.errors import Fault
-from sprung.preprocess.release import find_release
+from sprung.preprocess.release import detect_release
 
 _STANDS_OUT = 8.0
 """Peak over noise from which one logger's release is believed: others saw it too, so that it need not be so clear."""
@@ -25,7 +25,7 @@ _TOLD = 0.005
 """s to which such a logger has told it."""
 
 
-def align(recording: Recording) -> Recording:
+def align_loggers(recording: Recording) -> Recording:
     """Put what several loggers recorded on one clock, to within some milliseconds: the fit finds the rest.
 
     Parameters
@@ -40,8 +40,8 @@ def align(recording: Recording) -> Recording:
     """
     if not recording.parts:
         return recording
-    known = {clock.name: _Told(clock.ahead, clock.std) for clock in recording.clocks}
-    set_before = any(clock.std < ROUGHLY for clock in recording.clocks)
+    known = {clock.name: _Told(clock.offset, clock.delay_std) for clock in recording.clocks}
+    set_before = any(clock.delay_std < CLOCK_STD for clock in recording.clocks)
     told = [known.get(part.name) if set_before else _release(part) for part in recording.parts]
     if not any(told):  # nothing but that they were all started has tied them
         return recording
@@ -56,22 +56,22 @@ def align(recording: Recording) -> Recording:
         for part, moment in zip(recording.parts, told, strict=True)
         if moment is None and part.usable.any()
     ]
-    together = merged(recording, [None if one is None else one.moment for one in told])
+    together = merge_loggers(recording, [None if one is None else one.moment for one in told])
     if together.values.shape[1] < _SHORTEST * together.rate:
         what = "the recordings of its loggers overlap too little; the drop is left out"
         fault = Fault("clock", recording.name, what, "Name the files of one and the same drop, each of some seconds.")
         nothing = np.full_like(recording.values, np.nan)
         return replace(recording, values=nothing, faults=(*recording.faults, fault))
     stds = iter([one.std for one in told if one is not None])
-    clocks = tuple(replace(clock, std=next(stds)) for clock in together.clocks)
+    clocks = tuple(replace(clock, delay_std=next(stds)) for clock in together.clocks)
     return replace(together, clocks=clocks, faults=(*recording.faults, *faults))
 
 
-def lively(recording: Recording) -> NDArray[np.bool_]:
+def active_channels(recording: Recording) -> NDArray[np.bool_]:
     """Say which channels tell the release: of several loggers those that showed it at once; shape (channel,)."""
     told = np.ones(len(recording.channels), dtype=bool)
     for clock in recording.clocks:
-        told[list(clock.channels)] = clock.std <= _TOLD
+        told[list(clock.channels)] = clock.delay_std <= _TOLD
     return told if (told & recording.usable).any() else np.ones_like(told)
 
 
@@ -87,8 +87,8 @@ def _release(part: Recording) -> _Told | None:
     if not part.usable.any():
         return None
     values = part.values[part.usable]
-    found = find_release(values, part.rate, _STANDS_OUT)
+    found = detect_release(values, part.rate, _STANDS_OUT)
     if found is None:
         return None
     peak = np.abs(values - found.rest.level[:, None]).max()
-    return _Told(part.start + found.sample / part.rate, _TOLD if peak > _LIVELY else ROUGHLY)
+    return _Told(part.start + found.sample / part.rate, _TOLD if peak > _LIVELY else CLOCK_STD)

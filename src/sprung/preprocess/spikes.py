@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from sprung.campaign import Recording
+from sprung.campaign import MAX_MISSING, Recording, fill_short_gaps
 from sprung.errors import Fault
-from sprung.formats import MOST_MISSING, filled
 from sprung.preprocess.release import resolution
 
 Real = NDArray[np.float64]
@@ -41,7 +40,7 @@ _ROUNDS = 4
 """How often it is looked again: the second of two spikes stands off once the first is filled in."""
 
 
-def without_spikes(recording: Recording) -> Recording:
+def remove_spikes(recording: Recording) -> Recording:
     """Fill in the spikes of a recording.
 
     Parameters
@@ -55,7 +54,7 @@ def without_spikes(recording: Recording) -> Recording:
         With a fault for each channel that had spikes; one that had too many is left out.
     """
     if recording.parts:
-        parts = tuple(without_spikes(part) for part in recording.parts)
+        parts = tuple(remove_spikes(part) for part in recording.parts)
         new = [
             fault for part, old in zip(parts, recording.parts, strict=True) for fault in part.faults[len(old.faults) :]
         ]
@@ -68,13 +67,15 @@ def without_spikes(recording: Recording) -> Recording:
         found |= more
         values = values.copy()
         for channel in np.flatnonzero(found.any(axis=1)).tolist():
-            values[channel] = filled(np.where(found[channel], np.nan, recording.values[channel]), recording.rate)
+            values[channel] = fill_short_gaps(
+                np.where(found[channel], np.nan, recording.values[channel]), recording.rate
+            )
     if not found.any():
         return recording
     faults = []
     for channel in np.flatnonzero(found.any(axis=1)).tolist():
         begins = np.flatnonzero(np.diff(found[channel].astype(int), prepend=0) == 1)
-        lost = found[channel].mean() > MOST_MISSING or np.isnan(values[channel]).any()
+        lost = found[channel].mean() > MAX_MISSING or np.isnan(values[channel]).any()
         done = "the channel is left out of this drop" if lost else "they were filled in from the samples around"
         many = f"{begins.size} spike{'s' if begins.size > 1 else ''}, {found[channel].sum()} samples far off the others"
         what = f"{many}, the first at {recording.start + begins[0] / recording.rate:.6g} s; {done}"

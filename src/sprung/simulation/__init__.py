@@ -1,20 +1,20 @@
 """Campaigns from a vehicle: drops from blocks, free decays and bumps, measured with real sensors."""
 
-from sprung.simulation.bumps import half_sine_bumps
-from sprung.simulation.decays import free_decays
+from sprung.simulation.arguments import default_drops, default_sensors
+from sprung.simulation.bump_passage import half_sine_bumps
+from sprung.simulation.decay_campaign import free_decays
 from sprung.simulation.drops import DEFAULT_HEIGHT, simulate
 from sprung.simulation.ground import static_wheel_loads, tyre_rates
 from sprung.simulation.half_sine_bump import drive_over_half_sine_bump
 from sprung.simulation.linear_drop import DropMotion, drop_from_blocks
 from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_drops
-from sprung.simulation.records import default_drops, default_sensors
-from sprung.simulation.setup import Setup
+from sprung.simulation.setup import SimulationSetup
 
 __all__ = [
     "DEFAULT_HEIGHT",
     "BlockSupport",
     "DropMotion",
-    "Setup",
+    "SimulationSetup",
     "default_drops",
     "default_sensors",
     "drive_over_half_sine_bump",

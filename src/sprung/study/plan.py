@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from sprung.analysis import fit_campaign, result_of, to_design
-from sprung.campaign import Campaign, CampaignSource, Drop, Given, ModelChoice, campaign_from, read_vehicle
+from sprung.campaign import Campaign, CampaignSource, Drop, KnownValueLike, ModelChoice, read_vehicle, resolve_campaign
 from sprung.errors import InputError, Problems
-from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
+from sprung.planning import MeasurementSetup, Plan, PlannedDrop, PlannedTest, tabulate_alternatives, tabulate_rejected
 from sprung.progress import Progress, Step, silent
 from sprung.selection import choose_structure
-from sprung.simulation import DEFAULT_HEIGHT, Setup
+from sprung.simulation import DEFAULT_HEIGHT, SimulationSetup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
 
@@ -37,7 +37,7 @@ def plan(
     rate: float | None = None,
     noise: float | Mapping[str, float] | None = None,
     duration: float | None = None,
-    known: Mapping[str, Given] | None = None,
+    known: Mapping[str, KnownValueLike] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
     progress: Progress = silent,
 ) -> Plan:
@@ -82,7 +82,7 @@ def plan(
                 do = f"Leave {name} out, or plan from a vehicle."
                 problems.add(f"plan: {name}", found, "nothing: a campaign brings its own along", do)
         problems.raise_if_any()
-        return _plan_further(campaign_from(source, progress), wanted, progress)
+        return _plan_further(resolve_campaign(source, progress), wanted, progress)
     if isinstance(source, Vehicle):
         vehicle = source
     else:
@@ -96,7 +96,7 @@ def plan(
     rate = RATE if rate is None else rate
     noise = NOISE if noise is None else noise
     duration = DURATION if duration is None else duration
-    setup = Setup.of(
+    setup = SimulationSetup.of(
         vehicle,
         sensors=sensors,
         loads=loads,
@@ -138,10 +138,12 @@ def plan(
         setup.model.tracks or ("separate" if vehicle.tracks == "separate" else None),
         own if setup.model.extras is None else None,
     )
-    subject = Subject(vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration)
+    subject = MeasurementSetup(
+        vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration
+    )
     loaded = {load.name: load for load in setup.loads}
     planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
-    return draw_up(PlannedTest(subject, planned), wanted)
+    return tabulate_alternatives(PlannedTest(subject, planned), wanted)
 
 
 def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
@@ -150,9 +152,9 @@ def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan
     result = result_of(fitted, progress=progress)
     if result.verdict.state == "reject":
         rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
-        return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
+        return tabulate_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
     progress(Step("computing the bounds of the alternatives"))
-    return draw_up(to_design(fitted), wanted)
+    return tabulate_alternatives(to_design(fitted), wanted)
 
 
 def _describes_vehicle(path: str | os.PathLike[str]) -> bool:

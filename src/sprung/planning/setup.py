@@ -1,0 +1,233 @@
+"""What is to be tested, and what a planned drop of it would tell.
+
+The information in a drop is that of its decay without noise, at the true parameters, weighted with the noise that the
+sensors will have: the same exact derivatives that the fit uses, so that the bound is the one the fit will meet. Drops are
+independent, so their informations add; repeating a drop multiplies its own, and half the noise makes four times as much.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.display import shown
+from sprung.errors import InputError, Problem
+from sprung.estimation import Coordinates, Likelihood, PriorsAndConstraints
+from sprung.preprocess import FreeDecay, unknown_baseline
+from sprung.simulation import drop_from_blocks
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import (
+    LOAD_MASS,
+    PARAMETERS,
+    LinearModel,
+    Load,
+    Rows,
+    Sensor,
+    Tracks,
+    Vehicle,
+    Wheel,
+    parameter_names,
+    seven_degrees_of_freedom,
+)
+
+Real = NDArray[np.float64]
+
+_SHORTEST = 0.5
+"""s of free vibration that a recording must hold to be of any use."""
+
+
+class PlannedDrop(NamedTuple):
+    """One release off the blocks, not done yet.
+
+    Attributes
+    ----------
+    load
+        What is on the vehicle.
+    wheels
+        With blocks under them.
+    height
+        Of the blocks, m.
+    """
+
+    load: Load
+    wheels: tuple[Wheel, ...]
+    height: float
+
+
+@shown
+@dataclass(frozen=True, eq=False)
+class MeasurementSetup:
+    """A vehicle to test, what is known of it beforehand, and how it will be measured.
+
+    Attributes
+    ----------
+    vehicle
+        As it is, or as it is thought to be.
+    tracks, extras
+        The model that will be fitted.
+    known
+        Known beforehand, the wheelbase among it.
+    sensors
+        The sensors.
+    noise
+        Of each sample, m/s² root-mean-square, shape (channel,).
+    rate
+        Samples per second.
+    duration
+        Of the recording after the release, s.
+    inflation
+        By how many times less the records tell than they would with white residuals.
+    """
+
+    vehicle: Vehicle
+    tracks: Tracks
+    extras: tuple[str, ...]
+    known: Mapping[str, KnownValue]
+    sensors: tuple[Sensor, ...]
+    noise: Real
+    rate: float
+    duration: float = 3.2
+    inflation: float = 1.0
+
+    def __post_init__(self) -> None:
+        nothing = [
+            Problem(f"vehicle {self.vehicle.name}: {name}", "0", "a positive number", "Give it a small value instead.")
+            for name, value in zip(self.names, self.values, strict=True)
+            if PARAMETERS[name].positive and not value > 0
+        ]
+        if nothing:
+            raise InputError(nothing)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The parameters of the model, and the masses of loads that are known with an uncertainty."""
+        masses = [name for name in self.known if name.startswith(LOAD_MASS)]
+        return (*parameter_names(self.tracks, self.extras), *masses)
+
+    @cached_property
+    def values(self) -> Real:
+        """Their values, SI, shape (parameter,)."""
+        masses = {name: one.value for name, one in self.known.items() if name.startswith(LOAD_MASS)}
+        return np.array(
+            [masses[name] if name in masses else getattr(self.vehicle, name) for name in self.names], dtype=float
+        )
+
+    @cached_property
+    def priors(self) -> PriorsAndConstraints:
+        """What is known beforehand, in the coordinates of the fit: an extra counts in parts of a spring or damper rate."""
+        return PriorsAndConstraints(Coordinates.beside(self.names, self.vehicle.parameters), self.known)
+
+    @cached_property
+    def u(self) -> Real:
+        """The coordinates, shape (parameter,)."""
+        return self.priors.coordinates.of(self.values)
+
+    @cached_property
+    def slopes(self) -> Real:
+        """Derivative of each value by its coordinate, shape (parameter,)."""
+        return self.priors.coordinates.slopes(self.u)
+
+    @cached_property
+    def free(self) -> Real:
+        """Directions of the coordinates that exact knowledge leaves free, shape (parameter, direction)."""
+        return self.priors.free(self.u)
+
+    def of_statements(self, statements: Mapping[str, KnownValue]) -> Real:
+        """Give the information in uncertain statements; shape (direction, direction)."""
+        slopes = PriorsAndConstraints(self.priors.coordinates, statements).prior(self.u).slopes @ self.free
+        return slopes.T @ slopes
+
+    def of_drops(self, drops: Sequence[PlannedDrop], rate: float | None = None) -> Real:
+        """Give the information in drops, each done once.
+
+        Parameters
+        ----------
+        drops
+            The drops.
+        rate
+            Samples per second, if other than planned; a sensor's noise per root hertz stays, so that of a sample changes.
+
+        Returns
+        -------
+        ndarray
+            Shape (direction, direction).
+
+        Raises
+        ------
+        InputError
+            If the vehicle cannot be dropped so, or does not come to rest on its tyres in time.
+        """
+        if not drops:
+            return np.zeros((self.free.shape[1],) * 2)
+        sampling = rate or self.rate
+        names = {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
+        decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
+        heights = self.vehicle.heights
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights)
+        models = {
+            name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
+            for load, name in names.items()
+        }
+        likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
+        weights = self.rate / sampling / self.noise**2
+        told = likelihood.at(self.values).evaluate(weights).information
+        seen = self.slopes[:, None] * self.free
+        information: Real = seen.T @ told @ seen / self.inflation
+        return information
+
+    def _decay(self, drop: PlannedDrop, load: str, rate: float) -> FreeDecay:
+        fall = drop_from_blocks(self.vehicle, drop.load, drop.wheels, drop.height, duration=self.duration)
+        first = math.ceil(fall.decay_start * rate)
+        samples = int(self.duration * rate) - first
+        if samples < _SHORTEST * rate:
+            found = f"{max(samples / rate, 0.0):.2f} s of free vibration within {self.duration:.1f} s of the release"
+            where = f"drop of {self.vehicle.name}, load '{drop.load.name}'"
+            raise InputError([Problem(where, found, f"{_SHORTEST} s", "Lower the blocks, or record for longer.")])
+        names = tuple(self.vehicle.parameters)
+        rows = Rows.of([sensor.row for sensor in self.sensors], names).at(list(self.vehicle.parameters.values()))
+        return FreeDecay(
+            name=load,
+            file=load,
+            load=load,
+            values=rows @ fall.motion(1 / rate, samples, first / rate).acceleration,
+            earlier=np.zeros((len(rows), 0)),
+            rate=rate,
+            start=first / rate,
+            rest=unknown_baseline(len(rows)),
+        )
+
+
+@shown
+@dataclass(frozen=True, eq=False)
+class PlannedTest:
+    """Drops of one subject, done or not.
+
+    Attributes
+    ----------
+    subject
+        What is dropped.
+    drops
+        The drops, each done once.
+    recorded
+        What they have told already, if they are done: information, dimensionless, shape (direction, direction).
+    """
+
+    subject: MeasurementSetup
+    drops: tuple[PlannedDrop, ...]
+    recorded: Real | None = field(default=None, repr=False)
+
+    @cached_property
+    def data(self) -> Real:
+        """Information in the drops, shape (direction, direction)."""
+        return self.subject.of_drops(self.drops) if self.recorded is None else self.recorded
+
+    @cached_property
+    def prior(self) -> Real:
+        """Information in what is known beforehand, shape (direction, direction)."""
+        return self.subject.of_statements(self.subject.known)
