@@ -40,7 +40,7 @@ from scipy.io import savemat
 from sprung.campaign import read, read_vehicle
 from sprung.campaign.signals import find_column, make_recording
 from sprung.errors import InputError
-from sprung.formats import Table, from_sep005, read_table
+from sprung.formats import SampleTable, from_sep005, read_table
 from sprung.formats.reading_errors import memory_limit
 from sprung.vehicle import Sensor
 
@@ -89,7 +89,7 @@ class Reader:
         return tuple(one for one in self.needs if find_spec(one) is None)
 
 
-def used(table: Table, name: str) -> None:
+def used(table: SampleTable, name: str) -> None:
     """Do with a table what is done with any; however it is read, it holds the same numbers."""
     values = table.take()
     if values.shape != (len(table.channels), table.samples) or table.time.shape != (table.samples,):

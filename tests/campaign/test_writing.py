@@ -16,9 +16,9 @@ from sprung.campaign.comments import SECTIONS, describe_key
 from sprung.errors import InputError
 from sprung.files import atomic_write
 from sprung.files.ownership import MANIFEST
-from sprung.formats import split_unit
 from sprung.simulation import simulate
 from sprung.uncertainty import KnownValue
+from sprung.units import split_unit
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Added, Item, Load, Sensor
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from functools import cache
 from textwrap import wrap
 from typing import Any
 
-from sprung.campaign.json_schema import schema_text
+from sprung.campaign.schema_file import schema_text
 
 AXES = """\
 # Lengths m, masses kg, times s, angles rad. x forward from the front axle, y left from the centreline, z up from the ground.

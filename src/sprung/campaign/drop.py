@@ -24,6 +24,10 @@ DROP_KINDS: Mapping[frozenset[Wheel], str] = {
 """The usual drops by the wheels that fall."""
 
 
+DEFAULT_HEIGHT = 0.05
+"""Height of the blocks where a drop does not say, m."""
+
+
 def drop_kind(wheels: Sequence[Wheel]) -> str:
     """Give what a drop of some wheels is called: ``pitch front``; or just the wheels.
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from pydantic import ValidationError
 
 from sprung.campaign.placeholders import find_placeholders
-from sprung.campaign.schema import SCHEMA, CampaignFile
+from sprung.campaign.schema import CampaignFile
+from sprung.campaign.schema_file import SCHEMA
 from sprung.campaign.schema_problems import Place, format_place, problems_from_validation
 from sprung.errors import InputError, Problem, Problems
 

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Problem
+from sprung.formats.interpolation import MIN_RATE
 from sprung.formats.reading_errors import check_declared_size, input_error
-from sprung.formats.resampling import MIN_RATE, ResampledChannel, resample
+from sprung.formats.resampling import ResampledChannel, resample
 from sprung.formats.sample_store import Samples, join_samples, missing_samples
-from sprung.formats.table import Table
+from sprung.formats.table import SampleTable
 
 AGREE = 1e-3
 """By how much of a step the times of two clocks, or of a clock and an even one, may differ to be the same."""
@@ -152,7 +153,7 @@ def _rate(step: float, uncertainty: float) -> float:
     return 1 / step
 
 
-def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: Sequence[str] = ()) -> Table:
+def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: Sequence[str] = ()) -> SampleTable:
     """Put the channels that share one clock into a table.
 
     Of several clocks the one with the most numbers on it is taken, channels times samples. The channels on other clocks
@@ -209,7 +210,7 @@ def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: 
         "on another clock, and read at the times of the others": [names[column] for column in others],
         "left out, as they are on another clock": [names[column] for column in elsewhere],
     }
-    return Table(
+    return SampleTable(
         channels=tuple(names[column] for column in rows),
         units=tuple(column.unit for column in rows),
         store=join_samples(tuple(rows.values())),

@@ -17,11 +17,12 @@ import numpy as np
 from sprung.formats.reading_errors import input_error, reading
 from sprung.formats.sample_store import Samples, Store, join_samples, regroup, store_in_memory
 from sprung.formats.stated_rates import TIME_UNITS, Rate, find_stated_rate
-from sprung.formats.table import Table, split_unit
+from sprung.formats.table import SampleTable
 from sprung.formats.text_blocks import Encoding, LineBlock, detect_encoding, read_blocks
 from sprung.formats.text_cells import Cells
 from sprung.formats.text_clock import TIME_NAMES, Columns, find_text_clock, find_time_candidates
 from sprung.formats.text_layout import Layout, detect_layout, split_cells
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -48,7 +49,7 @@ class CsvFormat:
         marked = head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         return path.suffix.lower() in {".csv", ".tsv", ".txt", ".dat", ".asc"} and (marked or b"\0" not in head)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -68,7 +69,7 @@ class CsvFormat:
         return _table(_Text(path, encoding, layout), chain([head], ahead), rate, times)
 
 
-def table_from_lines(file: str, lines: Sequence[str]) -> Table:
+def table_from_lines(file: str, lines: Sequence[str]) -> SampleTable:
     """Understand lines as a text table, for formats whose cells can be written as text.
 
     Parameters
@@ -80,7 +81,7 @@ def table_from_lines(file: str, lines: Sequence[str]) -> Table:
 
     Returns
     -------
-    Table
+    SampleTable
 
     Raises
     ------
@@ -269,7 +270,7 @@ def _gone_through(text: _Text, ahead: Iterable[LineBlock], columns: Sequence[int
     return replace(text, marks=marks), cells, cut
 
 
-def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidates: Sequence[int]) -> Table:
+def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidates: Sequence[int]) -> SampleTable:
     layout = text.layout
     small = text.small
     read = range(len(layout.names)) if small else candidates
@@ -301,7 +302,7 @@ def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidate
     named = [split_unit(layout.names[column]) for column in channels]
     in_memory = store_in_memory(cells.values) if small else None
     store = Store(len(layout.names), cells.count, in_memory.read if in_memory else text.read, text.find_non_number)
-    return Table(
+    return SampleTable(
         channels=tuple(name for name, _ in named),
         units=tuple(
             unit if unit is not None else units[column] or None

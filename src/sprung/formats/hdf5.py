@@ -15,7 +15,7 @@ from sprung.formats.vectors import table_from_nested
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 PER_OBJECT = 1000
@@ -34,7 +34,7 @@ class Hdf5Format:
         endings = {".h5", ".hdf5", ".hdf", ".he5", ".h5py", ".nc", ".mat"}  # Octave writes plain HDF5 as .mat
         return signed and not head.startswith(b"MATLAB") and path.suffix.lower() in endings
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises

@@ -13,7 +13,7 @@ import numpy as np
 from sprung.errors import InputError, Problem, Problems
 from sprung.formats.sample_store import Samples, Store, join_samples, missing_samples, regroup
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import Table
+from sprung.formats.table import SampleTable
 from sprung.formats.text_blocks import Encoding, detect_encoding, read_blocks
 from sprung.formats.text_layout import EMPTY
 
@@ -72,7 +72,7 @@ class IsoMmeFormat:
         """Claim by the ending: both files are plain text that may say anything."""
         return path.suffix.lower() in {".mme", ".chn"} and b"\0" not in head
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read all channels of a test.
 
         Channels of another length or clock than most are left out, as spoilt.
@@ -101,7 +101,7 @@ class IsoMmeFormat:
             else missing_samples(count, _other(channel, clocks[id(channel)], clock))
             for channel in measured
         ]
-        return Table(
+        return SampleTable(
             channels=tuple(channel.name for channel in measured),
             units=tuple(channel.header.get("unit") for channel in measured),
             store=join_samples(samples),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".mdf", ".mf3", ".mf4", ".dat"))
 _SYNC_TIME = 1
@@ -40,7 +40,7 @@ class MdfFormat:
         """Claim by the ending and the mark of the format."""
         return path.suffix.lower() in _SUFFIXES and head.startswith(MAGIC)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _KIND = "a Parquet file"
 _TICKS = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
@@ -32,7 +32,7 @@ class ParquetFormat:
         """Claim by the ending and the first bytes."""
         return head.startswith(b"PAR1") and path.suffix.lower() in {".parquet", ".pq", ".parq"}
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file; of dates and times of day only the seconds since the first count.
 
         Raises

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".rpc", ".rpc3", ".rsp", ".drv", ".tim"))
 _BLOCK, _RECORD, _KEY = 512, 128, 32
@@ -34,7 +34,7 @@ class RpcFormat:
         """Claim by the ending and the first key of the header."""
         return path.suffix.lower() in _SUFFIXES and head[:_KEY].rstrip(b" \0") == b"FORMAT"
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises

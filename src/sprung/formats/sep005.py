@@ -16,7 +16,7 @@ from sprung.formats.sample_store import Samples, store_in_memory
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 REQUIRED = ("name", "data", "unit_str")
 OPTIONAL = ("fs", "time", "start_timestamp", "quantity", "location")
@@ -25,7 +25,7 @@ Signals = Mapping[str, Sequence[Mapping[str, object]]]
 """Recordings by name, each a list of dictionaries, one per signal."""
 
 
-def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") -> Table:
+def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") -> SampleTable:
     """Make a table of signals.
 
     Parameters
@@ -39,7 +39,7 @@ def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") 
 
     Returns
     -------
-    Table
+    SampleTable
 
     Raises
     ------

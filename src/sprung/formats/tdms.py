@@ -12,8 +12,8 @@ from sprung.formats.libraries import load_library
 from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
 from sprung.formats.sample_store import Samples, Store, split_range
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import split_unit
 from sprung.formats.text_clock import TIME_NAMES
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _MAGIC = b"TDSm"
 _LEAD_IN, _BIG_ENDIAN = 28, 1 << 6
@@ -35,7 +35,7 @@ class TdmsFormat:
         """Claim by the ending and the mark that begins every segment."""
         return path.suffix.lower() == ".tdms" and head.startswith(_MAGIC)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".uff", ".unv", ".uf", ".58", ".bunv"))
 _HEAD = re.compile(rb"\s*-1 *\r?\n {0,5}\d+")
@@ -38,7 +38,7 @@ class UffFormat:
         """Claim by the ending and the mark that begins every data set."""
         return path.suffix.lower() in _SUFFIXES and _HEAD.match(head) is not None
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises

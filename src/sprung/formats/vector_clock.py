@@ -12,8 +12,8 @@ from sprung.errors import InputError, Problem, did_you_mean
 from sprung.formats.metadata import MetadataScope, normalise_name
 from sprung.formats.nested import Number
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import split_unit
 from sprung.formats.text_clock import TIME_NAMES
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem
+from sprung.formats.interpolation import MIN_RATE
 from sprung.formats.metadata import MetadataScope, split_list
 from sprung.formats.nested import Numbers, flatten_nested
-from sprung.formats.resampling import MIN_RATE, ResampledChannel, resample
+from sprung.formats.resampling import ResampledChannel, resample
 from sprung.formats.sample_store import join_samples
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import Table, split_unit
+from sprung.formats.table import SampleTable
 from sprung.formats.vector_clock import Vector, VectorClock, find_vector_clock, time_name_unit
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from sprung.formats.sample_store import Samples
 
 
-def table_from_nested(node: Node, file: File, do: str) -> Table:
+def table_from_nested(node: Node, file: File, do: str) -> SampleTable:
     """Find the recording in what a file holds.
 
     It is made of the vectors of one length: of those with a time, or with a rate in the file, the ones that hold most
@@ -42,7 +44,7 @@ def table_from_nested(node: Node, file: File, do: str) -> Table:
 
     Returns
     -------
-    Table
+    SampleTable
         Its notes say what was a guess, and what was left out.
 
     Raises
@@ -81,7 +83,7 @@ def table_from_nested(node: Node, file: File, do: str) -> Table:
     if left_out:
         more = f" and {len(left_out) - 8} more" if len(left_out) > 8 else ""
         notes.append(f"left out: {', '.join(left_out[:8])}{more}")
-    return Table(
+    return SampleTable(
         channels=_shortest([vector.called for vector in (*channels, *others)]),
         units=tuple(vector.unit for vector in (*channels, *others)),
         store=join_samples([*(vector.samples for vector in channels), *(samples for samples, _ in others.values())]),
