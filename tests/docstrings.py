@@ -1,4 +1,4 @@
-"""What the docstring of a public name must say, and which of it one does not."""
+"""Requirements of the docstrings of public names, and their check."""
 
 from __future__ import annotations
 
