@@ -74,12 +74,12 @@ def _sensors(draft: DraftCampaign) -> RenderableType:
 def _others(draft: DraftCampaign) -> Iterator[str]:
     """Tell of everything that did not become part of the campaign."""
     for file in draft.files:
-        if not file.drops and not file.refused:
+        if not file.drops and not file.rejected:
             yield f"{file.name}: no drop, nothing in it moves"
-        for event in file.refused[:_TOLD]:
+        for event in file.rejected[:_TOLD]:
             yield f"{file.name}: no drop at {event.time:.3f} s: {event.why}"
-        if file.events > min(len(file.refused), _TOLD):
-            yield f"{file.name}: {file.events - min(len(file.refused), _TOLD)} more events that are no drops"
+        if file.events > min(len(file.rejected), _TOLD):
+            yield f"{file.name}: {file.events - min(len(file.rejected), _TOLD)} more events that are no drops"
     left_out = {item for file in draft.files for item in file.left_out.items()}
     yield from (f"'{channel}' is no sensor: {why}" for channel, why in sorted(left_out))
     for name, problems in draft.unreadable.items():
