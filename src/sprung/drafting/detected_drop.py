@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import kind_of
+from sprung.campaign import drop_kind
 from sprung.drafting.drop_features import DropFeatures
 from sprung.preprocess import detect_dropped_channels
 from sprung.units import STANDARD_GRAVITY
@@ -75,7 +75,7 @@ class DetectedDrop:
     @property
     def kind(self) -> str | None:
         """What such a drop is called; None where the wheels are not known."""
-        return kind_of(self.wheels) if self.wheels else None
+        return drop_kind(self.wheels) if self.wheels else None
 
     def at(self, channels: Sequence[int | None]) -> DetectedDrop:
         """Return the drop with other channels, or in another order.

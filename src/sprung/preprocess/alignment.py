@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import CLOCK_STD, Recording, merged
+from sprung.campaign import CLOCK_STD, Recording, merge_loggers
 from sprung.errors import Fault
 from sprung.preprocess.release import detect_release
 
@@ -55,7 +55,7 @@ def align_loggers(recording: Recording) -> Recording:
         for part, release in zip(recording.parts, releases, strict=True)
         if release is None and part.usable.any()
     ]
-    aligned = merged(recording, [None if release is None else release[0] for release in releases])
+    aligned = merge_loggers(recording, [None if release is None else release[0] for release in releases])
     if aligned.values.shape[1] < _SHORTEST * aligned.rate:
         what = f"the recordings of its loggers overlap by less than {_SHORTEST:g} s; the drop is left out"
         fault = Fault("clock", recording.name, what, "Name the files of one and the same drop, each of some seconds.")

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from sprung.campaign import KINDS, Drop, Recording
+from sprung.campaign import DROP_KINDS, Drop, Recording
 from sprung.errors import Fault
 from sprung.preprocess.fall import IMPACT, detect_dropped_channels, measure_fall
 from sprung.preprocess.release import Release
@@ -88,7 +88,7 @@ def find_contradicted_drops(drops: Sequence[Drop], dropped: Sequence[Dropped]) -
         exchanged = [{swap.get(wheel, wheel): falls for wheel, falls in shown.items()} for shown in dropped]
         if not any(_contradicted_wheels(*pair) for pair in zip(drops, exchanged, strict=True)):
             return ()
-    return tuple(i for i in wrong if frozenset(merge_dropped_wheels(drops[i], dropped[i])) in KINDS)
+    return tuple(i for i in wrong if frozenset(merge_dropped_wheels(drops[i], dropped[i])) in DROP_KINDS)
 
 
 def _contradicted_wheels(drop: Drop, dropped: Dropped) -> set[Wheel]:

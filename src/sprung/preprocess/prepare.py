@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from sprung.campaign import Campaign, DropTest, drop_names
+from sprung.campaign import Campaign, DropTest, unique_drop_names
 from sprung.errors import Fault
 from sprung.preprocess.alignment import active_channels, align_loggers
 from sprung.preprocess.clipping import check_full_scale, detect_clipping
@@ -89,7 +89,7 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
 
     suspension = pool_suspension_forces(corrected, releases)
     decays, left_out, observations = [], [], []
-    names = counted(progress, "finding the decays", drop_names(drops))
+    names = counted(progress, "finding the decays", unique_drop_names(drops))
     for i, name in enumerate(names):
         drop, release = drops[i], releases[i]
         decay = extract_decay(corrected, drop, name, release, suspension, clipped[i])

@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Recording
+from sprung.campaign import MAX_MISSING, Recording, fill_short_gaps
 from sprung.errors import Fault
-from sprung.formats import MOST_MISSING, filled
 from sprung.preprocess.release import resolution
 
 Real = NDArray[np.float64]
@@ -71,10 +70,12 @@ def remove_spikes(recording: Recording) -> tuple[Recording, Flags]:
         found = found | more
         values = values.copy()
         for channel in np.flatnonzero(found.any(axis=1)).tolist():
-            values[channel] = filled(np.where(found[channel], np.nan, recording.values[channel]), recording.rate)
+            values[channel] = fill_short_gaps(
+                np.where(found[channel], np.nan, recording.values[channel]), recording.rate
+            )
     faults = []
     for channel in np.flatnonzero(found.any(axis=1)).tolist():
-        lost = found[channel].mean() > MOST_MISSING or np.isnan(values[channel]).any()
+        lost = found[channel].mean() > MAX_MISSING or np.isnan(values[channel]).any()
         faults.append(_spike_fault(recording, channel, found[channel], lost))
         if lost:
             values[channel] = np.nan
