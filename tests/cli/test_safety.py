@@ -180,7 +180,7 @@ def ignored() -> Iterator[None]:
 
 @pytest.mark.usefixtures("ignored")
 def test_who_wants_sigterm_ignored_gets_it_ignored(one_drop_folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sprung.campaign.reading.check", stopping(signal.SIGTERM))
+    monkeypatch.setattr("sprung.campaign.file_reading.check", stopping(signal.SIGTERM))
     assert run("check", one_drop_folder.path, "--no-drawings").status == 0
 
 

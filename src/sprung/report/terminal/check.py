@@ -12,7 +12,7 @@ from typing import NamedTuple
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.campaign import Missing
+from sprung.campaign import MissingEntry
 from sprung.checking import ChannelReport, Check, DropReport
 from sprung.report.terminal.layout import hanging_text, render_table, significant_figures
 from sprung.report.terminal.result import fault_list
@@ -43,7 +43,7 @@ class MissingItem(NamedTuple):
     needed: bool
 
 
-def missing_items(missing: Sequence[Missing]) -> list[MissingItem]:
+def missing_items(missing: Sequence[MissingEntry]) -> list[MissingItem]:
     """Return missing items, with the places of equal ones merged.
 
     Parameters
@@ -51,7 +51,7 @@ def missing_items(missing: Sequence[Missing]) -> list[MissingItem]:
     missing
         Of a campaign.
     """
-    by_item: defaultdict[str, list[Missing]] = defaultdict(list)
+    by_item: defaultdict[str, list[MissingEntry]] = defaultdict(list)
     for entry in missing:
         by_item[entry.item].append(entry)
     items = []
