@@ -134,7 +134,7 @@ def test_without_scale_parts_of_the_total_mass_are_compared(same: list[sprung.Re
     assert any("scale is not known of not" in note for note in found.notes)
     row = found.parameters["c_sf / total mass"]
     assert row.unit == "1/s"
-    assert row.told[0].value == pytest.approx(1500 / TABLE_1_CAR.total_mass, rel=0.02)
+    assert row.values[0].value == pytest.approx(1500 / TABLE_1_CAR.total_mass, rel=0.02)
     assert row.differences[0].finding == "certain"
     assert found.parameters["a"].differences[0].finding == "none"  # lengths need no scale
 
@@ -142,7 +142,7 @@ def test_without_scale_parts_of_the_total_mass_are_compared(same: list[sprung.Re
 def test_numbers_of_a_rejected_result_are_not_shown(same: list[sprung.Result], rejected: sprung.Result) -> None:
     found = sprung.compare([same[0], rejected], names=["car", "bus"])
     assert found.rejected == ("bus",)
-    assert all(row.told[1].value is None for row in (*found.parameters.values(), *found.modes.values()))
+    assert all(row.values[1].value is None for row in (*found.parameters.values(), *found.modes.values()))
     assert {row.differences[0].finding for row in found.parameters.values()} == {"not comparable"}
     assert {row.differences[0].why for row in found.parameters.values()} == {"bus was rejected"}
     assert found.joint == (None,)
