@@ -97,7 +97,7 @@ def _check_names(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 
 def find_wrong_unit(sensor: Sensor) -> str | None:
-    """Give the reason why a sensor's own unit cannot be; None where it can.
+    """Return what is wrong with a sensor's unit; None where it is one of acceleration.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> 
 
 
 def _left_to_defaults(parsed: ParsedFile[CampaignFile], section: str) -> bool:
-    """Say whether a vehicle file leaves its sensors or drops to the simulation."""
+    """Return whether a vehicle file leaves its sensors or drops to the simulation."""
     return isinstance(parsed.file, VehicleFileSchema) and section not in parsed.document
 
 
@@ -188,7 +188,7 @@ def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 
 def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[str, KnownValue]:
-    """Give what is known and possible: the wheelbase too."""
+    """Return the known values that are valid, the wheelbase included."""
     known: dict[str, KnownValue] = {}
     for name, measured in parsed.file.known.items():
         where = parsed.where("known", name)
@@ -227,7 +227,7 @@ def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[s
 
 
 def is_contradiction(one: KnownValue, other: KnownValue) -> bool:
-    """Say whether two statements about one quantity cannot both hold.
+    """Return whether two statements of one quantity contradict each other.
 
     Parameters
     ----------

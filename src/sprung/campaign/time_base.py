@@ -80,7 +80,7 @@ class RegularTimeBase(NamedTuple):
 
 
 def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> RegularTimeBase:
-    """Put samples at even steps, as their stamps and they themselves tell how they were taken.
+    """Return the samples at regular steps.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def _line(time: Real, jumps: Flags) -> _Line:
 
 
 def _is_even(time: Real, jumps: Flags) -> bool:
-    """Say whether a clock is even, or written with too few digits to look even.
+    """Return whether timestamps are regular, apart from rounding to the digits in which they are written.
 
     Where a step is one digit, a lost line looks like a step rounded up. But rounding, and nothing else, keeps all stamps
     within one digit of each other about a straight line: steps are rounded up at even distances.
@@ -198,7 +198,7 @@ def _steps(steps: Real, uneven: Index, usual: float, off: float, place: Place) -
 
 
 def _without_pauses(time: Real, values: Real, pauses: Index, place: Place, file: str) -> RegularTimeBase:
-    """Keep the stretch between two pauses that holds the landing, if it also holds the release or nothing moved before."""
+    """Keep the stretch between two pauses that holds the landing, if it also holds the release or nothing moved before it."""
     edges = np.concatenate([[0], pauses + 1, [time.size]])
     level = np.nanmedian(np.where(np.isnan(values).all(axis=1, keepdims=True), 0.0, values), axis=1, keepdims=True)
     deviation = np.nan_to_num(np.abs(values - level))
@@ -221,7 +221,7 @@ def _without_pauses(time: Real, values: Real, pauses: Index, place: Place, file:
 
 
 def _believed(values: Real, off: Real, rate: float) -> bool:
-    """Say whether the samples were taken at their stamps.
+    """Return whether the samples were taken at their timestamps rather than at regular times.
 
     A sample taken late by δ is off by δ times the slope of its signal. What the samples differ from their neighbours is
     compared with what it would be then: the factor between the two is 1 where the stamps are right, and 0 where the
@@ -245,7 +245,7 @@ def _believed(values: Real, off: Real, rate: float) -> bool:
 
 
 def _unlike_neighbours(signal: Real) -> Real:
-    """Give by how much each sample differs from the cubic through its four neighbours; shape (time less 4,)."""
+    """Return the difference of each sample from the cubic through its four neighbours; shape (time - 4,)."""
     return signal[2:-2] - (4 * (signal[1:-3] + signal[3:-1]) - signal[:-4] - signal[4:]) / 6
 
 
