@@ -100,7 +100,7 @@ def parse_document(model: type[File], document: Mapping[str, Any], name: str, pr
         do = "Update sprung: the file was written for a newer version." if newer else f"Write schema = {SCHEMA}."
         found, expected = f"schema {number!r}", f"schema {SCHEMA}, which this version of sprung reads"
         raise InputError([Problem(f"{name}: schema", found, expected, do)])
-    found, do = "a gap that is still to be filled", "Write it there, in place of the text."
+    found, do = "a placeholder", "Replace the text by the value."
     placeholders = {
         place: Problem(format_place(name, place, document), found, what, do)
         for place, what in find_placeholders(document)

@@ -48,7 +48,7 @@ class Limits(NamedTuple):
     def expected(self) -> str:
         """What is expected, in words."""
         none = "0, or " if self.zero else ""
-        return f"{none}{self.low:g} to {self.high:g} {self.unit}, as two-axle vehicles have it"
+        return f"{none}{self.low:g} to {self.high:g} {self.unit}, the range of two-axle vehicles"
 
 
 _SYMMETRIC_LENGTH = Limits(-20.0, 20.0, "m")

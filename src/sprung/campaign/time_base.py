@@ -134,8 +134,8 @@ def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> R
         faults.append(Fault("clock", file, what, "Check how the logger stores or sends its samples."))
     if uneven.size:
         what = (
-            f"{_steps(steps, uneven, usual, off, place)}; the samples are no smoother at those times, and were taken to "
-            f"be even, {1 / step:.6g} a second"
+            f"{_steps(steps, uneven, usual, off, place)}; the samples are not smoother at these times, and were taken as "
+            f"regular, {1 / step:.6g} per second"
         )
         faults.append(Fault("clock", file, what, "Export the recording at a fixed rate."))
     spread = np.full((len(values), lost.size), np.nan)
@@ -187,7 +187,7 @@ def _nothing(time: Real, values: Real, fault: Fault) -> RegularTimeBase:
 
 
 def _steps(steps: Real, uneven: Index, usual: float, off: float, place: Place) -> str:
-    said = f"the clock is uneven: its stamps are up to {1e3 * off:.2g} ms off even ones"
+    said = f"the time base is irregular: its timestamps deviate by up to {1e3 * off:.2g} ms from regular ones"
     if not uneven.size:
         return said
     first = int(uneven[0])
@@ -262,7 +262,7 @@ def _resampled(time: Real, values: Real, step: float, what: str, file: str) -> R
             before = np.clip(np.searchsorted(time[known], grid, side="right") - 1, 0, known.size - 2)
             apart = time[known[before + 1]] - time[known[before]] > max(LONGEST_GAP, _JUMP * step)
             row[apart | (np.diff(known)[before] > 1)] = np.nan
-    what += f"; the samples are smooth at the times stamped, and were interpolated to {1 / step:.6g} a second"
+    what += f"; the samples are smooth at these times, and were interpolated to {1 / step:.6g} per second"
     fault = Fault("clock", file, what, "Export the recording at a fixed rate.")
     lost = np.zeros(grid.size, dtype=bool)
     return RegularTimeBase(read, float(time[0]), 1 / step, lost, origin, (fault,))

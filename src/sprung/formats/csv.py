@@ -62,7 +62,9 @@ class CsvFormat:
             encoding = detect_encoding(path)
         except UnicodeDecodeError as error:
             do = "Export the recording again, as UTF-8."
-            raise input_error(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
+            raise input_error(
+                file, f"a file marked as UTF-16 with invalid text ({error.reason})", "text", do
+            ) from error
         ahead = read_blocks(path, encoding)
         head = next(ahead, LineBlock(0, []))
         layout, rate, times = _understood(head, file)

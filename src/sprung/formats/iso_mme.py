@@ -119,7 +119,7 @@ def _files(path: Path) -> list[Path]:
         files = [file for folder in folders for file in folder.iterdir() if file.suffix[1:].isdecimal()]
         files = sorted((file for file in files if file.is_file()), key=lambda file: (int(file.suffix[1:]), file.name))
     except OSError as error:
-        do = "See to its permissions."
+        do = "Check its permissions."
         raise InputError([Problem(path.name, f"a folder that cannot be read ({error.strerror})", "one", do)]) from error
     files = [file for file in files if file.stem.lower() == path.stem.lower()] or files
     if not files:
@@ -134,9 +134,9 @@ def _reading(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         found = f"a file that cannot be read ({error.strerror})"
-        raise InputError([Problem(path.name, found, "a channel", "See to its permissions.")]) from error
+        raise InputError([Problem(path.name, found, "a channel", "Check its permissions.")]) from error
     except UnicodeDecodeError as error:
-        found = f"a file marked as UTF-16 that is none ({error.reason})"
+        found = f"a file marked as UTF-16 with invalid text ({error.reason})"
         raise InputError([Problem(path.name, found, "text", "Export the channel again.")]) from error
 
 
