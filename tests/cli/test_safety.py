@@ -105,7 +105,7 @@ def test_a_decoration_that_fails_is_named_and_costs_nothing_else(
 def test_a_report_that_fails_costs_the_report_only(
     one_drop_folder: Folder, one_drop: Identified, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sprung.report.folder.drawn_page", failing)
+    monkeypatch.setattr("sprung.report.folder.render_report", failing)
     said = run("identify", one_drop_folder.path, "--json")
     assert said.status == one_drop.json.status
     (sentence,) = said.json["omissions"]
