@@ -89,7 +89,7 @@ def look(folder: Path, name: str, progress: Callable[[float], None]) -> Look:
         first, last = (int((time - seen.start) * seen.rate) for time in (drop.release, drop.end))
         for channel, size in full_scales(table, seen, first, last).items():
             scales[channel] = max(size, scales.get(channel, 0.0))
-    file = DraftFile(name, seen.rate, seen.start, seen.end, len(drops), found.refused, found.events, seen.left_out)
+    file = DraftFile(name, seen.rate, seen.start, seen.end, len(drops), found.rejected, found.events, seen.left_out)
     return Look(file, seen.channels, drops, scales)
 
 
@@ -137,4 +137,4 @@ def _on_clock(drop: DetectedDrop, table: SampleTable, seen: Survey) -> DetectedD
     clock = table.clock
     if not isinstance(clock, np.ndarray):
         return drop
-    return drop.interpolate(lambda time: float(clock[min(round((time - seen.start) * seen.rate), seen.samples - 1)]))
+    return drop.on_clock(lambda time: float(clock[min(round((time - seen.start) * seen.rate), seen.samples - 1)]))

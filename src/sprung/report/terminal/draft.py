@@ -74,12 +74,12 @@ def _sensors(draft: DraftCampaign) -> RenderableType:
 def _others(draft: DraftCampaign) -> Iterator[str]:
     """Yield everything that is not part of the draft, with the reason."""
     for file in draft.files:
-        if not file.drops and not file.refused:
+        if not file.drops and not file.rejected:
             yield f"{file.name}: no drop, no motion"
-        for event in file.refused[:_LISTED]:
+        for event in file.rejected[:_LISTED]:
             yield f"{file.name}: event at {event.time:.3f} s is no drop: {event.why}"
-        if file.events > min(len(file.refused), _LISTED):
-            yield f"{file.name}: {file.events - min(len(file.refused), _LISTED)} other events are no drops"
+        if file.events > min(len(file.rejected), _LISTED):
+            yield f"{file.name}: {file.events - min(len(file.rejected), _LISTED)} other events are no drops"
     left_out = {item for file in draft.files for item in file.left_out.items()}
     yield from (f"'{channel}' is not a sensor: {why}" for channel, why in sorted(left_out))
     for name, problems in draft.unreadable.items():
