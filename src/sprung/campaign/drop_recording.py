@@ -78,7 +78,7 @@ def assemble_recording(tables: Mapping[str, Table], sensors: Sequence[Wanted], d
     of_file: dict[str, list[Wanted]] = {file: [] for file in tables}
     faults: list[Fault] = []
     for sensor in sensors:
-        with problems.collecting():
+        with problems.collect():
             file = _file_of(sensor.written, tables, loggers)
             if file is None:
                 faults.append(_nowhere(sensor.written, name))
@@ -86,7 +86,7 @@ def assemble_recording(tables: Mapping[str, Table], sensors: Sequence[Wanted], d
                 of_file[file].append(sensor)
     parts: list[Recording] = []
     for of, own in of_file.items():
-        with problems.collecting():
+        with problems.collect():
             if own:
                 part = make_recording(tables[of], [sensor.written for sensor in own], of)
                 parts.append(replace(part, channels=tuple(sensor.named.channel for sensor in own)))
