@@ -175,7 +175,9 @@ class Omissions:
         self._sentences |= dict.fromkeys(sentences)
 
     @contextmanager
-    def record_failure(self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()) -> Iterator[None]:
+    def record_failure(
+        self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()
+    ) -> Iterator[None]:
         """Add a sentence if the block raises an error, and continue after it.
 
         Parameters

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sprung.campaign import CAMPAIGN_FILE
 from sprung.drafting import detect_drops
 from sprung.errors import Problems
-from sprung.formats import Table, read_table
+from sprung.formats import SampleTable, read_table
 from sprung.modal_survey.load_modes import LoadModes
 from sprung.modal_survey.modal_analysis import modal_analysis
 from sprung.progress import Progress, counted, silent
@@ -95,7 +95,7 @@ def modes_of_recordings(
         If a file cannot be read, or channels or rates differ; every problem at once.
     """
     problems = Problems()
-    tables: list[tuple[Path, Table]] = []
+    tables: list[tuple[Path, SampleTable]] = []
     files = recordings_in(Path(path))
     for file in counted(progress, "reading the recordings", files):
         with problems.collect():
@@ -215,7 +215,7 @@ def modes_of_arrays(
     return modal_analysis(records, rate, method, order, named, numbers, amplitude=amplitude, diagram=diagram)
 
 
-def _rate(file: Path, table: Table, problems: Problems) -> float:
+def _rate(file: Path, table: SampleTable, problems: Problems) -> float:
     steps = np.diff(table.time)
     step = float(np.median(steps)) if len(steps) else 0.0
     if not step > 0 or float(np.abs(steps - step).max()) > _LARGEST_JITTER * step:
