@@ -65,7 +65,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     problems = Problems()
     read: list[Result] = []
     for result in results:
-        with problems.collecting():
+        with problems.collect():
             read.append(result if isinstance(result, Result) else load(result, series=False))
     problems.raise_if_any()
     labels = tuple(names) if names is not None else _labels(results, read)
