@@ -10,13 +10,13 @@ from hypothesis import strategies as st
 
 from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
-from sprung.formats import optional
+from sprung.formats import libraries
 from sprung.formats.uff import UffFormat
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 pyuff = pytest.importorskip("pyuff")
 VALUES = np.random.default_rng(1).normal(size=(2, 40))
@@ -37,7 +37,7 @@ def written(folder: Path, *functions: dict[str, Any]) -> Path:
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert UffFormat().claims(path, path.read_bytes()[:8192])
     return UffFormat().read(path)
 
@@ -113,7 +113,7 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     def missing(name: str) -> None:
         raise ImportError(f"No module named '{name}'")
 
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'pip install "sprung\[uff\]"'):
         UffFormat().read(path)
 

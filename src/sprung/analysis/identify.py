@@ -29,7 +29,7 @@ from sprung.assessment import (
     decide_verdict,
     estimate_model_error,
 )
-from sprung.campaign import CampaignSource, campaign_from
+from sprung.campaign import CampaignSource, resolve_campaign
 from sprung.checking import check_prepared
 from sprung.errors import Omissions
 from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
@@ -150,7 +150,7 @@ def identify_campaign(
     """
     tracks, extras = model_options(tracks, extras)
     begin = start_values(start)
-    campaign = campaign_from(campaign, progress)
+    campaign = resolve_campaign(campaign, progress)
     asked = check_asked(profile, campaign, tracks, extras)
     fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
     options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}

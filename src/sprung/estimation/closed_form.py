@@ -76,7 +76,7 @@ class ClosedFormObjective:
     @cached_property
     def side_by_side(self) -> LinearModel:
         """The models of all loads side by side."""
-        return LinearModel.side_by_side([self.models[load] for load in self.loads])
+        return LinearModel.stack([self.models[load] for load in self.loads])
 
     @cached_property
     def span(self) -> float:

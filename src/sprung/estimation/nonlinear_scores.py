@@ -112,7 +112,7 @@ def _unit_forces(model: NonlinearModel, values: Real, motion: Real, step: float,
     travel, rate = rows @ (X + model.sag(values)[:, None]), rows @ V
     way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
     felt = ElementInput(travel.T, rate.T, way.T, np.zeros_like(travel.T))
-    return np.asarray(model.forces.sensitivity(values, felt).force[:, :, list(chosen)])
+    return np.asarray(model.forces.differentiate(values, felt)[0][:, :, list(chosen)])
 
 
 def _modal_responses(poles: Complex, participation: Complex, forces: Real, step: float) -> Complex:

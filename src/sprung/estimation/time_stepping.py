@@ -129,12 +129,12 @@ class TimeSteppingObjective:
     @property
     def state_size(self) -> int:
         """How many numbers {X, Ẋ} has."""
-        return self.models_by_kind[0].state
+        return self.models_by_kind[0].state_size
 
     @cached_property
     def prior_std(self) -> Real:
         """Prior standard uncertainty of initial states and memories, shape (state + memory,)."""
-        memories = len(self.models_by_kind[0].forces.remembering)
+        memories = len(self.models_by_kind[0].forces.with_memory)
         return np.concatenate([initial_state_prior_std(self.state_size), np.full(memories, _MEMORY_STD)])
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> TimeSteppingObjective:
@@ -157,7 +157,7 @@ class TimeSteppingObjective:
         """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory)."""
         stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values)
         states, memories = np.split(begin, [self.state_size], axis=1)
-        trajectory = stepper.follow(states, memories, self.every * (self.records.shape[2] - 1))
+        trajectory = stepper.integrate(states, memories, self.every * (self.records.shape[2] - 1))
         return TimeSteppingAt(self, values, weights, begin, stepper, trajectory)
 
     def sag(self, values: Real) -> Real:
@@ -188,11 +188,11 @@ class TimeSteppingObjective:
             return None
         rows = forces.rows.at(values)
         memory = np.zeros((len(memories), forces.number))
-        memory[:, forces.remembering] = memories
+        memory[:, forces.with_memory] = memories
         travel = X @ rows.T
-        answer = forces.answer(values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
-        by_memory = answer.by_memory[:, forces.remembering]
-        lost = np.where(impossible, memories, 0.0) * by_memory @ rows[forces.remembering]
+        answer = forces.evaluate(values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
+        by_memory = answer.by_memory[:, forces.with_memory]
+        lost = np.where(impossible, memories, 0.0) * by_memory @ rows[forces.with_memory]
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
         return np.hstack([X, V, np.where(impossible, 0.0, memories)]) - self.sag(values)
@@ -324,10 +324,10 @@ class TimeSteppingAt:
         drops, channels, _ = objective.records.shape
         parameters, unknown = len(self.values), len(self.values) + self.begin.shape[1]
         total, squares = np.zeros((drops, channels, unknown + 1)), np.zeros((drops, channels, unknown + 1, unknown + 1))
-        for change in self.stepper.changes(self.trajectory):
-            chosen = slice(-change.first % every, None, every)
-            first = (change.first + (-change.first % every)) // every
-            driven = np.concatenate([change.states[chosen], change.forces[chosen]], axis=2)
+        for step, states, forces in self.stepper.sensitivities(self.trajectory):
+            chosen = slice(-step % every, None, every)
+            first = (step + (-step % every)) // every
+            driven = np.concatenate([states[chosen], forces[chosen]], axis=2)
             if not len(driven):
                 continue
             last = first + len(driven)
@@ -338,7 +338,7 @@ class TimeSteppingAt:
             readings = S @ moved
             by_sensor = np.einsum("kdi,cip->kdcp", self._accelerations[first:last], by_S, optimize=True)
             readings[..., :parameters] += by_sensor
-            turned = inputs[:, :, None, 1:3] @ change.states[chosen][:, :, 1:3]
+            turned = inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3]
             readings -= self._gravity * turned
             columns[..., :unknown] = readings.transpose(1, 2, 0, 3)
             columns[..., :unknown] *= objective.is_sample[:, None, first:last, None]
@@ -403,7 +403,7 @@ class TimeSteppingAt:
         NaN for the samples before its first: friction cannot be followed backward in time.
         """
         chosen = slice(None, self.objective.every * after, self.objective.every)
-        memories = self.trajectory.memories[chosen, drop][:, self.stepper.forces.remembering]
+        memories = self.trajectory.memories[chosen, drop][:, self.stepper.forces.with_memory]
         whole = np.hstack([self.trajectory.states[chosen, drop], memories]) - self.objective.sag(self.values)[drop]
         unknown = np.full((whole.shape[1], before), np.nan)
         return np.hstack([unknown, whole.T])

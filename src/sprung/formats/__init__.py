@@ -1,25 +1,34 @@
-"""One file per format, behind one registry."""
+"""One file per format, behind one registry: from a file to columns of numbers with their names, units and a clock."""
 
+from typing import TYPE_CHECKING, Any
+
+from sprung.formats.interpolation import MIN_RATE, interpolate
 from sprung.formats.registry import Format, formats, read_table
-from sprung.formats.regularise import MOST_MISSING, fill_gaps, filled, on_clock
-from sprung.formats.resampled import SLOWEST
-from sprung.formats.sep005 import Signals, from_sep005
-from sprung.formats.table import Table, split_unit
-from sprung.formats.timestamps import RegularTimeBase, regularise_time_base
+
+if TYPE_CHECKING:
+    from sprung.formats.sep005 import Signals, from_sep005
+    from sprung.formats.table import SampleTable
 
 __all__ = [
-    "MOST_MISSING",
-    "SLOWEST",
+    "MIN_RATE",
     "Format",
-    "RegularTimeBase",
+    "SampleTable",
     "Signals",
-    "Table",
-    "fill_gaps",
-    "filled",
     "formats",
     "from_sep005",
-    "on_clock",
+    "interpolate",
     "read_table",
-    "regularise_time_base",
-    "split_unit",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    # What only a file needs is loaded with the first file.
+    if name == "SampleTable":
+        from sprung.formats.table import SampleTable  # noqa: PLC0415
+
+        return SampleTable
+    if name in {"Signals", "from_sep005"}:
+        from sprung.formats import sep005  # noqa: PLC0415
+
+        return getattr(sep005, name)
+    raise AttributeError(f"module 'sprung.formats' has no attribute '{name}'")

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sprung.display import shown
-from sprung.formats.store import BUDGET, Store
-from sprung.units import acceleration_factor
+from sprung.formats.sample_store import BUDGET, Store
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,42 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sprung.errors import Problem
-    from sprung.formats.resampled import Resampled
-
-_BRACKETS = re.compile(r"^(?P<name>.*\S)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
-
-
-def split_unit(text: str) -> tuple[str, str | None]:
-    """Split the unit off a column's name.
-
-    Parameters
-    ----------
-    text
-        As the file has it: ``body_fl [g]``, ``body_fl (m/s^2)`` or plainly ``body_fl``.
-
-    Returns
-    -------
-    name
-        What stands before the brackets.
-    unit
-        What stands in them; None without brackets. Round brackets are taken as a unit only where they hold one of
-        acceleration: ``body (left)`` is a name.
-
-    Examples
-    --------
-    >>> split_unit("body_fl [g]"), split_unit("body (left)")
-    (('body_fl', 'g'), ('body (left)', None))
-    """
-    match = _BRACKETS.match(text.strip())
-    if match is None:
-        return text.strip(), None
-    if match["square"] is not None:
-        return match["name"], match["square"].strip()
-    try:
-        acceleration_factor(match["round"])
-    except ValueError:
-        return text.strip(), None
-    return match["name"], match["round"].strip()
+    from sprung.formats.resampling import ResampledChannel
 
 
 def sample_number(sample: int) -> str:
@@ -63,12 +26,12 @@ def sample_number(sample: int) -> str:
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Table:
+class SampleTable:
     """The columns of one file, as the file has them. Their samples stay there until `take` or `pieces` ask for them.
 
     `take` reads some columns at once, all of them or those of a range; `pieces` goes through the file from its beginning
     to its end, and holds no more than a piece at a time. Both give float64 in the units of the file, NaN where it
-    holds no number; `spoilt` then says what stands there instead. Damage to the file is met when it is read: all three
+    holds no number; `find_non_number` then says what stands there instead. Damage to the file is met when it is read: all three
     raise an InputError over it.
 
     Attributes
@@ -78,7 +41,7 @@ class Table:
     units
         What the file says each channel is measured in; None where it says nothing.
     store
-        Reads their samples: `store.holding(values)` where a format has them in memory, shape (channel, time).
+        Reads their samples: `store.store_in_memory(values)` where a format has them in memory, shape (channel, time).
     clock
         Time of every sample on the file's clock, s, shape (time,); or one number, the samples per second of a format
         that keeps no times, whose clock then starts at 0.
@@ -91,7 +54,7 @@ class Table:
 
     Examples
     --------
-    >>> from sprung.formats.store import holding
+    >>> from sprung.formats.sample_store import holding
     >>> table = Table(("a", "b"), ("g", None), holding(np.arange(10.0).reshape(2, 5)), clock=100.0)
     >>> table.samples, table.take([1]).tolist(), table.take([1, 0], 3, 5).tolist()
     (5, [[5.0, 6.0, 7.0, 8.0, 9.0]], [[8.0, 9.0], [3.0, 4.0]])
@@ -105,7 +68,7 @@ class Table:
     clock: NDArray[np.float64] | float
     place: Callable[[int], str] = sample_number
     notes: tuple[str, ...] = ()
-    resampled: Mapping[int, Resampled] = field(default_factory=dict)
+    resampled: Mapping[int, ResampledChannel] = field(default_factory=dict)
 
     @property
     def samples(self) -> int:
@@ -179,24 +142,24 @@ class Table:
                 yield first + begin, read[:, begin : begin + samples]
             first += read.shape[1]
 
-    def part(self, first: int, last: int) -> Table:
+    def part(self, first: int, last: int) -> SampleTable:
         """Give the samples from first up to last, last apart, as a table of their own, still unread."""
 
         def read(columns: Sequence[int], begin: int, end: int, step: int) -> Iterator[NDArray[np.float64]]:
             return self.store.read(columns, first + begin, first + end, step)
 
-        def spoilt(column: int, begin: int, end: int) -> Problem | None:
-            return self.store.spoilt(column, first + begin, first + end)
+        def find_non_number(column: int, begin: int, end: int) -> Problem | None:
+            return self.store.find_non_number(column, first + begin, first + end)
 
         return replace(
             self,
-            store=Store(self.store.width, last - first, read, spoilt),
+            store=Store(self.store.width, last - first, read, find_non_number),
             clock=self._times(first, last),
             place=lambda sample: self.place(first + sample),
             resampled={column: one.within(first, last) for column, one in self.resampled.items()},
         )
 
-    def spoilt(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:
+    def find_non_number(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:
         """Say what stands in a column that is no number; None if nothing does, or if cells are merely empty.
 
         A problem only where somebody needs the column. It may read the file again: ask where samples are missing.
@@ -213,7 +176,7 @@ class Table:
         InputError
             If the file is damaged there.
         """
-        return self.store.spoilt(column, first, self.samples if last is None else last)
+        return self.store.find_non_number(column, first, self.samples if last is None else last)
 
     def _read(self, columns: Sequence[int], first: int, last: int, samples: int) -> Iterator[NDArray[np.float64]]:
         """Read in pieces of a multiple of some samples, as long as a read is worth it."""

@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import FILE
+from sprung.campaign import CAMPAIGN_FILE
 from sprung.drafting import detect_drops
 from sprung.errors import Problems
-from sprung.formats import Table, read_table
+from sprung.formats import SampleTable, read_table
 from sprung.modal_survey.identified import LoadModes, modal_analysis
 from sprung.progress import Progress, counted, silent
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
@@ -46,7 +46,7 @@ def is_recordings(path: str | os.PathLike[str]) -> bool:
     bool
     """
     place = Path(path)
-    return bool(recordings_in(place)) and not (place / FILE).exists()
+    return bool(recordings_in(place)) and not (place / CAMPAIGN_FILE).exists()
 
 
 def recordings_in(place: Path) -> list[Path]:
@@ -94,7 +94,7 @@ def modes_of_recordings(
         If a file cannot be read, or they do not go together; every problem at once.
     """
     problems = Problems()
-    tables: list[tuple[Path, Table]] = []
+    tables: list[tuple[Path, SampleTable]] = []
     files = recordings_in(Path(path))
     for file in counted(progress, "reading the recordings", files):
         with problems.collecting():
@@ -214,7 +214,7 @@ def modes_of_arrays(
     return modal_analysis(records, rate, method, order, named, numbers, amplitude=amplitude, diagram=diagram)
 
 
-def _rate(file: Path, table: Table, problems: Problems) -> float:
+def _rate(file: Path, table: SampleTable, problems: Problems) -> float:
     steps = np.diff(table.time)
     step = float(np.median(steps)) if len(steps) else 0.0
     if not step > 0 or float(np.abs(steps - step).max()) > _STEADY * step:

@@ -1,0 +1,113 @@
+"""Summary of a result in words and a few numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from sprung.results import Result
+from sprung.tables import percent_text
+
+
+class VerdictText(NamedTuple):
+    """Meaning of a verdict: symbol, statement, explanation."""
+
+    symbol: str
+    statement: str
+    explanation: str
+
+
+_VERDICTS = {
+    "accept": VerdictText("✓", "The estimates may be used.", "Reasons:"),
+    "doubtful": VerdictText(
+        "!",
+        "The estimates may be used with reservations.",
+        "Read every reason before use:",
+    ),
+    "reject": VerdictText(
+        "✕",
+        "The estimates must not be used; none are reported.",
+        "Reasons:",
+    ),
+}
+
+
+def verdict_text(result: Result) -> VerdictText:
+    """Return the meaning of a verdict.
+
+    Parameters
+    ----------
+    result
+        Of an identification.
+    """
+    return _VERDICTS[result.verdict.state]
+
+
+def test_record_of(result: Result) -> Iterator[tuple[str, str]]:
+    """Yield the test record of the campaign file: names and texts.
+
+    Parameters
+    ----------
+    result
+        The result.
+    """
+    if result.tested_vehicle.identification is not None:
+        yield "Vehicle identification", result.tested_vehicle.identification
+    test = result.setup.test
+    for name, text in (
+        ("Date", test.date),
+        ("Operator", test.operator),
+        ("Place", test.place),
+        ("Remarks", test.remarks),
+    ):
+        if text is not None:
+            yield name, str(text)
+
+
+def summary_of(result: Result) -> Iterator[tuple[str, str]]:
+    """Yield the summary of a result: names and texts.
+
+    Parameters
+    ----------
+    result
+        The result.
+    """
+    used = [drop for drop in result.drops if drop.start is not None]
+    loads = ", ".join(f"{count} {load}" for load, count in Counter(drop.load for drop in used).items())
+    left = len(result.drops) - len(used)
+    yield "Drops", f"{len(used)} fitted together ({loads})" + (f", {left} left out" if left else "")
+    yield "Model", _model(result)
+    states = Counter(estimate.status for estimate in result.parameters.values())
+    counts = [f"{states[name]} {name}" for name in ("estimated", "known", "unidentifiable") if states[name]]
+    yield "Parameters", ", ".join(counts)
+    least = max(
+        (
+            (estimate.percent, name)
+            for name, estimate in result.parameters.items()
+            if estimate.status == "estimated" and estimate.percent
+        ),
+        default=None,
+    )
+    if least is not None:
+        yield "Largest uncertainty", f"{percent_text(least[0])} % ({least[1]})"
+    if result.validation:
+        residuals = [drop.residual for drop in result.validation.values()]
+        yield "Residual", f"{min(residuals):.2f} to {max(residuals):.2f} times the noise"
+    predicted = [drop.predicted_residual for drop in result.validation.values() if drop.predicted_residual is not None]
+    if predicted:
+        yield (
+            "Residual of the prediction from the other drops",
+            f"{min(predicted):.2f} to {max(predicted):.2f} times the noise",
+        )
+
+
+def _model(result: Result) -> str:
+    extras = result.fit.model
+    return "seven degrees of freedom" + (f", with {', '.join(extras)}" if extras else "")
+
+
+def symbol_parts(name: str) -> tuple[str, str]:
+    """Return the letter and the index of a parameter's name: ``k`` and ``sf`` of ``k_sf``."""
+    letter, _, index = name.partition("_")
+    return letter, index.replace("_", " ")

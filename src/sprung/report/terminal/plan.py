@@ -1,0 +1,90 @@
+"""The plan of a test, for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from sprung.planning import Plan, PlanRow, two_figures
+from sprung.report.terminal.layout import hanging_text, render_rows
+
+_FIRST = ("m_s", "I_yy", "I_xx", "k_sf", "k_sr", "c_sf", "c_sr", "m_uf", "m_ur", "k_tf", "k_tr", "a", "b")
+"""Parameters whose columns come first."""
+
+_NAMED = 4
+"""Alternatives that a reason lists by name; of more their number is given."""
+
+
+def plan_view(plan: Plan) -> RenderableType:
+    """Return the view of a plan.
+
+    Parameters
+    ----------
+    plan
+        From `sprung.plan`.
+
+    Returns
+    -------
+    RenderableType
+        For `text_of`.
+    """
+    if plan.rejected:
+        head = hanging_text(
+            "", Text(f"{plan.vehicle}: the campaign is rejected; no plan can be made from it.", style="bold red")
+        )
+        return Group(head, *(hanging_text("  - ", reason) for reason in plan.rejected))
+    parts = [plan_table(plan), Text()]
+    reasons = [hanging_text("  - ", reason) for reason in _reasons(plan)]
+    if reasons:
+        parts += [Text("Not determined", style="bold"), *reasons, Text()]
+    return Group(*parts, next_line(plan.next_step.text))
+
+
+def next_line(text: str) -> RenderableType:
+    """Return the line with the recommended next measurement."""
+    return hanging_text("Next: ", f"{text}.")
+
+
+def plan_table(plan: Plan) -> RenderableType:
+    """Return the table of all alternatives with the expected uncertainties."""
+    names = {name: None for row in plan.rows if row.bound is not None for name in row.bound.percents}
+    ranked = sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
+    above = f"> {plan.wanted:g} %"
+    headers = ("test", "worst", "%", above, *ranked)
+    rows = [[row.label, *_cells(plan, row, ranked)] for row in plan.rows]
+    title = f"{plan.vehicle}: expected standard uncertainty, %"
+    return render_rows(title, headers, rows, headers[2:])
+
+
+def _cells(plan: Plan, row: PlanRow, names: Sequence[str]) -> Iterator[str]:
+    if row.bound is None:
+        yield from ("-",) * (3 + len(names))
+        return
+    worst = row.bound.worst
+    yield "-" if worst is None else worst
+    yield "-" if worst is None else two_figures(row.bound.percents[worst])
+    yield str(row.bound.above(plan.wanted))
+    for name in names:
+        yield two_figures(row.bound.percents.get(name))
+
+
+def _reasons(plan: Plan) -> Iterator[str]:
+    """Yield the reason for every dash, each once."""
+    rows: dict[str, list[str]] = {}
+    for row in plan.rows:
+        if row.refused is not None:
+            rows.setdefault(f"not possible: {row.refused}", []).append(row.label)
+        elif row.bound is not None:
+            for combination in row.bound.why:
+                # The text about the scale does not name its parameters, the others begin with their names.
+                names = (
+                    ""
+                    if combination.parameters[0] in combination.text.replace(",", " ").split()
+                    else f"{', '.join(combination.parameters)}: "
+                )
+                rows.setdefault(f"{names}{combination.text}", []).append(row.label)
+    for reason, labels in rows.items():
+        others = f" and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
+        yield f"{', '.join(labels[:_NAMED])}{others}: {reason}"
