@@ -165,7 +165,7 @@ class Campaign:
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
 
     def require_complete(self) -> None:
-        """Refuse a campaign that does not say everything that an identification needs.
+        """Check that a campaign states everything that an identification needs.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class Campaign:
             raise InputError(needed)
 
     def load(self, name: str) -> Load:
-        """Give the load of that name.
+        """Return the load of that name.
 
         Raises
         ------

@@ -20,7 +20,7 @@ from sprung.vehicle import Sensor
 
 
 def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
-    """Give sensors of different loggers, whose channels have one name, the logger's name before it.
+    """Return the sensors; where several have one channel name, the logger's name is put before it.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
 def assemble_recording(
     tables: Mapping[str, SampleTable], sensors: Sequence[tuple[Sensor, Sensor]], drop: Drop, name: str
 ) -> Recording:
-    """Make the recording of one drop.
+    """Return the recording of one drop, from the tables of its files.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def assemble_recording(
 
 
 def _within(table: SampleTable, window: tuple[float, float] | None) -> SampleTable:
-    """Give the part of a table that lies within a window of its clock, s."""
+    """Return the part of a table within a window of its clock, s."""
     if window is None:
         return table
     time = table.time
@@ -105,7 +105,7 @@ def _within(table: SampleTable, window: tuple[float, float] | None) -> SampleTab
 
 
 def _file_of(sensor: Sensor, tables: Mapping[str, SampleTable], loggers: Collection[str]) -> str | None:
-    """Say which file a sensor's logger wrote: one named after it, or else the only one with such a channel.
+    """Return the file that a sensor's logger wrote: one with its name, otherwise the only one with such a channel.
 
     Where no file has its name, one named after another logger is not its own.
     """

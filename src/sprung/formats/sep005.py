@@ -26,7 +26,7 @@ Signals = Mapping[str, Sequence[Mapping[str, object]]]
 
 
 def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") -> SampleTable:
-    """Make a table of signals.
+    """Return a table of signals.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def _column(signal: object, where: str) -> Column:
 
 
 def _clock(signal: Mapping[str, object], count: int, where: str) -> ChannelClock:
-    """Take the clock from the times, or else from the rate; where both are, they must agree."""
+    """Return the clock from the times, otherwise from the rate; where both are given, they must agree."""
     rate, problems = _rate(signal.get("fs"), f"{where}.fs"), Problems()
     if signal.get("time") is None:
         if rate is None:
@@ -141,7 +141,7 @@ def _written(given: object) -> str:
 
 
 def _numbers(given: object, where: str) -> NDArray[np.float64]:
-    """Take an array of shape (time,) of real numbers."""
+    """Return real numbers as an array of shape (time,)."""
     problems = Problems()
     try:
         array = np.asarray(given)
