@@ -71,7 +71,7 @@ def assemble_recording(
     of_file: dict[str, list[tuple[Sensor, Sensor]]] = {file: [] for file in tables}
     faults: list[Fault] = []
     for written, named in sensors:
-        with problems.collecting():
+        with problems.collect():
             file = _file_of(written, tables, loggers)
             if file is None:
                 faults.append(_nowhere(written, name))
@@ -79,7 +79,7 @@ def assemble_recording(
                 of_file[file].append((written, named))
     parts: list[Recording] = []
     for of, own in of_file.items():
-        with problems.collecting():
+        with problems.collect():
             if own:
                 part = make_recording(tables[of], [written for written, _ in own], of)
                 parts.append(replace(part, channels=tuple(named.channel for _, named in own)))

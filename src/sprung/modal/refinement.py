@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
-from sprung.modal.likelihood import Poles, Stand, scales
+from sprung.modal.likelihood import ModalObjective, Poles, unit_scales
 from sprung.optimisation import NormalEquations, maximise
 
 Real = NDArray[np.float64]
@@ -30,7 +30,7 @@ _ROUNDING = 1e-14
 
 def climb(
     decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _SETTLED, only: int | None = None
-) -> Stand:
+) -> ModalObjective:
     """Maximise the likelihood of poles and shapes from given ones.
 
     Parameters
@@ -48,10 +48,10 @@ def climb(
 
     Returns
     -------
-    Stand
+    ModalObjective
         At the maximum, channels weighted by the noise found there.
     """
-    start = _weighted(Stand.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
+    start = _weighted(ModalObjective.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
     problem = ModalProblem(decays, only)
     return maximise(problem, start, tolerance=settled, damping=_DAMPING, most_steps=steps).point
 
@@ -70,28 +70,28 @@ class ModalProblem(NamedTuple):
     decays: Decays
     only: int | None
 
-    def normal_equations(self, point: Stand) -> NormalEquations:
+    def normal_equations(self, point: ModalObjective) -> NormalEquations:
         """Return information and gradient in what is free, each direction scaled to an information of one."""
         free = point.free if self.only is None else point.pole_of(self.only)
         information = point.information[np.ix_(free, free)]
-        scale = scales(np.diagonal(information).real)
+        scale = unit_scales(np.diagonal(information).real)
         directions = np.zeros((point.gradient.size, len(free)))
         directions[free, np.arange(len(free))] = scale
         unit = np.eye(len(free))
         scaled = information * scale[:, None] * scale + _ROUNDING * unit
         return NormalEquations(scaled, scale * point.gradient.ravel()[free], unit, directions)
 
-    def trial(self, point: Stand, step: Complex) -> tuple[Stand, float]:
+    def trial(self, point: ModalObjective, step: Complex) -> tuple[ModalObjective, float]:
         """Return the likelihood a step away, and what it gains."""
         moved = point.moved(step.reshape(point.gradient.shape))
         if not _allowed(moved, self.decays):
             return point, -np.inf
-        tried = Stand.at(self.decays, moved, point.weights)
+        tried = ModalObjective.at(self.decays, moved, point.weights)
         return _weighted(tried), point.cost - tried.cost
 
 
-def _weighted(stand: Stand) -> Stand:
-    return stand.weighted(1 / stand.variance)
+def _weighted(objective: ModalObjective) -> ModalObjective:
+    return objective.weighted(1 / objective.variance)
 
 
 def _allowed(poles: Poles, decays: Decays) -> bool:

@@ -240,7 +240,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     problems = Problems()
     read: list[Result] = []
     for one in results:
-        with problems.collecting():
+        with problems.collect():
             read.append(one if isinstance(one, Result) else load(one, series=False))
     problems.raise_if_any()
     labels = tuple(names) if names is not None else _labels(results, read)
