@@ -284,7 +284,7 @@ def test_a_read_only_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         return open_as_ever(path, mode, **how)
 
     monkeypatch.setattr(Path, "open", refuse)  # permissions do not bind the superuser, who may run the tests
-    with pytest.raises(InputError, match=r"cannot be written to \(Permission denied\).*see to its permissions"):
+    with pytest.raises(InputError, match=r"cannot be written to \(Permission denied\).*check its permissions"):
         write(one_drop(), tmp_path / "new")
     monkeypatch.undo()
     assert not (tmp_path / "new").exists()

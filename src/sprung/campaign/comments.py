@@ -86,7 +86,7 @@ def _with_comment(line: str, text: str) -> Iterator[str]:
 
 
 def describe_key(section: str, key: str) -> str:
-    """Say what a key of the campaign file means, as its JSON Schema does.
+    """Return the meaning of a key of the campaign file, from its JSON Schema.
 
     Parameters
     ----------

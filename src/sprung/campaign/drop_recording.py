@@ -20,7 +20,7 @@ from sprung.vehicle import Sensor
 
 
 def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
-    """Give sensors of different loggers, whose channels have one name, the logger's name before it.
+    """Return the sensors; where several have one channel name, the logger's name is put before it.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
 def assemble_recording(
     tables: Mapping[str, SampleTable], sensors: Sequence[tuple[Sensor, Sensor]], drop: Drop, name: str
 ) -> Recording:
-    """Make the recording of one drop.
+    """Return the recording of one drop, from the tables of its files.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def assemble_recording(
     of_file: dict[str, list[tuple[Sensor, Sensor]]] = {file: [] for file in tables}
     faults: list[Fault] = []
     for written, named in sensors:
-        with problems.collecting():
+        with problems.collect():
             file = _file_of(written, tables, loggers)
             if file is None:
                 faults.append(_nowhere(written, name))
@@ -79,7 +79,7 @@ def assemble_recording(
                 of_file[file].append((written, named))
     parts: list[Recording] = []
     for of, own in of_file.items():
-        with problems.collecting():
+        with problems.collect():
             if own:
                 part = make_recording(tables[of], [written for written, _ in own], of)
                 parts.append(replace(part, channels=tuple(named.channel for _, named in own)))
@@ -97,7 +97,7 @@ def assemble_recording(
 
 
 def _within(table: SampleTable, window: tuple[float, float] | None) -> SampleTable:
-    """Give the part of a table that lies within a window of its clock, s."""
+    """Return the part of a table within a window of its clock, s."""
     if window is None:
         return table
     time = table.time
@@ -105,7 +105,7 @@ def _within(table: SampleTable, window: tuple[float, float] | None) -> SampleTab
 
 
 def _file_of(sensor: Sensor, tables: Mapping[str, SampleTable], loggers: Collection[str]) -> str | None:
-    """Say which file a sensor's logger wrote: one named after it, or else the only one with such a channel.
+    """Return the file that a sensor's logger wrote: one with its name, otherwise the only one with such a channel.
 
     Where no file has its name, one named after another logger is not its own.
     """

@@ -146,7 +146,7 @@ def read_vehicle_file(path: Path) -> VehicleFile:
 
 
 def _vehicle(parsed: ParsedFile[VehicleFileSchema], name: str, problems: Problems) -> Vehicle | None:
-    """Make the vehicle of a file, or note what keeps it from being one."""
+    """Return the vehicle of a file; None, with the problems noted, where it is invalid."""
     if ("parameters",) in parsed.lost:
         return None
     # What was written but not understood is a problem already: it must not be called missing as well.
@@ -167,7 +167,7 @@ def _loads(file: CampaignFile) -> tuple[Load, ...]:
 
 
 def _files(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[int, tuple[str, ...]]:
-    """Give the recordings' names by the drop's index in the file, also of drops that are faulty otherwise."""
+    """Return the names of the recordings by the drop's index in the file, also of drops with other faults."""
     written = [] if ("drop",) in parsed.lost else parsed.document.get("drop", [])
     entries = {index: entry for index, entry in enumerate(written) if isinstance(entry, dict)}
     either = {index: entry.get("files") or [entry.get("file")] for index, entry in entries.items()}
@@ -208,14 +208,14 @@ def _tables(
 
 
 def _sources(files: Mapping[int, Sequence[str]], path: Path, signals: Signals) -> tuple[SourceFile, ...]:
-    """Give the checksum of everything that was read, each file once."""
+    """Return the checksums of all files that were read, each once."""
     recordings = dict.fromkeys(file for names in files.values() for file in names if file not in signals)
     names = (path.name, *recordings)
     return tuple(SourceFile.of(path.parent, name) for name in names if (path.parent / name).is_file())
 
 
 def _unread_fault(problem: Problem) -> Fault:
-    """Say of a recording that cannot be read that it is left out."""
+    """Return the fault of a recording that cannot be read."""
     what = f"{problem.found}, where {problem.expected} is expected; the recording is left out"
     return Fault("unreadable", problem.where, what, problem.do)
 
@@ -223,7 +223,7 @@ def _unread_fault(problem: Problem) -> Fault:
 def _check_signals(
     parsed: ParsedFile[CampaignFile], files: Mapping[int, Sequence[str]], signals: Signals, problems: Problems
 ) -> None:
-    """Whoever gives signals wants them used."""
+    """Add a problem for every given signal that no drop uses."""
     wanted = {file for names in files.values() for file in names}
     for name in signals:
         if name not in wanted and parsed.complete("drop"):
@@ -234,7 +234,7 @@ def _check_signals(
 def _check_channels(
     parsed: ParsedFile[CampaignFile], tables: Mapping[int, Mapping[str, SampleTable]], problems: Problems
 ) -> None:
-    """Every sensor must be in some recording; in which it is missing, the recording itself will say."""
+    """Add a problem for every sensor that is in no recording."""
     whole = [table for of_drop in tables.values() for table in of_drop.values()]
     columns = sorted({name for table in whole for name in table.channels})
     sensors = tuple(zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True))
@@ -269,7 +269,7 @@ def _recorded(
     recorded: dict[int, DropTest] = {}
     names = counted(progress, "checking the clocks and units of the recordings", tuple(unique_recording_names(drops)))
     for (index, of_drop), drop, name in zip(tables.items(), drops, names, strict=True):
-        with problems.collecting():
+        with problems.collect():
             recorded[index] = drop.with_recording(assemble_recording(of_drop, pairs, drop, name))
     return recorded
 

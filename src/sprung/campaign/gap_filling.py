@@ -157,13 +157,13 @@ def _known(signal: Real, part: slice) -> Real:
 
 
 def _spread(signal: Real) -> float:
-    """Give the noise of a channel from its steps, which slow motion does not touch."""
+    """Return the standard deviation of a channel's noise from its first differences (median absolute deviation)."""
     steps = np.abs(np.diff(_known(signal, slice(None))))
     return float(1.4826 * np.median(steps) / np.sqrt(2)) if steps.size else 0.0
 
 
 def _stretch(values: Real, rate: float, given: Flags) -> tuple[int, int, Flags]:
-    """Give the samples to keep, and the channels that are not whole there."""
+    """Return the first and last sample to keep, and the channels with gaps between them, shape (channel,)."""
     first, last, spoilt = 0, values.shape[1], np.zeros(len(values), dtype=bool)
     until, since = find_rest(values, rate)
     for channel in np.flatnonzero(np.isnan(values).any(axis=1) & given).tolist():

@@ -32,7 +32,7 @@ _UNITS = ["m/s^2", "g", "mg", "mm/s^2", "cm/s^2", "gal", "ft/s^2", "in/s^2"]
 
 
 def campaign_schema(of: type[CampaignFile] = CampaignFile) -> str:
-    """Make the JSON Schema of campaign.toml, or of another file of its kind, anew from the models, as text."""
+    """Return the JSON Schema of campaign.toml, or of another file of its kind, generated from the models, as text."""
     document = of.model_json_schema(schema_generator=_Toml)
     entries: dict[str, dict[str, Any]] = document["$defs"]
     properties = document["properties"]

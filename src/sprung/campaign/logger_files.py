@@ -8,7 +8,7 @@ from pathlib import PurePath
 
 
 def find_logger_files(files: Iterable[str], logger: str) -> list[str]:
-    """Give the files with a logger's name in theirs: as words of their own, or else as any part.
+    """Return the files whose names contain a logger's name: as a word of its own, otherwise as any part.
 
     Parameters
     ----------

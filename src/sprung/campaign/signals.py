@@ -48,7 +48,7 @@ def find_column(table: SampleTable, channel: str) -> tuple[int, ...]:
 
 
 def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> Recording:
-    """Make the recording of one drop.
+    """Return the recording of one drop, from the table of one file.
 
     Parameters
     ----------
@@ -75,17 +75,17 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
     left_out: list[Fault] = []
     done: dict[str, list[str]] = {}
     full_scale: list[float | None] = []
-    with problems.collecting():
+    with problems.collect():
         _refuse_backward(table, name)
     raw: dict[int, NDArray[np.float64]] = {}
     needed = [column[0] for sensor in sensors if len(column := find_column(table, sensor.channel)) == 1]
     table = _where_all_reach(table, needed)
-    with problems.collecting():
+    with problems.collect():
         raw = dict(zip(needed, table.take(needed), strict=True))
     problems.raise_if_any()
     values = np.full((len(sensors), table.samples), np.nan)
     for sensor, row in zip(sensors, values, strict=True):
-        with problems.collecting():
+        with problems.collect():
             found = _channel(table, raw, sensor, sensors, name)
             if isinstance(found, Fault):
                 left_out.append(found)
@@ -136,7 +136,7 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
 
 
 def _rate_ratios(table: SampleTable, sensors: Sequence[Sensor]) -> tuple[float, ...]:
-    """Give the samples that were taken for each one that is there, of each channel; nothing where all have one clock."""
+    """Return the rate ratio of each channel; empty where all channels have one clock."""
     columns = [find_column(table, sensor.channel)[:1] for sensor in sensors]
     slower = [
         table.resampled[column[0]].rate_ratio if column and column[0] in table.resampled else 1.0 for column in columns
@@ -145,7 +145,7 @@ def _rate_ratios(table: SampleTable, sensors: Sequence[Sensor]) -> tuple[float, 
 
 
 def _where_all_reach(table: SampleTable, needed: Sequence[int]) -> SampleTable:
-    """Leave out the few samples at the ends that columns of another clock do not reach."""
+    """Leave out the few samples at both ends that columns of another clock do not reach."""
     reach = [table.resampled[column] for column in needed if column in table.resampled]
     reach = [one for one in reach if one.last - one.first >= (1 - MAX_MISSING) * table.samples]
     first, last = max((one.first for one in reach), default=0), min((one.last for one in reach), default=table.samples)
@@ -155,7 +155,7 @@ def _where_all_reach(table: SampleTable, needed: Sequence[int]) -> SampleTable:
 def _channel(
     table: SampleTable, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
 ) -> tuple[NDArray[np.float64], str, float] | Fault:
-    """Give one sensor's samples, NaN where one is missing, what was done to them and the unit; or why it is left out."""
+    """Return samples in m/s² (NaN where missing), what was done to them and their unit; or why the channel is left out."""
     where, columns = f"{file}: {sensor.channel}", find_column(table, sensor.channel)
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
@@ -180,7 +180,7 @@ def _channel(
     no_number = ~(np.abs(samples) <= MAX_READING / factor)
     if no_number.all():
         first = f"the first {samples[0]:.4g} {unit}"
-        what = f"every sample reads more than any accelerometer can, {first}; the channel is left out of this drop"
+        what = f"every sample exceeds the range of any accelerometer, {first}; the channel is left out of this drop"
         return Fault("missing", where, what, "Check the sensor's cable and its unit.")
     source = (
         ""
@@ -215,7 +215,7 @@ def _refuse_backward(table: SampleTable, file: str) -> None:
         )
     usual = float(np.median(np.diff(time)))
     if usual < _SHORTEST:
-        found, do = f"{usual:.3g} s from one sample to the next", "See that the time is in s, or name its unit."
+        found, do = f"{usual:.3g} s from one sample to the next", "Check that the time is in s, or name its unit."
         raise InputError([Problem(file, found, f"steps of {_SHORTEST:g} s or more", do)])
 
 
@@ -230,4 +230,4 @@ def _too_slow(rate: float, file: str) -> Problem:
     do = "Record at 200 Hz or more."
     if 1e3 * rate >= MIN_RATE:
         do += " If the time is written in ms, name its column 'time [ms]'; if it only counts samples, give it in s."
-    return Problem(file, f"{rate:.4g} samples per second", f"at least {MIN_RATE:g}, to see wheels hop", do)
+    return Problem(file, f"{rate:.4g} samples per second", f"at least {MIN_RATE:g}, to resolve wheel hop", do)

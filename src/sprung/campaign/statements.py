@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def require_plausible(campaign: Campaign) -> None:
-    """Refuse a campaign that states what no two-axle vehicle has, or what contradicts itself.
+    """Check that the statements of a campaign are plausible for a two-axle vehicle and do not contradict each other.
 
     Reading refuses it already in a file; a campaign made or changed in memory is refused by the same checks.
 

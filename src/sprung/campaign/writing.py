@@ -129,7 +129,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
 
 
 def document_of_record(record: object, *without: str) -> dict[str, Any]:
-    """Give the keys of a record that say more than their defaults, as TOML holds them.
+    """Return the keys of a record that differ from their defaults, as TOML holds them.
 
     Parameters
     ----------
@@ -196,6 +196,6 @@ def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:
 
 
 def _si_per_reading(sensor: Sensor) -> float:
-    """Give m/s², positive up, in one unit of a sensor's reading: the inverse of what reading does."""
+    """Return the factor from the sensor's unit and direction to m/s², positive up."""
     factor = acceleration_factor(sensor.unit or split_unit(sensor.channel)[1] or "m/s^2")
     return -factor if sensor.direction == "down" else factor

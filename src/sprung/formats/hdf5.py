@@ -49,7 +49,7 @@ class Hdf5Format:
 
 
 def named(items: Any) -> list[str]:
-    """Give the names in a group or among attributes, without those that are no text.
+    """Return the names in a group or among attributes, without those that are not text.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def _words(h5py: Any, dataset: Any, budget: MemoryBudget) -> Node:
 
 
 def _attributes(h5py: Any, item: Any, budget: MemoryBudget) -> dict[str, Node]:
-    """Give the attributes that are words or single numbers."""
+    """Return the attributes that are text or single numbers."""
     node: dict[str, Node] = {}
     for name in named(item.attrs):
         identity = item.attrs.get_id(name)

@@ -16,7 +16,7 @@ _SLOWER = 1.5
 
 
 def interpolate(values: Real, time_from: Real, time_to: Real) -> Real:
-    """Give what a sensor would have read at other times.
+    """Return samples at the times of another clock.
 
     Parameters
     ----------

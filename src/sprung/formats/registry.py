@@ -118,7 +118,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
         raise InputError([Problem(path.name, "a folder", "a recording", "Name the file in it.")]) from None
     except OSError as error:
         reason = f"a file that cannot be read ({error.strerror})"
-        raise InputError([Problem(path.name, reason, "a recording", "See to its permissions.")]) from error
+        raise InputError([Problem(path.name, reason, "a recording", "Check its permissions.")]) from error
     known = formats()
     claiming = [name for name, format_ in known.items() if format_.claims(path, head)]
     match claiming:

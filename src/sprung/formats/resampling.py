@@ -37,7 +37,7 @@ class ResampledChannel(NamedTuple):
     last: int
 
     def within(self, first: int, last: int) -> ResampledChannel:
-        """Give the same for the part of the column from first up to last, last apart."""
+        """Return the record for the part of the column from first up to last, last excluded."""
         return ResampledChannel(self.rate_ratio, max(self.first - first, 0), max(min(self.last, last) - first, 0))
 
 

@@ -108,7 +108,7 @@ class _Header:
         return int(value)
 
     def step(self) -> tuple[float, float]:
-        """Give the time step and how far it may be rounded, half a unit of its last digit, s."""
+        """Return the time step and its rounding error, half a unit of its last digit, s."""
         value = self._decimal("DELTA_T", "the time step in s")
         exponent = value.as_tuple().exponent
         assert isinstance(exponent, int)  # noqa: S101 (it is finite; for the type checker)

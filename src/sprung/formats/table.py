@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def sample_number(sample: int) -> str:
-    """Say which sample it is, from 1, for formats in which nothing else says where one stands."""
+    """Return the number of a sample, from 1, as its place in the file."""
     return f"sample {sample + 1}"
 
 
@@ -114,7 +114,7 @@ class SampleTable:
     def pieces(
         self, columns: Sequence[int] | None = None, samples: int = 1 << 14
     ) -> Iterator[tuple[int, NDArray[np.float64]]]:
-        """Go through some columns piece by piece, in memory that does not grow with the file.
+        """Yield some columns piece by piece, in memory that does not grow with the file.
 
         Parameters
         ----------
@@ -143,7 +143,7 @@ class SampleTable:
             first += read.shape[1]
 
     def part(self, first: int, last: int) -> SampleTable:
-        """Give the samples from first up to last, last apart, as a table of their own, still unread."""
+        """Return the samples from first up to last, last excluded, as a table; nothing is read."""
 
         def read(columns: Sequence[int], begin: int, end: int, step: int) -> Iterator[NDArray[np.float64]]:
             return self.store.read(columns, first + begin, first + end, step)
@@ -160,7 +160,7 @@ class SampleTable:
         )
 
     def find_non_number(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:
-        """Say what stands in a column that is no number; None if nothing does, or if cells are merely empty.
+        """Return a problem for text in a column that is not a number; None where there is none, or where cells are only empty.
 
         A problem only where somebody needs the column. It may read the file again: ask where samples are missing.
 

@@ -110,7 +110,7 @@ def _clock(function: dict[str, Any], times: NDArray[np.float64] | None, count: i
 
 
 def _point(function: dict[str, Any]) -> str:
-    """Name where and in which direction was measured: ``3Z+``."""
+    """Return the node and direction of a measurement: ``3Z+``."""
     node, direction = int(function["rsp_node"]), int(function["rsp_dir"])
     if abs(direction) >= len(_DIRECTIONS):
         return f"{node}"

@@ -119,7 +119,7 @@ def _on_other_clocks(
 
 
 def _vectors(content: Content, scope: MetadataScope, notes: list[str]) -> list[Vector]:
-    """Take matrices apart, and find what everything is called."""
+    """Return the vectors of all blocks with their names."""
     lengths = {shape[0] for block in content.blocks if len(shape := _shape(block)) == 1}
     called = Counter(scope.called(block.path) for block in content.blocks)
     vectors: list[Vector] = []
@@ -142,14 +142,14 @@ def _vectors(content: Content, scope: MetadataScope, notes: list[str]) -> list[V
 
 
 def _shape(block: NumberBlock) -> tuple[int, ...]:
-    """Give the sides of a block; those of vectors of one length are two."""
+    """Return the shape of a block; that of vectors of one length has two sides."""
     if isinstance(block.numbers, Numbers):
         return block.numbers.shape
     return (*block.numbers[0].shape, len(block.numbers))
 
 
 def _columns(block: NumberBlock, lengths: set[int], notes: list[str]) -> Sequence[Samples]:
-    """Give the vectors in a block: a matrix lies along the side that some vector shares, or along its longer one."""
+    """Return the vectors in a block: along the side of a matrix as long as another vector, otherwise along its longer one."""
     if not isinstance(block.numbers, Numbers):
         return [vector.along(0)[0] for vector in block.numbers]
     if len(block.numbers.shape) == 1:
@@ -165,7 +165,7 @@ def _columns(block: NumberBlock, lengths: set[int], notes: list[str]) -> Sequenc
 
 
 def _recording(every: Sequence[Vector]) -> list[Vector]:
-    """Give the vectors of the length that the recording has."""
+    """Return the vectors that have the length of the recording."""
     counts = Counter(len(vector) for vector in every)
     timed = {len(vector) for vector in every if vector.is_time()}
     timed = {length for length in timed if counts[length] > 1} or set(counts)
@@ -205,7 +205,7 @@ def _with_units(vectors: Sequence[Vector], scope: MetadataScope, notes: list[str
 
 
 def _shortest(paths: Sequence[Path]) -> tuple[str, ...]:
-    """Name each by as few of its last names as tell it from the others."""
+    """Return a unique name for each path, of as few of its last parts as possible."""
     counts = Counter(path[-depth:] for path in paths for depth in range(1, len(path) + 1))
     depths = (next((d for d in range(1, len(p)) if counts[p[-d:]] == 1), len(p)) for p in paths)
     return tuple(".".join(path[-depth:]) for path, depth in zip(paths, depths, strict=True))
