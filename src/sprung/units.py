@@ -1,4 +1,4 @@
-"""Unit text to SI, once, at the door. Inside sprung every number is SI and carries no unit."""
+"""Units of recordings, converted to SI when they are read. Every other number of sprung is SI and carries no unit."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from sprung.errors import did_you_mean
 
 STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall, m/s² (CGPM 1901): the size of the unit g and of gravity in the model."""
+"""Standard acceleration of free fall, m/s² (CGPM 1901): the unit g, and gravity in the model."""
 
 _ACCELERATION = {
     "m/s^2": 1.0,
@@ -34,22 +34,22 @@ _SPELLINGS = {
 
 
 def acceleration_factor(text: str) -> float:
-    """Give the factor that turns a reading into m/s².
+    """Return the factor that converts a reading to m/s².
 
     Parameters
     ----------
     text
-        A unit of acceleration as loggers write it: ``m/s²``, ``m/s^2``, ``g``, ``mg``, ``mm/s2``, ``ft/s^2``...
+        Unit of acceleration as loggers write it: ``m/s²``, ``m/s^2``, ``g``, ``mg``, ``mm/s2``, ``ft/s^2``...
 
     Returns
     -------
     float
-        Metres per second squared in one of that unit.
+        m/s² per unit.
 
     Raises
     ------
     ValueError
-        If the unit is not one of acceleration; the message names the nearest one.
+        If it is no unit of acceleration; the message states the nearest one.
 
     Examples
     --------

@@ -193,6 +193,6 @@ class Campaign:
 def _as_record(given: object, kind: Callable[..., object], problems: Problems) -> object:
     """Return a record that was given by its keys, as a campaign file holds them; others as they are."""
     if isinstance(given, Mapping):
-        with problems.collecting():
+        with problems.collect():
             return kind(**given)
     return given

@@ -71,7 +71,7 @@ def assemble_recording(
     sensors_of_file: dict[str, list[tuple[Sensor, Sensor]]] = {file: [] for file in tables}
     faults: list[Fault] = []
     for written, named in sensors:
-        with problems.collecting():
+        with problems.collect():
             file = _file_of(written, tables, loggers)
             if file is None:
                 faults.append(_nowhere(written, name))
@@ -79,7 +79,7 @@ def assemble_recording(
                 sensors_of_file[file].append((written, named))
     parts: list[Recording] = []
     for file_name, of_logger in sensors_of_file.items():
-        with problems.collecting():
+        with problems.collect():
             if of_logger:
                 part = make_recording(tables[file_name], [written for written, _ in of_logger], file_name)
                 parts.append(replace(part, channels=tuple(named.channel for _, named in of_logger)))

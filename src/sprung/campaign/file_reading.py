@@ -269,7 +269,7 @@ def _recorded(
     recorded: dict[int, DropTest] = {}
     names = counted(progress, "checking the clocks and units of the recordings", tuple(unique_recording_names(drops)))
     for (index, of_drop), drop, name in zip(tables.items(), drops, names, strict=True):
-        with problems.collecting():
+        with problems.collect():
             recorded[index] = drop.with_recording(assemble_recording(of_drop, pairs, drop, name))
     return recorded
 

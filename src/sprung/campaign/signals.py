@@ -75,17 +75,17 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
     left_out: list[Fault] = []
     done: dict[str, list[str]] = {}
     full_scale: list[float | None] = []
-    with problems.collecting():
+    with problems.collect():
         _refuse_backward(table, name)
     raw: dict[int, NDArray[np.float64]] = {}
     needed = [column[0] for sensor in sensors if len(column := find_column(table, sensor.channel)) == 1]
     table = _common_range(table, needed)
-    with problems.collecting():
+    with problems.collect():
         raw = dict(zip(needed, table.take(needed), strict=True))
     problems.raise_if_any()
     values = np.full((len(sensors), table.samples), np.nan)
     for sensor, row in zip(sensors, values, strict=True):
-        with problems.collecting():
+        with problems.collect():
             found = _channel(table, raw, sensor, sensors, name)
             if isinstance(found, Fault):
                 left_out.append(found)

@@ -54,7 +54,7 @@ def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") 
         problems.raise_if_any()
     columns: list[Column] = []
     for index, signal in enumerate(signals):
-        with problems.collecting():
+        with problems.collect():
             columns.append(_column(signal, f"{name}[{index}]"))
     starts = {start for signal in signals if (start := _start(signal))}
     if len(starts) > 1:
@@ -84,11 +84,11 @@ def _column(signal: object, where: str) -> Column:
         if signal.get(key) is not None and not isinstance(signal[key], str):
             problems.add(f"{where}.{key}", _written(signal[key]), "text", "Write it in quotation marks.")
     data = np.empty(0)
-    with problems.collecting():
+    with problems.collect():
         if "data" in signal:
             data = _numbers(signal["data"], f"{where}.data")
     clock = ChannelClock(0.0, 0.0, len(data), None, np.zeros(len(data)))
-    with problems.collecting():
+    with problems.collect():
         clock = _clock(signal, len(data), where)
     problems.raise_if_any()
     name, location = str(signal["name"] or "").strip(), str(signal.get("location") or "").strip()

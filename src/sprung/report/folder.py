@@ -84,7 +84,7 @@ def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Save
         As `save_result`.
     """
     omissions, page = Omissions(result.omissions), ""
-    with omissions.noting("The report", "written"):
+    with omissions.record_failure("The report", "written"):
         page, missing = render_report(result)
         omissions.add(missing)
     result = replace(result, omissions=omissions.sentences)
@@ -121,7 +121,7 @@ def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) ->
     omissions = Omissions(missing)
     files = {FILE: page.encode()}
     if pdf:
-        with omissions.noting("The report as PDF", "written", unless=(InputError,)):
+        with omissions.record_failure("The report as PDF", "written", unless=(InputError,)):
             files[PDF_FILE] = pdf_of(result)
     atomic_write(folder, files, overwrite=overwrite)
     written = tuple(folder / name for name in files)

@@ -121,7 +121,7 @@ def simulate(
     for drop in counted(progress, "simulating the drops", setup.drops):
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         released.append(replace(drop, height=height))
-        with problems.collecting():
+        with problems.collect():
             fall = drop_from_blocks(
                 vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity
             )

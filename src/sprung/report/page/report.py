@@ -137,7 +137,7 @@ def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[
     for anchor, title, template, context in parts:
         body = None
         # A section that fails does not affect the others: the reason is given at the top.
-        with omissions.noting(f'The part "{title}" of the report'):
+        with omissions.record_failure(f'The part "{title}" of the report'):
             shown = context()
             if shown is not None:
                 body = ENVIRONMENT.get_template(template).render(**tools, **shown)
