@@ -26,7 +26,7 @@ class Sensor:
     position: tuple[Finite, Finite, Finite] | None = None
     """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""
     unit: str | None = None
-    """Overrides what the file says; m/s² when neither says."""
+    """Overrides the unit in the file; m/s² where neither states one."""
     direction: Literal["up", "down"] = "up"
     """Direction of a positive reading."""
     range: Positive | None = None
