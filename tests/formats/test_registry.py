@@ -42,7 +42,9 @@ def test_the_formats_of_this_package(monkeypatch: pytest.MonkeyPatch) -> None:
     assert list(formats()) == own
 
 
-def test_a_format_that_another_package_registers_again_counts_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_format_that_another_package_registers_again_counts_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     entry = EntryPoint("csv", "sprung.formats.csv:CsvFormat", "sprung.formats")
     installed(monkeypatch, entry, entry)
     (tmp_path / "a.csv").write_text("time,a\n0,1\n1,2\n")
