@@ -85,7 +85,7 @@ class Correlation:
 @shown
 @dataclass(frozen=True)
 class Estimates:
-    """Everything that may be said about the parameters.
+    """Estimates of the parameters, and what the data leave undetermined.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class Estimates:
 
 
 def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimates:
-    """Say what the fit allows to be said.
+    """Return the estimates of all parameters: values, unidentifiable combinations, scale and correlation.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimat
 
 
 def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> Estimate:
-    """Say what the fit says of one quantity.
+    """Return the estimate of one quantity.
 
     Parameters
     ----------

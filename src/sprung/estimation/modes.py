@@ -61,7 +61,7 @@ class ModeEstimate:
 
 
 def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
-    """Give the modes of one load, lowest frequency first.
+    """Return the modes of one load, lowest frequency first.
 
     Parameters
     ----------

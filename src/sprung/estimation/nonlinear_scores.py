@@ -34,7 +34,7 @@ def score_nonlinear_terms(
     values: Mapping[str, float],
     candidates: Mapping[str, Sequence[str]],
 ) -> dict[str, float]:
-    """Return what nonlinear forces would gain over a linear vehicle that is fitted already, by score tests.
+    """Return what nonlinear forces would gain over a fitted linear vehicle, by :term:`score tests <score test>`.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ def autocorrelation_inflation(
     counted: Real | float = 1.0,
     least: Real | float = 0.0,
 ) -> Real:
-    """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
+    """Estimate the :term:`autocorrelation inflation`: the variance of a mean of residuals over that of white ones.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def von_neumann_ratio(residuals: Sequence[Real]) -> Real:
 
 
 def birge_ratio(scores: Real, informations: Real) -> float:
-    """Estimate by how much the drops differ from each other beyond their noise.
+    """Estimate the :term:`Birge ratio`: how much the drops differ from each other, in units of their noise.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def birge_ratio(scores: Real, informations: Real) -> float:
 
 
 def drop_corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np.int64]]:
-    """Give each drop's own correction to the joint estimate, in units of its own uncertainty, squared and added up.
+    """Return each drop's correction of the joint estimate: sums of squares in units of its own uncertainty.
 
     Parameters
     ----------

@@ -45,7 +45,7 @@ class Mounting(NamedTuple):
     place: float = 0.0
 
     def engine(self, mass: float) -> dict[str, float]:
-        """Give the parameters of an engine of a mass in kg, SI, by name."""
+        """Return the parameters of an engine of a mass in kg, SI, by name."""
         omega = 2 * np.pi * self.frequency
         return {"m_e": mass, "k_e": mass * omega**2, "c_e": 2 * _MOUNT_DAMPING * mass * omega, "x_e": self.place}
 
@@ -55,7 +55,7 @@ USUAL_MOUNTING = Mounting()
 
 
 def mountings_of(wheelbase: float) -> list[Mounting]:
-    """Give how engines are usually mounted: above either axle.
+    """Return the usual mountings of engines: above either axle.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ def start_grid(
 
 
 def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:
-    """Give wheelbase and the front axle's share of the weight."""
+    """Return wheelbase and the front axle's share of the weight."""
     wheelbase = value.get("wheelbase")
     if wheelbase is None and "a" in value and "b" in value:
         wheelbase = value["a"] + value["b"]
