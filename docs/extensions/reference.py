@@ -38,6 +38,7 @@ ROOMS = (
     "planning",
     "estimation",
     "modal",
+    "optimisation",
     "preprocess",
     "simulation",
     "campaign",
