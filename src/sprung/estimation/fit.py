@@ -332,7 +332,7 @@ def score_linear_term(
     sensors: Sequence[Sensor],
     known: Mapping[str, KnownValue],
     values: Mapping[str, float],
-) -> float:
+) -> tuple[float, dict[str, float]]:
     """Give what a model with more parameters would gain over one that is fitted already, without fitting it.
 
     Parameters
@@ -346,10 +346,14 @@ def score_linear_term(
     -------
     float
         In twice the log-likelihood, to second order: the score test (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50).
+    dict
+        All parameters of the larger model after one Newton step, SI, by name.
     """
     problem = _climb(decays, models, sensors, known, values)
     point = problem.at(problem.priors.bind(problem.priors.coordinates.by_name(values)))
-    return problem.slope(point).newton[1]
+    step, gain = problem.slope(point).newton
+    estimates = problem.priors.coordinates.values(point.u + np.clip(step, -1.0, 1.0))
+    return gain, dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))
 
 
 def _climb(

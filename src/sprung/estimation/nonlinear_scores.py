@@ -31,7 +31,7 @@ def score_nonlinear_terms(
     models: Mapping[str, NonlinearModel],
     values: Mapping[str, float],
     candidates: Mapping[str, Sequence[str]],
-) -> dict[str, float]:
+) -> dict[str, tuple[float, dict[str, float]]]:
     """Score forces beside a linear vehicle that is fitted already.
 
     Parameters
@@ -48,7 +48,8 @@ def score_nonlinear_terms(
     Returns
     -------
     dict
-        What each would gain in twice the log-likelihood, to second order; 0 where modal coordinates do not exist.
+        By name of the candidate: its gain in twice the log-likelihood to second order, 0 where modal coordinates do not
+        exist; and the estimates of its parameters after one Newton step, SI, by name, the fitted ones adjusted.
 
     Raises
     ------
@@ -76,12 +77,13 @@ def score_nonlinear_terms(
     score = gradient[own:] - carried.T @ (
         (basis @ told).T @ gradient[:own] + told.T @ free.T @ prior.slopes.T @ prior.residual
     )
-    found = {}
+    scores = {}
     for name, names in candidates.items():
-        those = [brought.index(one) for one in names if left[brought.index(one), brought.index(one)] > 0]
-        system = left[np.ix_(those, those)]
-        found[name] = float(score[those] @ np.linalg.pinv(system, hermitian=True) @ score[those])
-    return found
+        effective = [brought.index(one) for one in names if left[brought.index(one), brought.index(one)] > 0]
+        step = np.linalg.pinv(left[np.ix_(effective, effective)], hermitian=True) @ score[effective]
+        estimates = {brought[i]: values[brought[i]] + float(by) for i, by in zip(effective, step, strict=True)}
+        scores[name] = (float(score[effective] @ step), {one: estimates.get(one, values[one]) for one in names})
+    return scores
 
 
 def _of_drop(
