@@ -83,7 +83,7 @@ def changed(
 
 
 def of_kind(campaign: sprung.Campaign, kind: str) -> list[int]:
-    """Give the channels on ``body`` or ``wheel``, those that feel gravity, ``DC``, and those that do not, ``AC``."""
+    """Return the channels on ``body`` or ``wheel``, or with ``DC`` or ``AC`` coupling."""
     tests: dict[str, Callable[[sprung.Sensor], bool]] = {
         "any": lambda _: True,
         "body": lambda one: one.on == "body",
@@ -95,7 +95,7 @@ def of_kind(campaign: sprung.Campaign, kind: str) -> list[int]:
 
 
 def everywhere(kind: str, how: Callable[[np.random.Generator, float], Change]) -> Act:
-    """Make an injury of one channel of a kind in all drops; `how` is told the samples per second."""
+    """Make an injury of one channel of a kind in all drops; `how` receives the samples per second."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         channels = of_kind(campaign, kind)
@@ -120,7 +120,7 @@ def once(how: Callable[[np.random.Generator, DropTest], Change]) -> Act:
 
 
 def clipped(kind: str) -> Act:
-    """Give a sensor of a kind too small a range: for the landing, and also for what follows it."""
+    """Reduce the range of a sensor so that it clips at the landing and after it."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         channel = int(random.choice(of_kind(campaign, kind)))
@@ -161,7 +161,7 @@ def through(values: Real, corner: float, test: DropTest) -> Real:
 
 
 def corner_unstated(kind: str, every: bool = False) -> Act:
-    """Say nothing of the high-pass of one or all AC-coupled sensors, or give such that feel gravity one of 0.05 to 2 Hz."""
+    """Remove the stated high-pass of one or all AC-coupled sensors, or filter DC-coupled ones at 0.05 to 2 Hz."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         chosen = of_kind(campaign, kind)
@@ -269,32 +269,37 @@ def reads_more(random: np.random.Generator, _: float) -> Change:
 
 
 OF_SENSORS: Sequence[Injury] = (
-    Injury("clipped, wheel", ("clipped",), "a wheel's sensor shows at most 40 to 80 % of the decays' peak", clipped("wheel")),
-    Injury("clipped, body", ("clipped",), "a body's sensor shows at most 40 to 80 % of the decays' peak", clipped("body")),
-    Injury("flat", ("flat",), "a channel shows one value in all drops", everywhere("any", flat)),
-    Injury("flat, noisy", ("flat",), "a channel shows nothing but noise in one drop", once(dead)),
-    Injury("spike", ("spike",), "one to three samples of a channel in one drop are off by 30 to 300 m/s²", once(spikes)),
-    Injury("unit, g as m/s²", ("unit",), "a channel counts g, and is read as m/s²", everywhere("any", units(1 / G))),
-    Injury("unit, mm/s²", ("unit",), "a channel counts mm/s², and is read as m/s²", everywhere("any", units(1e3))),
-    Injury("unit, m/s² as g", ("unit",), "a channel counts m/s², and is read as g", everywhere("any", units(G))),
-    Injury("sign, DC", ("sign",), "a channel that feels gravity is upside down", everywhere("DC", units(-1.0))),
-    Injury("sign, AC", ("sign",), "a channel that does not feel gravity is upside down", everywhere("AC", units(-1.0))),
-    Injury("gain", ("gain",), "a channel reads 5 % too much or too little", everywhere("any", reads_more)),
-    Injury("late", ("late",), "a channel is 3 to 10 ms late", everywhere("any", late)),
+    Injury("clipped, wheel", ("clipped",),
+           "a wheel sensor clips at 40 to 80 % of the peak of the free decays", clipped("wheel")),
+    Injury("clipped, body", ("clipped",), "a body sensor clips at 40 to 80 % of the peak of the free decays", clipped("body")),
+    Injury("flat", ("flat",), "a channel is constant in all drops", everywhere("any", flat)),
+    Injury("flat, noisy", ("flat",), "a channel contains only noise in one drop", once(dead)),
+    Injury("spike", ("spike",), "one to three samples of a channel in one drop have an error of 30 to 300 m/s²", once(spikes)),
+    Injury("unit, g as m/s²", ("unit",), "a channel is in g, stated as m/s²", everywhere("any", units(1 / G))),
+    Injury("unit, mm/s²", ("unit",), "a channel is in mm/s², stated as m/s²", everywhere("any", units(1e3))),
+    Injury("unit, m/s² as g", ("unit",), "a channel is in m/s², stated as g", everywhere("any", units(G))),
+    Injury("sign, DC", ("sign",), "a channel that measures gravity is inverted", everywhere("DC", units(-1.0))),
+    Injury("sign, AC", ("sign",), "a channel that does not measure gravity is inverted", everywhere("AC", units(-1.0))),
+    Injury("gain", ("gain",), "a channel has a gain error of +5 or -5 %", everywhere("any", reads_more)),
+    Injury("late", ("late",), "a channel is delayed by 3 to 10 ms", everywhere("any", late)),
     Injury("corner, DC", ("corner",),
-           "a channel stated to feel gravity has a high-pass of 0.05 to 2 Hz", corner_unstated("DC")),
-    Injury("corner, AC", ("corner",), "nothing is stated of a channel's high-pass", corner_unstated("AC")),
+           "a channel stated as DC has a high-pass of 0.05 to 2 Hz", corner_unstated("DC")),
+    Injury("corner, AC", ("corner",), "the high-pass of a channel is not stated", corner_unstated("AC")),
     Injury("corner, all DC", ("corner",),
-           "all channels stated to feel gravity have one high-pass of 0.05 to 2 Hz", corner_unstated("DC", every=True)),
-    Injury("corner, all AC", ("corner",), "nothing is stated of any channel's high-pass", corner_unstated("AC", every=True)),
-    Injury("corner, misstated", ("corner",), "twice or half the corner of a channel is stated", corner_misstated),
-    Injury("offset", ("offset", "gain"), "a sensor leans by 15 to 25 degrees", everywhere("any", tilted)),
-    Injury("drift, straight", ("drift",), "a channel drifts by 0.1 m/s² over each record", everywhere("any", ramp)),
-    Injury("drift, random walk", ("drift",), "a channel wanders, 0.1 m/s² in a second", everywhere("any", walk)),
-    Injury("exchanged, wheels", ("exchanged",), "two wheels' channels", exchanged("wheel", "wheel")),
-    Injury("exchanged, body", ("exchanged",), "two body channels", exchanged("body", "body")),
-    Injury("exchanged, body and wheel", ("exchanged",), "a body's and a wheel's channel", exchanged("body", "wheel")),
-    Injury("exchanged, one drop", ("exchanged",), "any two channels of one drop", exchanged("any", "any", in_one=True)),
-    Injury("twist", ("twist",), "the body twists at 9 to 15 Hz, to a tenth of its motion", twist),
+           "all channels stated as DC have the same high-pass of 0.05 to 2 Hz", corner_unstated("DC", every=True)),
+    Injury("corner, all AC", ("corner",), "the high-pass of all channels is not stated", corner_unstated("AC", every=True)),
+    Injury("corner, misstated", ("corner",),
+           "the stated corner frequency of a channel is twice or half the true one", corner_misstated),
+    Injury("offset", ("offset", "gain"), "a sensor is tilted by 15 to 25 degrees", everywhere("any", tilted)),
+    Injury("drift, straight", ("drift",), "a channel drifts linearly by 0.1 m/s² over each recording", everywhere("any", ramp)),
+    Injury("drift, random walk", ("drift",),
+           "a channel drifts as a random walk, 0.1 m/s² in one second", everywhere("any", walk)),
+    Injury("exchanged, wheels", ("exchanged",), "two wheel channels are exchanged", exchanged("wheel", "wheel")),
+    Injury("exchanged, body", ("exchanged",), "two body channels are exchanged", exchanged("body", "body")),
+    Injury("exchanged, body and wheel", ("exchanged",),
+           "a body channel and a wheel channel are exchanged", exchanged("body", "wheel")),
+    Injury("exchanged, one drop", ("exchanged",),
+           "two channels of one drop are exchanged", exchanged("any", "any", in_one=True)),
+    Injury("twist", ("twist",), "the body has a torsion mode at 9 to 15 Hz, with a tenth of its motion", twist),
 )  # fmt: skip
 """Of sensors, their cables and descriptions; and of the body, which is not as stiff as the model has it."""

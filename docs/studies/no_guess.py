@@ -1,4 +1,4 @@
-"""Is the optimum found without a guess, whatever the vehicle? Writes no-guess.md.
+"""Is the global optimum found without given start values? Writes no-guess.md.
 
 Run with `python docs/studies/no_guess.py --campaigns 500 --processes 2`, or `nox -s studies` for all studies.
 """
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from campaigns import AXLES, WEIGHING, Case, Real, Trial
 from numpy.typing import NDArray
-from pages import VERDICTS, arguments, figures, run, table, tell, write
+from pages import VERDICTS, arguments, figures, report_progress, run, table, write
 
 from sprung.analysis.fitted import fit_campaign
 from sprung.analysis.identify import result_of
@@ -137,18 +137,18 @@ def search(case: Case, number: int) -> Search:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("Fits without a guess beside fits from the truth.", campaigns=500).parse_args()
-    cases = [Case(vehicle(number), *TESTS[number % len(TESTS)], NOISE) for number in range(told.campaigns)]
+    options = arguments("Fits without a guess beside fits from the truth.", campaigns=500).parse_args()
+    cases = [Case(vehicle(number), *TESTS[number % len(TESTS)], NOISE) for number in range(options.campaigns)]
     searches = []
-    for case, one in zip(cases, run(search, [(case, 0) for case in cases], told.processes), strict=True):
+    for case, one in zip(cases, run(search, [(case, 0) for case in cases], options.processes), strict=True):
         searches.append(one)
         if abs(one.gain) > SAME or one.trial.verdict != "accept":
-            tell(f"{case.label}: {one.gain:+.3f} beside the fit from the truth, {one.trial.verdict}")
-    write(told.to, "no-guess", page(cases, searches), {"vehicles": [*map(document, cases, searches)]})
+            report_progress(f"{case.label}: {one.gain:+.3f} beside the fit from the truth, {one.trial.verdict}")
+    write(options.to, "no-guess", page(cases, searches), {"vehicles": [*map(document, cases, searches)]})
 
 
 def document(case: Case, one: Search) -> dict[str, object]:
-    """Give the vehicle and how its fit went as what JSON knows."""
+    """Return the vehicle and the figures of its fit for JSON."""
     return {
         "parameters": {name: figures(value) for name, value in case.vehicle.parameters.items()},
         "test": case.test,
@@ -176,7 +176,7 @@ def page(cases: Sequence[Case], searches: Sequence[Search]) -> str:
     rows = [[what, *_row(searches, gains, those)] for what, those in kinds.items()]
     head = ["vehicles", "campaigns", "optimum missed", "lowest gain", *VERDICTS]
     ended = ", ".join(f"{key} in {count}" for key, count in sorted(agreeing.items(), reverse=True))
-    told = "\n".join(
+    missed_vehicles = "\n".join(
         f"- {case.vehicle.name}, by {-one.gain:.2f}; verdict: {one.trial.verdict}, {one.reason}."
         for case, one in zip(cases, searches, strict=True)
         if one.gain < -SAME
@@ -184,49 +184,50 @@ def page(cases: Sequence[Case], searches: Sequence[Search]) -> str:
     masses = f"{MASS[0]:g} kg to {MASS[1] / 1000:g} t"
     body, hop = f"{BODY[0]:g} and {BODY[1]:g} Hz", f"{HOP[0]:g} and {HOP[1]:g} Hz"
     damping = f"{DAMPING[0]:g} to {DAMPING[1]:g}"
-    return f"""# Without a guess
+    return f"""# Start values
 
-The joint fit climbs from starts of its own, a small catalogue of usual vehicles; nobody is asked for a first guess. A
-likelihood may have more than one summit. Is the one that is found the highest, whatever the vehicle?
+The optimisation computes its own start values: modulating function estimates, and a grid of usual vehicles. No start
+value is asked of the user. A likelihood may have several local maxima. Is the optimum found the global one for every
+vehicle?
 
-## How it was done
+## Method
 
-{many} two-axle vehicles were drawn at random: the body's mass from {masses}, its modes between {body},
+{many} two-axle vehicles were drawn at random: sprung mass from {masses}, body modes between {body},
 wheel hop between {hop} (undamped frequencies of the whole vehicle), and damping ratios from {damping} of each
 end of the body on its springs; {
         real.sum()
-    } of the vehicles have real poles. Each was dropped from blocks of 5 cm, on all,
-front, rear, left and right wheels, with {
-        NOISE:g} m/s² of white noise of its own, and either weighed - its total mass or both
-axles, drawn from an uncertainty of {
-        100 * WEIGHING:g} % of its mass - or dropped again with a load. The wheelbase is known,
-nothing else.
+    } of the vehicles have real poles. Each was dropped from blocks of 5 cm, with all,
+front, rear, left and right wheels, with {NOISE:g} m/s² of white noise, and was either weighed (total mass or both
+axles, with an error drawn from an uncertainty of {
+        100 * WEIGHING:g} % of its mass) or dropped again with a load. Only the wheelbase is
+known.
 
-The whole of `sprung.identify` went over every campaign. Then the same decays were fitted once more, from a start at the
-true parameters, which ends on the summit that belongs to the truth. *Gain* is the log-likelihood of the fit without a
-guess less that of the fit from the truth; the optimum counts as missed where it is below -{SAME:g}.
+Every campaign was analysed by the complete `sprung.identify`. Then the same free decays were fitted once more, from a
+start at the true parameters, which converges to the maximum nearest to them. *Gain* is the log-likelihood of the fit
+without given start values minus that of the fit from the true values; the optimum counts as missed if it is below
+-{SAME:g}.
 
-## What came out
+## Results
 
 The optimum was missed {_times(missed)}; the fit from the truth ended lower than the one without a guess {
         _times(beaten)
     }.
-How many of its refined starts ended where the fit ended: {ended}.
-Of all 95 % intervals {covered:.1f} % hold the truth.
+Number of optimised starts that reached the same optimum: {ended}.
+Of all 95 % intervals {covered:.1f} % contain the true value.
 
 {table(head, rows)}
 {
         f'''
 Where it was missed:
 
-{told}
+{missed_vehicles}
 '''
-        if told
+        if missed_vehicles
         else ""
     }
-The verdict judges the records, not the search. Every vehicle, with its verdict, is in [no-guess.json](no-guess.json).
+The verdict refers to the data, not to the search. Every vehicle, with its verdict, is in [no-guess.json](no-guess.json).
 
-## To run it again
+## Reproduction
 
     python docs/studies/no_guess.py --campaigns {many} --processes 2
 """

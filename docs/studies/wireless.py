@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.campaign import Campaign, Recording, merge_loggers
-from sprung.simulation import default_sensors
+from sprung.simulation import default_sensors, drop_from_blocks
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, parse_record
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, parse_record
 
 Real = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class Wireless(NamedTuple):
         What each logger's clock shows at the release, less that time on a true clock that shows zero then; s, shape (drop,
         logger).
     together
-        The same drops as one logger would have recorded them, no less and no more told in every channel.
+        The same drops as one logger would have recorded them, with the same information in every channel.
     """
 
     campaign: Campaign

@@ -1,7 +1,5 @@
 from __future__ import annotations
 
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -145,7 +143,10 @@ def test_nothing_usable_is_a_problem(folder: Folder, text: Text) -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (("0.0100,", "0.0109,"), "up to line 7; the samples are no smoother at those times, and were taken to be even"),
+        (
+            ("0.0100,", "0.0109,"),
+            "up to line 7; the samples are not smoother at these times, and were taken as regular",
+        ),
         (("0.0100,9,11.5,-2.25\n", ""), "1 of 100 lines is missing, the first before line 7; filled in"),
     ],
 )
@@ -203,11 +204,6 @@ def test_a_vehicle_file(vehicle_file: Folder) -> None:
     assert [sensor.channel for sensor in file.sensors] == ["body_fl", "body_fr", "body_rl"]
     assert [load.name for load in file.loads] == ["empty", "ballast"]
     assert [drop.label for drop in file.drops] == ["empty_pitch_front", "ballast_bounce"]
-
-
-def test_importing_the_room_loads_no_pandas() -> None:
-    code = "import sys, sprung.campaign; sys.exit('pandas' in sys.modules)"
-    subprocess.run([sys.executable, "-c", code], check=True)  # noqa: S603 (our own code)
 
 
 @pytest.mark.shared

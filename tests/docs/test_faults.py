@@ -47,7 +47,7 @@ def spoil(name: str, test: DropTest = SMALL, seed: int = 0) -> tuple[sprung.Camp
 
 
 def spoilt_channel(name: str, test: DropTest = SMALL, seed: int = 0) -> list[tuple[Real, Real]]:
-    """Give what the spoilt channel read, and reads now, in every drop."""
+    """Return the damaged channel before and after, in every drop."""
     campaign, injured = spoil(name, test, seed)
     channel = [one.channel for one in campaign.sensors].index(injured.names[0])
     pairs = zip(campaign.recordings, injured.campaign.recordings, strict=True)
@@ -276,5 +276,5 @@ def test_the_study(tmp_path: Path) -> None:
         assert one["named"] <= one["noticed"] <= one["campaigns"] == sum(one["verdicts"].values())
     assert numbers["faults"][0]["named"] == numbers["faults"][0]["left_out"] == 2
     assert "Of 5 faults" in page
-    assert "2 campaigns were identified as they were" in page
+    assert "2 sound campaigns were identified" in page
     assert "nan" not in page

@@ -36,7 +36,7 @@ def page(built: Path, name: str) -> str:
 
 
 def words(built: Path, name: str) -> str:
-    """Give what a reader sees of a page."""
+    """Return the visible text of a page."""
     return " ".join(html.unescape(re.sub(r"<[^>]+>", "", page(built, name))).replace("’", "'").split())
 
 
@@ -88,7 +88,13 @@ def test_the_public_names_are_described(built: Path) -> None:
     text = page(built, "api") + page(built, "rooms")
     for name in sprung.__all__:
         assert f'id="sprung.{name}"' in text
-    for name in ("vehicle.PARAMETERS", "identification.Fit", "modal.Modes", "study.Comparison", "errors.InputError"):
+    for name in (
+        "vehicle.PARAMETERS",
+        "estimation.FitResult",
+        "modal.ModeSet",
+        "study.Comparison",
+        "errors.InputError",
+    ):
         assert f'id="sprung.{name}"' in text or f'id="sprung.{name.split(".")[1]}"' in text
 
 

@@ -178,7 +178,7 @@ def with_amplitudes(found: Identification, progress: Progress = silent) -> Resul
         return result  # what does not describe the recordings has no modes to follow
     omissions = Omissions(result.omissions)
     amplitudes: tuple[ModeAmplitude, ...] = ()
-    with omissions.noting("The amplitude curves"):
+    with omissions.record_failure("The amplitude curves"):
         motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
         amplitudes = amplitudes_of(fitted, motions, progress)
     return replace(result, amplitude=amplitudes, omissions=omissions.sentences)

@@ -24,6 +24,7 @@ from sprung.campaign import (
 )
 from sprung.checking.clock import ClockReport
 from sprung.checking.recorded import PlottedRecording
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.drafting import DraftCampaign, draft
 from sprung.errors import Fault, InputError
@@ -179,7 +180,8 @@ class Check:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return what happened in each drop as a table, times in s on the recording's own clock."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         columns = ["file", "load", "kind", "release", "landing", "start", "end", "rate", "faults"]
         rows = [[getattr(drop, one) for one in columns[:-1]] + [", ".join(drop.faults)] for drop in self.drops]
@@ -267,7 +269,7 @@ def _without_drop(drafted: DraftCampaign) -> Iterator[Fault]:
     """Name the recordings in which no drop was found."""
     for file in drafted.files:
         if not file.drops:
-            why = file.refused[0].why if file.refused else "nothing in it moves"
+            why = file.rejected[0].why if file.rejected else "nothing in it moves"
             do = "Look whether it is the right recording, and name its unit if it has another."
             yield Fault("no-drop", file.name, f"no drop was found: {why}", do)
     for name, problems in drafted.unreadable.items():

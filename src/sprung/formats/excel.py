@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 from sprung.errors import InputError
 from sprung.formats.csv import table_from_lines
 from sprung.formats.libraries import load_library
-from sprung.formats.reading_errors import MemoryBudget, contained, input_error
+from sprung.formats.reading_errors import MemoryBudget, input_error, reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _KIND = "an Excel workbook"
 _ZIP, _COMPOUND = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
@@ -31,7 +31,7 @@ class ExcelFormat:
         """Claim by the ending, older and other workbooks too, so that the refusal can say what to do."""
         return path.suffix.lower() in {".xlsx", ".xlsm", ".xls", ".xlsb", ".ods"}
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read the only sheet that holds a recording; dates, decimal commas and rows of units as in a text table.
 
         Raises
@@ -42,10 +42,10 @@ class ExcelFormat:
         _refuse_others(path)
         openpyxl = load_library("openpyxl", "excel", path)
         budget = MemoryBudget(path)
-        with contained(path.name, "Excel workbook"):
+        with reading(path.name, "an Excel workbook"):
             workbook = openpyxl.load_workbook(path, read_only=True, data_only=True)
         try:
-            with contained(path.name, "Excel workbook"):
+            with reading(path.name, "an Excel workbook"):
                 sheets = {sheet.title: list(_lines(sheet, budget)) for sheet in workbook.worksheets}
         finally:
             workbook.close()
@@ -94,13 +94,13 @@ def _cell(value: object) -> str:
             return " ".join(str(value).split())
 
 
-def _the_table(sheets: dict[str, list[str]], path: Path) -> Table:
+def _the_table(sheets: dict[str, list[str]], path: Path) -> SampleTable:
     """Understand every sheet; the one that is a recording is meant, and others, such as a cover, are not."""
     if not sheets:
         raise input_error(
             path.name, "a workbook without content", "a sheet with the time and the channels", "Export it again."
         )
-    tables: dict[str, Table] = {}
+    tables: dict[str, SampleTable] = {}
     problems: dict[str, InputError] = {}
     for name, lines in sheets.items():
         try:

@@ -145,18 +145,18 @@ def _vector(samples: Samples) -> Numbers:
 def _store(
     path: Path, name: str, size: tuple[int, int], get: Callable[..., NDArray[np.float64]], at_once: int
 ) -> Store:
-    """Make a store of a dataset, which stays open from piece to piece: its library keeps what it unpacked that long."""
+    """Return a store of a dataset, which stays open from piece to piece: its library keeps what it unpacked that long."""
 
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
         kind = "an HDF5 file"
-        with reading(path, kind):
+        with reading(path.name, kind):
             file = load_library("h5py", "hdf5", path).File(path, "r", rdcc_nbytes=_UNPACKED)
         with file:
-            with reading(path, kind):
+            with reading(path.name, kind):
                 source = file[name]
             for begin, end in split_range(first, last, step):
                 values = np.empty((len(columns), end - begin))
-                with reading(path, kind):
+                with reading(path.name, kind):
                     for low, high in split_range(begin, end, at_once):
                         values[:, low - begin : high - begin] = get(source, columns, low, high)
                 yield values

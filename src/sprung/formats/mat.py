@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _KIND = "a MATLAB file of vectors"
 _DO = "In MATLAB, save the time in s and the channels as plain vectors, such as t = seconds(tt.Time) and a = tt.a."
@@ -38,7 +38,7 @@ class MatFormat:
         signed = head.startswith(SIGNATURE)
         return path.suffix.lower() == ".mat" and (named or old) and not signed
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -55,7 +55,7 @@ class MatFormat:
 
 
 def _read(variables: Callable[[Path, MemoryBudget], dict[str, Node]], path: Path) -> Node:
-    with reading(path, _KIND):
+    with reading(path.name, _KIND):
         return variables(path, MemoryBudget(path))
 
 
@@ -66,7 +66,7 @@ def _words(rows: list[str]) -> Node:
 def _read_7_3(path: Path) -> Node:
     h5py = load_library("h5py", "hdf5", path)
     budget = MemoryBudget(path)
-    with reading(path, _KIND), h5py.File(path, "r") as file:
+    with reading(path.name, _KIND), h5py.File(path, "r") as file:
         items = {name: file[name] for name in named(file) if not name.startswith("#")}
         return {name: _item(h5py, path, item, budget, 0) for name, item in items.items()}
 

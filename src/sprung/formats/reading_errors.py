@@ -24,7 +24,7 @@ SPARE = 50_000_000
 
 
 def memory_limit(size: int) -> int:
-    """Give the bytes that reading a file may take, from its size in bytes."""
+    """Return the bytes of memory that reading a file may take, from its size in bytes."""
     return LARGEST * size + SPARE
 
 
@@ -42,18 +42,25 @@ def check_declared_size(numbers: int, file: str, largest: float) -> None:
 
 
 def input_error(where: str, found: str, expected: str, do: str) -> InputError:
-    """Make the error of a single problem."""
+    """Return the error of a single problem."""
     return InputError([Problem(where, found, expected, do)])
 
 
 def truncation_error(where: str, found: str) -> InputError:
-    """Make the error of a file that ends too early."""
+    """Return the error of a file that ends too early."""
     return input_error(where, found, "a complete file", "It is cut short: copy or export the recording again.")
 
 
 @contextmanager
-def contained(where: str, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises over a file into an `InputError`, and keep it silent.
+def reading(where: str, kind: str) -> Iterator[None]:
+    """Turn whatever a library raises over a file into an `InputError`; its warnings and log messages are silenced.
+
+    Parameters
+    ----------
+    where
+        Name of the file, or of a part of it.
+    kind
+        What the file should be, such as ``a WAV file``.
 
     Raises
     ------
@@ -61,7 +68,7 @@ def contained(where: str, kind: str) -> Iterator[None]:
         If the block raises anything.
     """
     level = logging.root.manager.disable
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), np.errstate(invalid="ignore"):
         warnings.simplefilter("ignore")
         logging.disable(logging.CRITICAL)
         try:
@@ -69,38 +76,11 @@ def contained(where: str, kind: str) -> Iterator[None]:
         except InputError:
             raise
         except Exception as error:
-            reason = " ".join(f"{type(error).__name__}: {error}".split())[:200]
-            found, do = f"content that cannot be read ({reason})", "Export the recording again, or in another format."
-            raise input_error(where, found, f"a sound {kind} file", do) from error
+            reason = " ".join(str(error).split()) or type(error).__name__
+            found = f"a damaged file ({reason[:200]})"
+            raise input_error(where, found, kind, "Copy or export it again, or in another format.") from error
         finally:
             logging.disable(level)
-
-
-@contextmanager
-def reading(path: Path, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises over a file into bad input; numbers that are none are no reason for a warning.
-
-    Parameters
-    ----------
-    path
-        The file.
-    kind
-        What it should be, ``a WAV file``.
-
-    Raises
-    ------
-    InputError
-        If the block raises anything.
-    """
-    try:
-        with np.errstate(invalid="ignore"):
-            yield
-    except InputError:
-        raise
-    except Exception as error:
-        reason = " ".join(str(error).split()) or type(error).__name__
-        found = f"a damaged file ({reason[:200]})"
-        raise input_error(path.name, found, kind, "Copy or export it again.") from error
 
 
 class MemoryBudget:
@@ -118,7 +98,7 @@ class MemoryBudget:
         self._left = memory_limit(self._size)
 
     def take(self, count: int) -> None:
-        """Take some bytes of it.
+        """Reserve some bytes.
 
         Raises
         ------

@@ -9,11 +9,11 @@ import numpy as np
 
 from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times, regular_clock
 from sprung.formats.libraries import load_library
-from sprung.formats.reading_errors import check_declared_size, contained, input_error, memory_limit, truncation_error
+from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
 from sprung.formats.sample_store import Samples, Store, split_range
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import split_unit
 from sprung.formats.text_clock import TIME_NAMES
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _MAGIC = b"TDSm"
 _LEAD_IN, _BIG_ENDIAN = 28, 1 << 6
@@ -35,7 +35,7 @@ class TdmsFormat:
         """Claim by the ending and the mark that begins every segment."""
         return path.suffix.lower() == ".tdms" and head.startswith(_MAGIC)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -47,7 +47,7 @@ class TdmsFormat:
         _refuse_cut_short(path)
         # Given a stream, the library leaves the index beside the file alone, which may be of another recording.
         with path.open("rb") as stream:
-            with contained(file, "TDMS"):
+            with reading(file, "a TDMS file"):
                 content = nptdms.TdmsFile.open(stream)
                 groups = {group.name: group.channels() for group in content.groups()}
                 numbers = sum(len(channel) for channels in groups.values() for channel in channels)
@@ -55,7 +55,7 @@ class TdmsFormat:
                 check_declared_size(numbers, file, 0.0)
             columns: list[Column] = []
             timeless: list[str] = []
-            with contained(file, "TDMS"):
+            with reading(file, "a TDMS file"):
                 zero = _zero([channel for channels in groups.values() for channel in channels])
                 samples = _samples([channel for channels in groups.values() for channel in channels], path)
                 for name, channels in groups.items():
@@ -71,7 +71,7 @@ class TdmsFormat:
 
 
 def _refuse_cut_short(path: Path) -> None:
-    """Go from segment to segment: the last must end where the file does."""
+    """Check that the last segment ends where the file does."""
     size, position = path.stat().st_size, 0
     with path.open("rb") as stream:
         while position < size:
@@ -92,7 +92,7 @@ def _refuse_cut_short(path: Path) -> None:
 def _columns(
     channels: Sequence[Any], group: str, zero: Any, file: str, samples: Mapping[str, Samples]
 ) -> tuple[list[Column], list[str]]:
-    """Give the channels of a group, and the names of those that have no time."""
+    """Return the channels of a group, and the names of those without time."""
     times = next((channel for channel in channels if _is_time(channel)), None)
     shared = None if times is None else _times(times, file)
     columns: list[Column] = []
@@ -115,7 +115,7 @@ def _is_time(channel: Any) -> bool:
 
 
 def _times(channel: Any, file: str) -> ChannelClock:
-    with contained(f"{file}: channel '{channel.name}'", "TDMS"):
+    with reading(f"{file}: channel '{channel.name}'", "a TDMS file"):
         samples = np.asarray(channel[:])
     if samples.dtype.kind == "M":
         return clock_from_times((samples - samples[0]) / np.timedelta64(1, "ns") * 1e-9)
@@ -144,7 +144,7 @@ def _clock(channel: Any, shared: ChannelClock | None, zero: Any, where: str) -> 
 
 
 def _zero(channels: Sequence[Any]) -> Any:
-    """Give the earliest start, from which those of all channels are counted."""
+    """Return the earliest start of all channels, from which the others are counted; None where one has none."""
     starts = [channel.properties.get("wf_start_time") for channel in channels if len(channel)]
     absolute = [start for start in starts if isinstance(start, np.datetime64) and not np.isnat(start)]
     return min(absolute) if absolute and len(absolute) == len(starts) else None
@@ -157,7 +157,7 @@ def _name_and_unit(channel: Any) -> tuple[str, str | None]:
 
 
 def _samples(channels: Sequence[Any], path: Path) -> dict[str, Samples]:
-    """Give the samples of all channels of numbers by their paths in the file; those of one length share a store."""
+    """Return the samples of all numeric channels by their paths in the file; those of one length share a store."""
     lengths: dict[int, list[str]] = {}
     for channel in channels:
         if channel.dtype.kind in "fiub":
@@ -172,14 +172,14 @@ def _store(path: Path, channels: Sequence[str], length: int) -> Store:
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
         nptdms = load_library("nptdms", "tdms", path)
         with path.open("rb") as stream:
-            with contained(path.name, "TDMS"):
+            with reading(path.name, "a TDMS file"):
                 content = nptdms.TdmsFile.open(stream)
                 own = {channel.path: channel for group in content.groups() for channel in group.channels()}
             for begin, end in split_range(first, last, step):
                 values = np.empty((len(columns), end - begin))
                 for row, column in zip(values, columns, strict=True):
                     channel = own[channels[column]]
-                    with contained(f"{path.name}: channel '{channel.name}'", "TDMS"):
+                    with reading(f"{path.name}: channel '{channel.name}'", "a TDMS file"):
                         samples = channel.read_data(begin, end - begin)
                         if len(samples) < end - begin:
                             raise truncation_error(path.name, f"{begin + len(samples)} of {length} samples")

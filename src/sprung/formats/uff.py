@@ -10,7 +10,7 @@ import numpy as np
 from sprung.errors import did_you_mean
 from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times, regular_clock
 from sprung.formats.libraries import load_library
-from sprung.formats.reading_errors import contained, input_error, memory_limit, truncation_error
+from sprung.formats.reading_errors import input_error, memory_limit, reading, truncation_error
 from sprung.formats.sample_store import Samples, Store, split_range
 from sprung.formats.stated_rates import TIME_UNITS
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".uff", ".unv", ".uf", ".58", ".bunv"))
 _HEAD = re.compile(rb"\s*-1 *\r?\n {0,5}\d+")
@@ -38,7 +38,7 @@ class UffFormat:
         """Claim by the ending and the mark that begins every data set."""
         return path.suffix.lower() in _SUFFIXES and _HEAD.match(head) is not None
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -51,12 +51,12 @@ class UffFormat:
             raise truncation_error(file, "a data set without its end")
         columns: list[Column] = []
         others: list[int] = []
-        with contained(file, "UFF"):
+        with reading(file, "a universal file"):
             content = pyuff.UFF(str(path))
             numbers = [number for number, kind in enumerate(content.get_set_types()) if kind == 58]
         for number in numbers:
             where = f"{file}: data set {number + 1}"
-            with contained(where, "UFF"):
+            with reading(where, "a universal file"):
                 head = content.read_sets(number, header_only=True)
             if head["func_type"] != _TIME_RESPONSE or head["ord_data_type"] not in _REAL:
                 others.append(head["func_type"])
@@ -66,7 +66,7 @@ class UffFormat:
                 raise input_error(
                     where, f"binary numbers of format {head['fp_format']}", f"format {_IEEE}, IEEE 754", do
                 )
-            with contained(where, "UFF"):
+            with reading(where, "a universal file"):
                 columns.append(_column(content, number, head, where))
         notes = [f"left out {len(others)} functions that are no real time responses"] if others else []
         return assemble_table(columns, file, memory_limit(path.stat().st_size), notes)
@@ -81,7 +81,7 @@ def _column(content: Any, number: int, head: dict[str, Any], where: str) -> Colu
         raise truncation_error(where, f"{len(times)} of {declared} samples")
 
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
-        with contained(where, "UFF"):  # the library reads a function as a whole
+        with reading(where, "a universal file"):  # the library reads a function as a whole
             values = np.asarray(content.read_sets(number)["data"], dtype=np.float64)
         if len(values) < declared:
             raise truncation_error(where, f"{len(values)} of {declared} samples")
@@ -110,7 +110,7 @@ def _clock(function: dict[str, Any], times: NDArray[np.float64] | None, count: i
 
 
 def _point(function: dict[str, Any]) -> str:
-    """Name where and in which direction was measured: ``3Z+``."""
+    """Return the node and direction of a measurement: ``3Z+``."""
     node, direction = int(function["rsp_node"]), int(function["rsp_dir"])
     if abs(direction) >= len(_DIRECTIONS):
         return f"{node}"

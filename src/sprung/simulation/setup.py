@@ -73,7 +73,7 @@ class SimulationSetup:
         model: ModelChoice | Mapping[str, Any] | None,
         problems: Problems,
     ) -> SimulationSetup:
-        """Put a test together from the arguments of `simulate`; what does not fit is added to the problems.
+        """Return the setup of a test from the arguments of `simulate`; every mistake in them is added to the problems.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ class SimulationSetup:
         )
         given_loads = records(Load, "loads", loads or (), problems)
         for i, load in enumerate(given_loads):
-            if not load.described:
+            if not load.is_described:
                 do = "A load needs items = [...] or added = {...}."
                 problems.add(f"simulate: loads[{i}]", "neither items nor added", "what the load adds", do)
         all_loads = (EMPTY, *(load for load in given_loads if load != EMPTY))
@@ -134,7 +134,7 @@ class SimulationSetup:
     def campaign(
         self, drops: Sequence[Drop], accelerations: Iterable[Array], what: str, random: np.random.Generator
     ) -> Campaign:
-        """Measure what happened.
+        """Return the campaign that the sensors would have recorded.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ def _check_plausible(
     known: Mapping[str, KnownValue],
     problems: Problems,
 ) -> None:
-    """Add a problem for everything that a vehicle file may not state either."""
+    """Add a problem for every statement that a vehicle file may not make either."""
     check_statements(
         "simulate",
         sensors=sensors,

@@ -131,7 +131,7 @@ def _known(campaign: Campaign) -> Iterator[Candidate]:
         def settled(
             fault: Fault, trial: CandidateFit, name: str = name, value: float = stated.value, unit: str = unit
         ) -> Fault:
-            found = DERIVED[name](trial.optimum.parameters)[0] if name in DERIVED else trial.optimum.parameters[name]
+            found = DERIVED[name].value(trial.optimum.parameters) if name in DERIVED else trial.optimum.parameters[name]
             what = (
                 f"the recordings contradict the known {name}: {value:g} {unit} is stated, {found:.4g} {unit} fits them"
             )
