@@ -106,7 +106,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
 
 def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
     """Return the search with the body carried at the height that fits better, where two heights are known."""
-    if not search.structure.heights.undecided:
+    if not search.structure.heights.is_ambiguous:
         return search
     other = search.refit(replace(search.structure, carried_at="roll axis"))
     return other if other.fit.loglikelihood > search.fit.loglikelihood else search

@@ -2,7 +2,8 @@
 
 A new term is one row here, its law and parameters in `sprung.vehicle`, and one test. Sizes are ratios to what the term acts
 beside; usual sizes and their spread are those of road vehicles (Dixon, The Shock Absorber Handbook, 2007; Gillespie,
-Fundamentals of Vehicle Dynamics, 1992; Reimpell, The Automotive Chassis, 2001), rounded.
+Fundamentals of Vehicle Dynamics, 1992; Reimpell, The Automotive Chassis, 2001), rounded. A size is negligible where leaving
+the term out moves no other parameter by more than about one percent (tests/selection/test_practical_effect.py).
 """
 
 from __future__ import annotations
@@ -179,21 +180,21 @@ TERMS: Mapping[str, ModelTerm] = {
             _of_axles(lambda p, axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"])),
             typical=1.0,
             spread=3.0,
-            negligible=0.03,
+            negligible=0.01,
             resembles_others=True,
             undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
             first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
         ),
-        ModelTerm("rebound", _of_axles(lambda p, axle: p[f"r_{axle}"] - 1), typical=0.8, spread=2.0, negligible=0.03),
+        ModelTerm("rebound", _of_axles(lambda p, axle: p[f"r_{axle}"] - 1), typical=0.8, spread=2.0, negligible=0.01),
         ModelTerm(
-            "progressive", _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]), typical=0.2, spread=2.5, negligible=0.03
+            "progressive", _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]), typical=0.2, spread=2.5, negligible=0.02
         ),
         ModelTerm(
             BUMP_STOP,
             _of_axles(lambda p, axle: p[f"k_b{axle}"] / p[f"k_s{axle}"]),
             typical=3.0,
             spread=3.0,
-            negligible=0.03,
+            negligible=0.02,
             undefined=lambda _, structure: dict.fromkeys(("x_bf", "x_br"), structure.stop_gap),
         ),
     )
