@@ -83,9 +83,14 @@ def von_neumann_ratio(residuals: Sequence[Real]) -> Real:
         About 1 for white noise, much more where a motion is left, 0 for channels that are left out; shape (channel,).
         From second differences, which a slow drift does not change (J. von Neumann, Ann. Math. Stat. 12 (1941) 367).
     """
-    squares = np.nansum([np.mean(record**2, axis=1) for record in residuals], axis=0)
-    differences = np.nansum([np.mean(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in residuals], axis=0) / 6
+    squares = np.nansum([_mean_square(record) for record in residuals], axis=0)
+    second = [record[:, 2:] - 2 * record[:, 1:-1] + record[:, :-2] for record in residuals]
+    differences = np.nansum([_mean_square(record) for record in second], axis=0) / 6
     return np.asarray(squares / np.maximum(differences, np.finfo(float).tiny))
+
+
+def _mean_square(record: Real) -> Real:
+    return np.asarray(np.einsum("ct,ct->c", record, record) / record.shape[1])
 
 
 def birge_ratio(scores: Real, informations: Real) -> float:
