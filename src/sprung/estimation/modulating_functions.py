@@ -56,7 +56,7 @@ def modulating_function_estimate(
     sensors
         The sensors.
     size
-        Size of the vehicle; its mass is used where it was weighed, or where no load tells the scale.
+        Size of the vehicle; its mass is used where it was weighed, or where no load determines the scale.
 
     Returns
     -------
