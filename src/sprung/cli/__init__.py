@@ -1,4 +1,4 @@
-"""The command line: parse, call, print, exit code; nothing is computed here."""
+"""The command line: parse arguments, call, print, exit status; it computes nothing."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from sprung.cli.stopping import stopped_before, stopping_like_ctrl_c, was_stoppe
 from sprung.errors import SprungError
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""What tells NumPy's libraries, when it is imported, how many threads to use."""
+"""Environment variables that set the number of threads of NumPy's libraries at import."""
 
 
 def main() -> None:
-    """Run the command line; exit status 0, 1, 2 or 3 as the contract has it, 130 on Ctrl-C, 143 on SIGTERM."""
+    """Run the command line; exit status 0, 1, 2 or 3, 130 on Ctrl-C, 143 on SIGTERM."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that knows no ² must still get the numbers

@@ -1,4 +1,4 @@
-"""The command line's application: its group of commands, and what several of them take."""
+"""The application: its group of commands, and arguments that several commands share."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ ORDER = (
     "paper",
     "schema",
 )
-"""The commands in the order of work: first an example to look at, then the way from recordings to results."""
+"""The commands in the order of work: first an example, then from recordings to results."""
 
 
 class Commands(TyperGroup):
-    """The commands; Ctrl-C and SIGTERM end any of them with the shell's own status and without a traceback."""
+    """The group of commands; Ctrl-C and SIGTERM end a command with the shell's status and without a traceback."""
 
     def list_commands(self, ctx: Any) -> list[str]:
         """List the commands in the order of work."""
@@ -48,7 +48,7 @@ class Commands(TyperGroup):
         formatter.write(group_help(usage, self.help or "", options, commands))
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that was asked for."""
+        """Run the command."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt as stopped:
@@ -59,7 +59,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Program(typer.Typer):
-    """The program; its commands write their own help."""
+    """The application; its commands format their own help."""
 
     def command(self, name: str | None = None, **options: Any) -> Callable[[Function], Function]:
         """Add a command."""
@@ -68,7 +68,7 @@ class Program(typer.Typer):
 
 app = Program(
     cls=Commands,
-    help="Find the physical parameters of a two-axle road vehicle from drop tests.",
+    help="Identify the physical parameters of a two-axle road vehicle from drop tests.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -76,15 +76,13 @@ app = Program(
 )
 
 CampaignFile = Annotated[
-    Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.", autocompletion=campaigns)
+    Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or its folder.", autocompletion=campaigns)
 ]
 Force = Annotated[
     bool,
-    typer.Option(
-        "--force", help="Overwrite files that sprung did not write, or that were changed since it wrote them."
-    ),
+    typer.Option("--force", help="Overwrite files that sprung did not write, or that were changed since."),
 ]
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on standard output, and nothing else.")]
 
 
 def _version(wanted: bool) -> None:
@@ -96,7 +94,7 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
-    """Find the physical parameters of a two-axle road vehicle from drop tests."""
+    """Identify the physical parameters of a two-axle road vehicle from drop tests."""

@@ -1,4 +1,4 @@
-"""The text of ``--help``: written for the width of the terminal, with nothing cut and an example for every command."""
+"""The text of ``--help``: formatted for the width of the terminal, with an example for every command."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from typing import Any
 from typer.core import TyperCommand
 
 _LONGEST = 90
-"""Columns that a line of help has at most."""
+"""Largest number of columns of a line of help."""
 
 _BESIDE = 60
-"""Columns from which on a text stands beside what it explains; on a narrower terminal it stands below."""
+"""Number of columns from which a description is beside its name; on a narrower terminal it is below."""
 
 
 class Command(TyperCommand):
-    """A command whose help fits any terminal."""
+    """A command whose help is formatted for the terminal."""
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help of the command."""
@@ -33,7 +33,7 @@ class Command(TyperCommand):
 
 
 def readable(message: str) -> str:
-    """Wrap a message between words for the terminal that it goes to, if it goes to one; paths stay whole.
+    """Wrap a message between words if it is printed on a terminal; paths are not broken.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def _page(usage: str, text: str | None, arguments: Iterable[Any], options: Itera
 
 
 def _flags(one: Any) -> str:
-    """Write how a parameter is given: ``-o, --output DIR``."""
+    """Return how a parameter is given: ``-o, --output DIR``."""
     if one.param_type_name == "argument":
         return str(one.metavar)
     value = "" if one.is_flag or one.count else f" {one.metavar or one.name.upper()}"
@@ -120,7 +120,7 @@ def _meaning(one: Any) -> str:
 
 
 def _explained(name: str, text: str, beside: int) -> Iterator[str]:
-    """Set a text beside its name, or below it where the name or the terminal leaves no room."""
+    """Return a name with its description beside it, or below it if there is no space."""
     width = _width()
     if width < _BESIDE or len(name) > beside:
         yield f"  {name}"

@@ -1,4 +1,4 @@
-"""The commands that identify a vehicle, and show what came out."""
+"""The commands that identify a vehicle and print results."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def identify(
         typer.Option(
             metavar="NAME",
             autocompletion=parameters,
-            help="Take the 95 % interval of a parameter from the whole likelihood, for one that is weakly determined; "
+            help="Compute the 95 % interval of a weakly determined parameter from the profile likelihood; "
             "can be given more than once; all for every one.",
         ),
     ] = None,
@@ -37,13 +37,11 @@ def identify(
         Optional[bool],  # noqa: UP045 (typer reads it)
         typer.Option(
             "--fall/--no-fall",
-            help="Use the drops from their release on, not only from when the last tyre is down: sharper, and slower.",
+            help="Use the drops from their release on, not only from the last landing on: smaller uncertainties, slower.",
             show_default="where the decays leave a parameter uncertain by more than 2 %",
         ),
     ] = None,
-    report: Annotated[
-        bool, typer.Option("--report/--no-report", help="Write report.html, for people to look at.")
-    ] = True,
+    report: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html.")] = True,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
@@ -58,7 +56,7 @@ def identify(
 
 
 def _refuse_overwriting(*folders_and_files: Any) -> None:
-    """Refuse files that sprung did not write or that were changed since, in folder after folder, before the work is done."""
+    """Refuse to overwrite files that sprung did not write or that were changed since, before the computation."""
     each = zip(folders_and_files[::2], folders_and_files[1::2], strict=True)
     if problems := [problem for folder, files in each for problem in sprung.files.overwriting_problems(folder, files)]:
         raise InputError(problems)
@@ -67,7 +65,7 @@ def _refuse_overwriting(*folders_and_files: Any) -> None:
 def identify_and_save(
     campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, as_json: bool, **options: Any
 ) -> Any:
-    """Identify a campaign and save the result at once; what decorates it comes after that and may fail, or be interrupted."""
+    """Identify a campaign and save the result at once; report and amplitude curves follow, and may fail or be interrupted."""
     found = sprung.analysis.identify_campaign(campaign, progress=progress, **options)
     progress(Step("writing results.json and series.npz"))
     try:
@@ -90,7 +88,7 @@ def identify_and_save(
 
 
 def to_estimates(result: Any, written: Sequence[Path], as_json: bool) -> None:
-    """Print a result and leave with the status that belongs to its verdict."""
+    """Print a result and exit with the status of its verdict."""
     for omission in result.omissions:
         complain(omission)
     _show(result, as_json)
@@ -116,7 +114,7 @@ def report(
             metavar="DIR", help="The results folder, with results.json and series.npz.", autocompletion=results
         ),
     ],
-    pdf: Annotated[bool, typer.Option("--pdf", help="Write report.pdf too.")] = False,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Also write report.pdf.")] = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
@@ -145,7 +143,7 @@ def validate(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Hold the identified vehicle against each drop: fitted, predicted by the other drops, and against amplitude."""
+    """Cross-validate: compare each drop with its fit and with its prediction from the other drops; modes over amplitude."""
     if output is not None and not force:
         _refuse_overwriting(output, ("validation.npz", "validation.json"))
     with working("reading the recordings") as progress:
@@ -177,7 +175,7 @@ def demo(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write an example campaign, the paper's school bus, identify it, and show the true values beside the estimates."""
+    """Write an example campaign, the paper's school bus, identify it, and print estimates and true values."""
     with working("simulating the drops of the school bus") as progress:
         campaign = sprung.study.demo_campaign()
         if not force:

@@ -1,4 +1,4 @@
-"""The commands for everything around: recordings, plans, simulations, the paper."""
+"""The other commands: recordings, plans, simulations, the paper."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def check(
         Path,
         typer.Argument(
             metavar="CAMPAIGN",
-            help="campaign.toml, complete or not, or the folder it is in; or a folder of nothing but recordings.",
+            help="campaign.toml, complete or not, or its folder; or a folder that contains only recordings.",
             autocompletion=completing.campaigns,
         ),
     ],
@@ -31,14 +31,16 @@ def check(
         Optional[Path],  # noqa: UP045 (typer reads it)
         typer.Option("-o", "--output", metavar="DIR", help="Where to write (default: check/ beside the campaign)."),
     ] = None,
-    page: Annotated[bool, typer.Option("--page/--no-page", help="Write check.html, with every drop drawn.")] = True,
+    page: Annotated[
+        bool, typer.Option("--page/--no-page", help="Write check.html, with a figure of every drop.")
+    ] = True,
     drawings: Annotated[
-        bool, typer.Option("--drawings/--no-drawings", help="Draw each drop as an SVG file too.")
+        bool, typer.Option("--drawings/--no-drawings", help="Also draw each drop as an SVG file.")
     ] = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Judge the recordings, identify nothing: what is usable, what is wrong, what is missing. Needs no geometry."""
+    """Check the recordings: usable drops, faults, missing data. Needs no geometry; nothing is identified."""
     with working("reading the recordings") as progress:
         found = sprung.check(campaign, progress=progress)
     if not found.usable:
@@ -74,7 +76,7 @@ def compare(
     ],
     as_json: Json = False,
 ) -> None:
-    """Put results side by side, with the significance of each difference: before and after, left and right of a line."""
+    """Compare results, with the significance of each difference: before and after a change, vehicles of a production line."""
     found = sprung.compare(results)
     if as_json:
         say_json(found.document())
@@ -90,7 +92,7 @@ def modal(
         Path,
         typer.Argument(
             metavar="CAMPAIGN",
-            help="campaign.toml, or the folder it is in; or a recording, or a folder of nothing but them.",
+            help="campaign.toml or its folder; or a recording, or a folder that contains only recordings.",
             autocompletion=completing.campaigns,
         ),
     ],
@@ -98,33 +100,29 @@ def modal(
         str,
         typer.Option(
             autocompletion=completing.methods,
-            help="ml, the likeliest modes, with uncertainty; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
+            help="ml, maximum likelihood, with uncertainties; or one of ml-frequency, era, era-dc, ssi-cov, ssi-data, itd, "
             "arma, svm, svm-printed, svm-rows (the paper's State Variable Method), lscf, rfp, peaks, emd.",
         ),
     ] = "ml",
     order: Annotated[
         Optional[int],  # noqa: UP045 (typer reads it)
-        typer.Option(
-            min=1, help="How many poles to look for, two for each mode (default: as many as the records hold)."
-        ),
+        typer.Option(min=1, help="Number of poles, two for each mode (default: selected from the recordings)."),
     ] = None,
     amplitude: Annotated[
         bool,
-        typer.Option(
-            "--amplitude", help="Follow each mode through the decays: frequency and damping against amplitude."
-        ),
+        typer.Option("--amplitude", help="Follow each mode through the decays: frequency and damping over amplitude."),
     ] = False,
     start: Annotated[
         Optional[float],  # noqa: UP045 (typer reads it)
         typer.Option(
-            help="Of recordings alone: where the free decay begins, s on their clock "
+            help="For recordings alone: time at which the free decay begins, s on their clock "
             "(default: after the landing of each drop that is found, else at the largest reading)."
         ),
     ] = None,
-    diagram: Annotated[bool, typer.Option("--diagram", help="Draw a stabilisation diagram beside it.")] = False,
+    diagram: Annotated[bool, typer.Option("--diagram", help="Also draw a stabilisation diagram.")] = False,
     as_json: Json = False,
 ) -> None:
-    """Find natural frequencies, damping ratios and shapes per load; no vehicle model."""
+    """Estimate natural frequencies, damping ratios and mode shapes per load, without a vehicle model."""
     with working("reading the recordings") as progress:
         if sprung.is_recordings(campaign):
             found = sprung.modes(
@@ -160,18 +158,18 @@ def simulate(
         Path,
         typer.Argument(
             metavar="VEHICLE.toml",
-            help="Its parameters; sensors, loads and drops where not the usual ones.",
+            help="Parameters of the vehicle; sensors, loads and drops if they differ from the defaults.",
             autocompletion=completing.campaigns,
         ),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The campaign folder to write.")],
     rate: Annotated[float, typer.Option(max=1e5, help="Samples per second.")] = 500.0,
     noise: Annotated[float, typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square.")] = 0.02,
-    seed: Annotated[int, typer.Option(min=0, help="Of the noise.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 1,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write a campaign folder from a vehicle file: drops from blocks, as the sensors would record them."""
+    """Simulate drops of a vehicle file from blocks, and write the campaign folder."""
     with working("reading the vehicle") as progress:
         campaign = sprung.simulate(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
         progress(Step("writing the campaign"))
@@ -189,11 +187,13 @@ def plan(
         Path,
         typer.Argument(
             metavar="VEHICLE.toml|CAMPAIGN",
-            help="A vehicle as it is thought to be, or a campaign to go on from.",
+            help="A vehicle with approximate parameters, or a campaign to be continued.",
             autocompletion=completing.campaigns,
         ),
     ],
-    wanted: Annotated[float, typer.Option(help="Percent that no parameter's uncertainty is to exceed.")] = 1.0,
+    wanted: Annotated[
+        float, typer.Option(help="Largest acceptable standard uncertainty of a parameter, percent.")
+    ] = 1.0,
     rate: Annotated[
         Optional[float],  # noqa: UP045 (typer reads it)
         typer.Option(max=1e5, help="Samples per second, with a vehicle file (default: 500)."),
@@ -204,7 +204,7 @@ def plan(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Say what to measure next: how well each parameter would be known from a test, and from its alternatives."""
+    """Plan the next measurement: expected uncertainty of each parameter for a test and its alternatives."""
     with working("reading") as progress:
         drawn_up = sprung.plan(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
     if as_json:
@@ -221,7 +221,7 @@ def new(
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Draft campaign.toml from recordings: find the drops in them, tell the sensors, mark what is missing."""
+    """Draft campaign.toml from recordings: detect the drops, identify the sensors, mark missing data."""
     with working("looking for drops") as progress:
         drafted = sprung.draft(folder, progress=progress, overwrite=force)
         written = drafted.write(overwrite=force)
@@ -236,7 +236,7 @@ def new(
 
 @app.command(epilog="Example: [bold]sprung paper --json[/bold]")
 def paper(as_json: Json = False) -> None:
-    """Show the paper's tables beside ours, its misprints, and where its method breaks."""
+    """Print the paper's tables with ours, its misprints, and the noise at which its method fails."""
     with working("reproducing the paper") as progress:
         reproduction = sprung.paper.reproduce(progress=progress)
     if as_json:
@@ -247,5 +247,5 @@ def paper(as_json: Json = False) -> None:
 
 @app.command(epilog="Example: [bold]sprung schema > campaign.schema.json[/bold]")
 def schema(as_json: Json = False) -> None:  # noqa: ARG001 (it is JSON anyhow)
-    """Print the JSON Schema of campaign.toml, by which editors complete its keys and mark mistakes."""
+    """Print the JSON Schema of campaign.toml, with which editors complete keys and mark mistakes."""
     say_json(sprung.schema_text())

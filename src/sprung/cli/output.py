@@ -1,4 +1,4 @@
-"""What the commands say and with which status they leave: results on standard output, everything else on standard error."""
+"""Output and exit status of the commands: results on standard output, everything else on standard error."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ BAD_INPUT = 2
 REJECTED = 3
 INTERRUPTED = 130
 TERMINATED = 143
-"""Exit statuses; the last two are the shell's own for Ctrl-C and SIGTERM."""
+"""Exit statuses; the last two are those of the shell for Ctrl-C and SIGTERM."""
 
 _SOON = 2.0
-"""Seconds of a stage after which the rest of it is estimated."""
+"""Seconds of a stage after which its remaining time is estimated."""
 
 
 @contextmanager
 def working(first: str) -> Iterator[Progress]:
-    """Show in one line of a terminal what is being done and for how long; into a pipe or a file nothing is written.
+    """Show the current step and the elapsed time in one line of a terminal; nothing is written to a pipe or a file.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def working(first: str) -> Iterator[Progress]:
 
 
 class StatusLine:
-    """One line: time since the command began, the step it is at, and how long this stage will probably take still."""
+    """One line: elapsed time, current step, and estimated remaining time of the stage."""
 
     def __init__(self, first: Step, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -64,13 +64,13 @@ class StatusLine:
         self._spinner = Spinner("dots")
 
     def begin(self, step: Step) -> None:
-        """Go on to a step."""
+        """Show a step."""
         if step.stage != self._step.stage:
             self._stage_began = self._clock()
         self._step = step
 
     def text(self) -> str:
-        """Return the line without its turning sign."""
+        """Return the line without its spinner."""
         now = self._clock()
         elapsed, in_stage, done = _minutes(now - self._began), now - self._stage_began, self._step.done
         if done is None or not 0 < done < 1 or in_stage < _SOON:
@@ -89,7 +89,7 @@ def _minutes(seconds: float) -> str:
 
 
 def say(text: str) -> None:
-    """Print text to standard output; go on without a reader when it has gone, as `| head` does."""
+    """Print text to standard output; ignore a closed pipe, as with `| head`."""
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -100,7 +100,7 @@ def say(text: str) -> None:
 
 
 def say_json(document: str | Any) -> None:
-    """Print one JSON document, in UTF-8 as JSON must be; text counts as JSON already."""
+    """Print one JSON document in UTF-8; text is taken as JSON."""
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(encoding="utf-8")
     text = (

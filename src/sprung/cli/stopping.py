@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: both end a command in order, with what is on the disk whole, and with the shell's own status."""
+"""Ctrl-C and SIGTERM: both end a command with complete files on the disk, and with the shell's status."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from sprung.cli.output import INTERRUPTED, TERMINATED, complain
 
 
 class Terminated(KeyboardInterrupt):
-    """SIGTERM, as a batch system or `kill` sends it: raised where Ctrl-C would be."""
+    """SIGTERM, as sent by a batch system or `kill`: raised like Ctrl-C."""
 
 
 @contextmanager
 def stopping_like_ctrl_c() -> Iterator[None]:
-    """Let SIGTERM raise `Terminated` in the block, unless whoever started us wants it to be ignored.
+    """Let SIGTERM raise `Terminated` in the block, unless the parent process ignores it.
 
     A signal that arrives while Python runs a callback of its own, such as one of its import system, raises where nothing can
     pass the exception on: it is raised once more, a millisecond later.
@@ -44,7 +44,7 @@ def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (what a
 
 
 def _stop_again(hook: Callable[[Any], object], lost: Any) -> None:
-    """Raise once more what stops the program, where it was lost; leave everything else to the hook that was there."""
+    """Raise an interruption again if it was lost; leave everything else to the previous hook."""
     if not isinstance(lost.exc_value, KeyboardInterrupt) or not hasattr(signal, "setitimer"):
         hook(lost)
         return
@@ -58,14 +58,14 @@ def _stop_again(hook: Callable[[Any], object], lost: Any) -> None:
 
 
 def was_stopped(stopped: KeyboardInterrupt) -> int:
-    """Say that a command was stopped, and return its exit status."""
+    """Report that a command was stopped, and return its exit status."""
     terminated = isinstance(stopped, Terminated)
     complain("sprung was terminated." if terminated else "sprung was interrupted.")
     return TERMINATED if terminated else INTERRUPTED
 
 
 def stopped_before(leaving: SystemExit) -> KeyboardInterrupt | None:
-    """Return what stopped the program before it came to its command, while the command line took it for Ctrl-C."""
+    """Return what stopped the program before its command began."""
     error: BaseException | None = leaving
     while error is not None and not error.__suppress_context__:
         error = error.__cause__ or error.__context__

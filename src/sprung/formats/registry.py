@@ -1,4 +1,4 @@
-"""One registry of file formats: every format is asked whether a file is its own, and exactly one must say yes."""
+"""The registry of file formats: exactly one of them must claim a file."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 GROUP = "sprung.formats"
 HEAD = 8192
 
-# To look through everything that is installed takes as long as to read a file, of which a campaign has many.
+# Searching the installed packages takes as long as reading a file, of which a campaign has many.
 entry_points = cache(metadata.entry_points)
 
-# Known even where no package metadata is installed, as when running from the sources.
+# Other packages add theirs by an entry point of this group.
 _OWN = tuple(
     EntryPoint(name, f"sprung.formats.{name}:{format_}", GROUP)
     for name, format_ in (
@@ -93,7 +93,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
     path
         The file.
     others
-        Names of files beside it that are wanted elsewhere: a file that is missing was hardly meant to be one of them.
+        Names of files beside it that are used elsewhere: they are not suggested where the file is missing.
 
     Returns
     -------
