@@ -165,7 +165,8 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     """Whether the residuals of every channel are white noise, or rounding."""
     variance = fit.noise**2
     rounding = variance < 2 * fit.problem.least_variance
-    return bool(np.all(rounding | (np.abs(pool_moments(fit.residuals).colour) < _WHITE)))
+    total, neighbours, _ = pool_moments(fit.residuals)
+    return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 
 def _costs_as_they_are(problem: EstimationProblem, objective: ClosedFormObjective, starts: Sequence[Real]) -> Real:
