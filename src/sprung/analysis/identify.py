@@ -16,13 +16,12 @@ from sprung.analysis.axes import about_roll_axis, axes_of
 from sprung.analysis.clocks import clock_reports
 from sprung.analysis.fitted import fit_campaign
 from sprung.analysis.options import model_options
-from sprung.analysis.planned import to_design
+from sprung.analysis.planned import recommend_next_step
 from sprung.analysis.profiles import check_asked, profiles_of
 from sprung.analysis.stand import Fitted
 from sprung.analysis.starting import start_values
 from sprung.assessment import (
     BodyMotion,
-    Misfit,
     ModeAmplitude,
     body_motions,
     cross_validate_drops,
@@ -33,7 +32,6 @@ from sprung.campaign import CampaignSource, resolve_campaign
 from sprung.checking import check_prepared
 from sprung.errors import Omissions
 from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
-from sprung.planning import next_step
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
@@ -210,7 +208,7 @@ def result_of(
         version=version("sprung"),
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
-        next_step=None if rejected else next_step(to_design(fitted)).text,
+        next_step=None if rejected else recommend_next_step(fitted),
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
             **({} if rejected else characteristics_of(fit, choice.known, choice.linear_models[EMPTY.name])),
@@ -246,7 +244,7 @@ def _fit_report(
     fit: FitStatistics,
     decays: Sequence[FreeDecay],
     channels: Sequence[str],
-    misfit: Misfit,
+    misfit: tuple[NDArray[np.float64], NDArray[np.float64]],
     optimum: FitResult,
 ) -> FitReport:
     return FitReport(
@@ -267,7 +265,7 @@ def _fit_report(
         inflation=fit.inflation,
         inflated_by=fit.inflated_by,
         most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
-        misfit=dict(zip(channels, misfit.relative.tolist(), strict=True)),
+        misfit=dict(zip(channels, misfit[0].tolist(), strict=True)),
         loglikelihood=optimum.absolute_loglikelihood,
         unknowns=optimum.unknowns,
     )

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from sprung.analysis.stand import Fitted
 from sprung.campaign import DEFAULT_HEIGHT
-from sprung.planning import PlannedDrop, PlannedTest, completed_test, setup_from_fit
 from sprung.vehicle import LOAD_MASS, parameter_names
+
+if TYPE_CHECKING:
+    from sprung.planning import PlannedTest
 
 _BEFORE_DECAY = 0.1
 """s from the release to the decay in a usual drop, for planning further ones."""
@@ -15,10 +19,16 @@ _BEFORE_DECAY = 0.1
 
 def to_design(fitted: Fitted) -> PlannedTest:
     """Take what was fitted as a test to which others may be added, of the vehicle that was found as far as it is linear."""
+    from sprung.planning import (  # noqa: PLC0415 (only a plan needs it)
+        PlannedDrop,
+        completed_test,
+        setup_from_fit,
+    )
+
     campaign, decays = fitted.campaign, fitted.prepared.decays
     choice = fitted.choice.with_terms(fitted.choice.linear_terms)
     fit = fitted.fit.only(parameter_names(choice.tracks, choice.terms))
-    subject = setup_from_fit(
+    setup = setup_from_fit(
         fit,
         choice.tracks,
         choice.terms,
@@ -35,4 +45,11 @@ def to_design(fitted: Fitted) -> PlannedTest:
         for seen in fitted.prepared.observations
         if seen.recording.name in used
     ]
-    return completed_test(subject, fit, dropped)
+    return completed_test(setup, fit, dropped)
+
+
+def recommend_next_step(fitted: Fitted) -> str:
+    """Recommend what to measure next, in one sentence."""
+    from sprung.planning import next_step  # noqa: PLC0415 (only a plan needs it)
+
+    return next_step(to_design(fitted)).text

@@ -25,7 +25,7 @@ Index = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Decays:
-    """Records of the same channels and rate, each with the mean of every channel taken off.
+    """Records of the same channels and rate, each with the mean of every channel subtracted.
 
     Attributes
     ----------

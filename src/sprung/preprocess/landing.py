@@ -191,7 +191,12 @@ def find_steepest_rise(reading: Real) -> int:
     Parameters
     ----------
     reading
-        Of one sensor on a wheel from the release on, positive up, shape (time,).
+        Of one sensor on a wheel from the release on, positive up, m/s², shape (time,).
+
+    Returns
+    -------
+    int
+        Position of the sample.
     """
     impact = int(np.argmax(reading))
     return impact if impact < 2 else int(np.argmax(np.diff(reading[: impact + 1]))) + 1

@@ -38,12 +38,12 @@ def exponential_moments(
     samples
         N of each record; broadcasts with `last`, shape (record, ...).
     powers
-        How many sums are wanted.
+        Number of sums.
 
     Returns
     -------
     list of ndarray
-        Σ z^k, Σ k z^k and Σ k² z^k, as many as wanted, each of shape (record, ...).
+        Σ z^k, Σ k z^k and Σ k² z^k, the first `powers` of them, each of shape (record, ...).
 
     Notes
     -----
@@ -82,13 +82,12 @@ def exponential_gram(exponent: Complex, samples: Index, group: Index | None = No
     group
         Group of each record, shape (record,); a group for each record unless given.
     secular
-        Whether those with k e^{λk} are wanted.
+        Whether to return those with k e^{λk} too.
 
     Returns
     -------
     ndarray
-        Conjugated by rows; shape (record, twice as many modes, twice as many modes), or with half of both where only e^{λk} is
-        wanted.
+        Conjugated by rows; shape (record, 2 mode, 2 mode), or (record, mode, mode) where secular is False.
     """
     powers = 3 if secular else 1
     of_record = np.arange(len(exponent)) if group is None else group
@@ -158,12 +157,12 @@ def correlate_with_exponentials(
     group
         Group of each record, ascending, shape (record,).
     secular
-        Whether those with k e^{λk} are wanted.
+        Whether to return those with k e^{λk} too.
 
     Returns
     -------
     ndarray
-        Σ conj(e^{λk}) y_k and, if wanted, Σ k conj(e^{λk}) y_k, in the unit of the records; shape
+        Σ conj(e^{λk}) y_k and, if secular, Σ k conj(e^{λk}) y_k, in the unit of the records; shape
         (record, channel, 1 or 2, mode).
     """
     ends = np.cumsum(counts)
