@@ -67,7 +67,7 @@ def test_it_never_overwrites_a_campaign_file(folder: Path, new: Run) -> None:
     before = (folder / "campaign.toml").read_bytes()
     again = run("new", folder)
     assert again.status == 2
-    assert f"Go on with it (sprung check {folder / 'campaign.toml'})" in again.err
+    assert f"Continue with it (sprung check {folder / 'campaign.toml'})" in again.err
     assert "move it away" in again.err
     assert (folder / "campaign.toml").read_bytes() == before
 
