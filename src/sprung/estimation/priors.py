@@ -93,11 +93,11 @@ class PriorsAndConstraints:
         """Names, values and scales of the exact statements, and of the others."""
         chosen = {}
         for exact in (True, False):
-            those = {name: known for name, known in self.statements.items() if known.is_exact == exact}
-            values = np.array([known.value for known in those.values()])
-            std = np.array([known.std for known in those.values()])
+            stated = {name: known for name, known in self.statements.items() if known.is_exact == exact}
+            values = np.array([known.value for known in stated.values()])
+            std = np.array([known.std for known in stated.values()])
             sizes = np.abs(values) if exact else np.maximum(std, _FINEST * np.abs(values))
-            chosen[exact] = tuple(those), values, sizes
+            chosen[exact] = tuple(stated), values, sizes
         return chosen
 
     def _at(self, u: Real, exact: bool) -> tuple[Real, Real]:

@@ -153,9 +153,9 @@ def _gaining_step(
             return tried, True, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping)
-            beyond, further = problem.trial(tried, _limited(back, longest))
+            second_point, further = problem.trial(tried, _limited(back, longest))
             if gain + further > 0:
-                return beyond, True, damping, max(expected, gain + further)
+                return second_point, True, damping, max(expected, gain + further)
             first = False
         damping = max(damping, 1e-8) * 8
     return point, False, damping, expected
