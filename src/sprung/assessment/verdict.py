@@ -119,10 +119,10 @@ def decide_verdict(
 
 def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
     if size > EXPLAINED:
-        beyond = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
+        ratio_text = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
         yield (
             f"the model does not explain the records: in {channel} its error is {100 * size:.1f} % of the "
-            f"signal{beyond}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
+            f"signal{ratio_text}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
         )
 
 

@@ -92,7 +92,9 @@ class SpectralLines(Decays):
             angles.append(np.concatenate([positive, -positive]))
             transforms.append(np.concatenate([lines, lines.conj()], axis=1))
         energy = np.array([(np.abs(lines) ** 2).sum(axis=1) for lines in transforms])
-        return cls(decays.values, decays.rate, decays.samples, energy, decays.blocked, tuple(angles), tuple(transforms))
+        return cls(
+            decays.values, decays.rate, decays.samples, energy, decays.padded_blocks, tuple(angles), tuple(transforms)
+        )
 
     @property
     def sample_count(self) -> float:

@@ -278,13 +278,13 @@ class ModalObjective:
         both = q.conj()[:, :, None] * q[:, None, :]
         within = (both * gram[:, :size, :size]).sum(axis=0)
         onward = (both * gram[:, :size, size:]).sum(axis=0)
-        beyond = (both * gram[:, size:, size:]).sum(axis=0)
+        sensitivity_products = (both * gram[:, size:, size:]).sum(axis=0)
         whole = np.zeros((channels + 1, size, channels + 1, size), dtype=np.complex128)
         channel = np.arange(channels)
         whole[channel, :, channel, :] = w[:, None, None] * within
         whole[:channels, :, channels, :] = w[:, None, None] * onward * s[:, None, :]
         whole[channels, :, :channels, :] = np.moveaxis(whole[:channels, :, channels, :].conj(), (0, 1, 2), (1, 2, 0))
-        whole[channels, :, channels, :] = self._across * beyond
+        whole[channels, :, channels, :] = self._across * sensitivity_products
         # Elimination of the amplitudes (Schur complement).
         coupling = np.empty((len(records), size, channels + 1, size), dtype=np.complex128)
         through = (s.conj() * w[:, None]).T

@@ -141,7 +141,7 @@ def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> 
 
 
 def correlate_with_exponentials(
-    blocked: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
+    padded_blocks: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
 ) -> Complex:
     """Return the inner products of records with exponentials.
 
@@ -174,8 +174,8 @@ def correlate_with_exponentials(
         table = np.concatenate([fine, inside * fine], axis=1) if secular else fine
         own = ends[group == number]
         begin = own[0] - counts[np.searchsorted(group, number)]
-        flat.append(blocked[begin : own[-1]].reshape(-1, BLOCK_LENGTH) @ table.view(float))
-    products = np.concatenate(flat).view(complex).reshape(*blocked.shape[:2], -1, exponent.shape[1])
+        flat.append(padded_blocks[begin : own[-1]].reshape(-1, BLOCK_LENGTH) @ table.view(float))
+    products = np.concatenate(flat).view(complex).reshape(*padded_blocks.shape[:2], -1, exponent.shape[1])
     coarse = np.exp(exponent.conj()[:, None] * (BLOCK_LENGTH * np.arange(counts.max())[:, None]))
     products *= coarse[np.repeat(group, counts), of_block][:, None, None]
     if secular:

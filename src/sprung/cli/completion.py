@@ -34,15 +34,15 @@ def methods(incomplete: str) -> list[str]:
 
 def _paths(incomplete: str, marks: str, suffix: str) -> Iterator[str]:
     """Return files with a suffix, and folders: complete if they contain the marker file, otherwise to be continued."""
-    before, _, begun = incomplete.rpartition("/")
+    before, _, prefix = incomplete.rpartition("/")
     folder = Path(f"{before}/" if before or incomplete.startswith("/") else ".")
     try:
         found = sorted(folder.iterdir())
     except OSError:
         return
     for path in found:
-        name = f"{incomplete[: len(incomplete) - len(begun)]}{path.name}"
-        if not path.name.startswith(begun) or (path.name.startswith(".") and not begun):
+        name = f"{incomplete[: len(incomplete) - len(prefix)]}{path.name}"
+        if not path.name.startswith(prefix) or (path.name.startswith(".") and not prefix):
             continue
         if path.is_dir():
             yield name if (path / marks).is_file() else f"{name}/"
