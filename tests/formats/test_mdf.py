@@ -82,7 +82,7 @@ def test_channels_too_slow_for_wheels_are_spoilt(tmp_path: Path) -> None:
     assert np.isnan(table.take()[1:]).all()
     assert str(table.find_non_number(1)) == (
         "x.mf4: channel 'slow': found 50 samples from 0 to 2.45 s at 20 Hz; expected the clock of most samples of "
-        "the file are on, 200 samples from 0 to 0.0995 s at 2000 Hz. "
+        "the file, 200 samples from 0 to 0.0995 s at 2000 Hz. "
         "Export all channels that are needed at one rate and over one time."
     )
 
