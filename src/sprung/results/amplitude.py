@@ -20,7 +20,12 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
     Parameters
     ----------
     amplitudes
-        From `amplitudes_of`.
+        Of a result.
+
+    Returns
+    -------
+    dict
+        By mode: load, frequency (Hz), damping ratio, and curves as lists.
     """
     return {
         mode.mode: {
@@ -36,7 +41,18 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
 
 
 def curve_document(curve: AmplitudeCurve) -> dict[str, list[float]]:
-    """Return the columns of a curve as lists by name."""
+    """Return a curve as lists.
+
+    Parameters
+    ----------
+    curve
+        Of one mode and drop.
+
+    Returns
+    -------
+    dict
+        Columns by name, in the units of `AmplitudeCurve`.
+    """
     return {name: values.tolist() for name, values in asdict(curve).items() if name != "name"}
 
 
