@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.overdispersion import von_neumann_ratio
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import (
     CLOSE_BY,
@@ -28,7 +27,7 @@ from sprung.estimation.score_test import score_test
 from sprung.estimation.start_ranking import rank_starts
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.optimisation import Maximum
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, pool_moments
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
@@ -38,11 +37,14 @@ Real = NDArray[np.float64]
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
 
+_LARGEST_STEP = 1.0
+"""Largest Newton step of a coordinate, dimensionless, that an estimate without a fit takes."""
+
 STARTS = 3
 """How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
 
-_WHITE = 1.2
-"""Residual variance over that of white noise with the same differences, up to which nothing but noise is left."""
+_WHITE = 0.15
+"""Correlation of neighbouring residuals up to which nothing but noise is left; a motion makes it nearly one."""
 
 _WELL_KNOWN = 1e4
 """Information of a logarithm from which a direction has no second optimum nearby: one percent of uncertainty."""
@@ -166,7 +168,8 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     """Whether the residuals of every channel are white noise, or rounding."""
     variance = fit.noise**2
     rounding = variance < 2 * fit.problem.least_variance
-    return bool(np.all(rounding | (von_neumann_ratio(fit.residuals) < _WHITE)))
+    total, neighbours, _ = pool_moments(fit.residuals)
+    return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 
 def _costs_as_they_are(problem: EstimationProblem, objective: ClosedFormObjective, starts: Sequence[Real]) -> Real:
@@ -228,7 +231,7 @@ def score_linear_term(
     sensors: Sequence[Sensor],
     known: Mapping[str, KnownValue],
     values: Mapping[str, float],
-) -> float:
+) -> tuple[float, dict[str, float]]:
     """Return what a model with more parameters would gain over one that is fitted already, by the score test.
 
     Parameters
@@ -242,8 +245,13 @@ def score_linear_term(
     -------
     float
         In twice the log-likelihood, to second order.
+    dict
+        Parameters of the larger model after one Newton step, SI, by name.
     """
     problem = _problem(_objective(decays, models, sensors), known, values)
     u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    information, gradient, _ = problem.system(problem.start(u))
-    return score_test(information, gradient, 0).gain()
+    information, gradient, null_space = problem.system(problem.start(u))
+    test = score_test(information, gradient, 0)
+    step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
+    estimates = problem.priors.coordinates.values(u + step)
+    return test.gain(), dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))

@@ -16,7 +16,7 @@ Real = NDArray[np.float64]
 
 
 _FINEST = 1e-6
-"""Smallest relative uncertainty that a statement is taken to have: beside a finer one, rounding would hide the records."""
+"""Smallest relative uncertainty of a statement: with a finer one, rounding would hide the records."""
 
 
 _TRAVEL = 0.03

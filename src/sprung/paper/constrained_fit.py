@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import null_space
 
+from sprung.display import shown
 from sprung.errors import Problems
 from sprung.vehicle import PARAMETERS, LinearModel, evaluate_quantity
 
@@ -19,6 +20,7 @@ _UNDETERMINED = 1e-9
 """Relative change of the state matrices below which a direction is undetermined."""
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class StructuredFit:
     """Parameters from state matrices.
