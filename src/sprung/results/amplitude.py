@@ -20,12 +20,12 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
     Parameters
     ----------
     amplitudes
-        Of a result.
+        From `amplitudes_of`.
 
     Returns
     -------
     dict
-        By mode: load, frequency (Hz), damping ratio, and curves as lists.
+        Curves by the name of the mode.
     """
     return {
         mode.mode: {
@@ -41,17 +41,17 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
 
 
 def curve_document(curve: AmplitudeCurve) -> dict[str, list[float]]:
-    """Return a curve as lists.
+    """Return a curve as plain lists.
 
     Parameters
     ----------
     curve
-        Of one mode and drop.
+        Frequency and damping of a mode over its amplitude.
 
     Returns
     -------
     dict
-        Columns by name, in the units of `AmplitudeCurve`.
+        The columns of the curve by name, SI.
     """
     return {name: values.tolist() for name, values in asdict(curve).items() if name != "name"}
 
