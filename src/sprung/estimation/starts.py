@@ -109,9 +109,7 @@ class VehicleSize(NamedTuple):
         return self.mass * (1 - 4 * _WHEEL_SHARE)
 
 
-def start_grid(
-    size: VehicleSize, known: Mapping[str, KnownValue], engine: bool = False
-) -> Iterator[dict[str, float]]:
+def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool = False) -> Iterator[dict[str, float]]:
     """Yield usual vehicles of one size.
 
     Parameters
