@@ -74,13 +74,30 @@ class ScoreTest:
         chosen
             Which; all unless given. Those that are not determined add nothing.
         """
+        return float(self.score @ self.joint_values(chosen))
+
+    def joint_values(self, chosen: Sequence[int] | slice = slice(None)) -> Real:
+        """Return the estimates of some of the unknowns together, by one Newton step.
+
+        Parameters
+        ----------
+        chosen
+            Which; all unless given.
+
+        Returns
+        -------
+        ndarray
+            Shape (unknown,); 0 for those that are not chosen or not determined.
+        """
         own = np.arange(len(self.score))[chosen]
         own = own[self.determined[own]]
         scale = self.own_information[own] ** -0.5
         eigenvalues, vectors = np.linalg.eigh(self.information[np.ix_(own, own)] * np.outer(scale, scale))
-        along = vectors.T @ (scale * self.score[own])
         kept = eigenvalues > _DETERMINED
-        return float(np.sum(along[kept] ** 2 / eigenvalues[kept]))
+        along = (vectors.T @ (scale * self.score[own]))[kept] / eigenvalues[kept]
+        values = np.zeros(len(self.score))
+        values[own] = scale * (vectors[:, kept] @ along)
+        return values
 
 
 def score_test(information: Real, gradient: Real, nuisance: int) -> ScoreTest:
