@@ -68,7 +68,7 @@ def fit_linear(
     enough: float = CONVERGED,
     progress: Progress = silent,
 ) -> FitResult:
-    """Fit one linear vehicle to all decays by maximum likelihood.
+    """Fit one linear vehicle to all decays by :term:`maximum likelihood <maximum likelihood estimate>`.
 
     Parameters
     ----------
@@ -232,7 +232,7 @@ def score_linear_term(
     known: Mapping[str, KnownValue],
     values: Mapping[str, float],
 ) -> tuple[float, dict[str, float]]:
-    """Return what a model with more parameters would gain over one that is fitted already, by the score test.
+    """Return what a model with more parameters would gain over one that is fitted already, by the :term:`score test`.
 
     Parameters
     ----------
