@@ -1,0 +1,215 @@
+"""Fault isolation: the fit that does not explain the recordings, and what other fits of corrected campaigns make of them.
+
+All hypotheses are compared on the same samples. Decays are corrected directly; no campaign is preprocessed again here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.campaign import Campaign
+from sprung.estimation import NEAR, FitResult, Likelihood, fit_linear, overdispersion_of, residual_records
+from sprung.faults.correction import Correction, mask_channel
+from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
+from sprung.preprocess import FreeDecay, prepare
+from sprung.selection import choose_model
+from sprung.vehicle import LinearModel, Rows, Tracks
+
+Real = NDArray[np.float64]
+
+_DRIFT_SPAN, _DRIFT_SHARE = 0.5, 0.75
+"""s over which a drift is constant, unlike a vibration; and the share of a residual's energy that means over it then keep."""
+
+_STARTS = 2
+"""Starts of a fit without a channel or drop, of which no vehicle is known."""
+
+
+@dataclass(frozen=True, eq=False)
+class CandidateFit:
+    """The fit of a campaign that was corrected, or of a part of it.
+
+    Attributes
+    ----------
+    campaign
+        What was fitted.
+    decays
+        Its decays.
+    models
+        Equations of motion by load name.
+    fit
+        Where the fit ended.
+    table
+        Its residuals by the drops and channels of the whole campaign.
+    noise
+        What the sensors read at rest.
+    """
+
+    campaign: Campaign
+    decays: tuple[FreeDecay, ...]
+    models: Mapping[str, LinearModel]
+    fit: FitResult
+    table: ResidualTable
+    noise: ReferenceNoise
+
+    @property
+    def is_explained(self) -> bool:
+        """Whether the residuals are noise alone."""
+        return self.table.is_explained(self.noise)
+
+    @property
+    def misfit(self) -> float:
+        """What the residuals are beyond noise, in twice the log-likelihood."""
+        return self.table.misfit(self.noise)
+
+    @cached_property
+    def drifting(self) -> NDArray[np.bool_]:
+        """Of which channels the residual is a drift: means over half a second keep most of it; shape (channel,)."""
+        kept = energy = np.zeros(len(self.campaign.sensors))
+        for record, decay in zip(residuals_of(self.fit, self.decays), self.decays, strict=True):
+            length = max(int(_DRIFT_SPAN * decay.rate), 1)
+            count = decay.samples // length
+            batches = np.nan_to_num(record[:, : count * length]).reshape(len(record), count, length)
+            kept = kept + length * np.sum(batches.mean(axis=2) ** 2, axis=1)
+            energy = energy + np.sum(batches**2, axis=(1, 2))
+        excess = energy - self.noise.level**2 * self.table.counts.sum(axis=0)
+        return np.asarray(kept > _DRIFT_SHARE * np.maximum(excess, np.finfo(float).tiny))
+
+    @cached_property
+    def overdispersion(self) -> float:
+        """By how much the variances exceed those of white residuals of drops that agree."""
+        return overdispersion_of(self.fit, self.decays)
+
+    def residual_sums_of(self, decays: Sequence[FreeDecay]) -> Real:
+        """Return the residual sums of squares of other decays, whatever their states; shape (decay, channel)."""
+        return self._likelihood_of(decays).misfit(self.fit.point.weights)[0]
+
+    def states_of(self, decays: Sequence[FreeDecay]) -> Real:
+        """Return {X, Ẋ} at the start of other decays, SI, shape (decay, state)."""
+        return self._likelihood_of(decays).states(self.fit.point.weights)
+
+    def _likelihood_of(self, decays: Sequence[FreeDecay]):  # type: ignore[no-untyped-def]
+        rows = Rows.of([sensor.row for sensor in self.campaign.sensors], self.fit.names)
+        return Likelihood.of(decays, self.models, rows).at(self.fit.values)
+
+
+@dataclass(frozen=True, eq=False)
+class FaultIsolation:
+    """A campaign with a fit that does not explain it.
+
+    Attributes
+    ----------
+    base
+        The fit.
+    recordings
+        Names of all recordings, in order: the rows of every residual table.
+    tracks, extras
+        Of the model, which stays the same in all candidate fits.
+    fits
+        How many fits were made before.
+    """
+
+    base: CandidateFit
+    recordings: tuple[str, ...]
+    tracks: Tracks
+    extras: tuple[str, ...]
+
+    @classmethod
+    def of(
+        cls, campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResult | None, tracks: Tracks, extras: tuple[str, ...]
+    ) -> FaultIsolation:
+        """Take up a campaign, its decays and their fit; without a fit they are fitted."""
+        recordings = tuple(decay.file for decay in decays)
+        structure = choose_model(campaign, tracks, extras)
+        if fit is None:
+            fit = fit_linear(decays, structure.models, campaign.sensors, structure.known, starts=_STARTS, enough=NEAR)
+        table, noise = residual_table(recordings, decays, fit), reference_noise(decays, fit)
+        base = CandidateFit(campaign, tuple(decays), structure.models, fit, table, noise)
+        return cls(base, recordings, tracks, extras)
+
+    @property
+    def campaign(self) -> Campaign:
+        """The campaign as it is."""
+        return self.base.campaign
+
+    @property
+    def decays(self) -> tuple[FreeDecay, ...]:
+        """Its decays."""
+        return self.base.decays
+
+    @property
+    def noise(self) -> ReferenceNoise:
+        """What the sensors read at rest."""
+        return self.base.noise
+
+    def fit(self, correction: Correction, start: FitResult | None = None) -> CandidateFit:
+        """Fit the corrected campaign.
+
+        Parameters
+        ----------
+        correction
+            Of the campaign.
+        start
+            A fit near by; without one the search begins anew.
+        """
+        return self._fit(correction, start, NEAR)
+
+    def step(self, correction: Correction, start: FitResult | None = None) -> CandidateFit:
+        """Fit the corrected campaign by one Gauss-Newton step from a fit, or without one from the direct estimate.
+
+        One step tells which of many deletions changes a fit most (Pregibon, Ann. Stat. 9 (1981) 705).
+        """
+        return self._fit(correction, start, np.inf)
+
+    def after(self, candidate: CandidateFit) -> FaultIsolation:
+        """Return the isolation of what is still wrong with a corrected campaign."""
+        return replace(self, base=candidate)
+
+    def _fit(self, correction: Correction, start: FitResult | None, enough: float) -> CandidateFit:
+        campaign = correction.of_campaign(self.campaign)
+        decays = correction.of_decays(campaign, self.decays)
+        structure = choose_model(campaign, self.tracks, self.extras)
+        fit = fit_linear(
+            decays,
+            structure.models,
+            campaign.sensors,
+            structure.known,
+            start=None if start is None else start.parameters,
+            starts=_STARTS if np.isfinite(enough) else 1,
+            enough=enough,
+        )
+        untouched = correction.samples is None and not correction.corners
+        noise = self.noise if untouched else reference_noise(decays, fit)
+        table = residual_table(self.recordings, decays, fit)
+        return CandidateFit(campaign, decays, structure.models, fit, table, noise)
+
+
+def residuals_of(fit: FitResult, decays: Sequence[FreeDecay]) -> Sequence[Real]:
+    """Return the residuals of a fit, one record of shape (channel, time) for each decay."""
+    return list(residual_records(fit.point.place.fitted(fit.point.weights), decays))
+
+
+def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
+    """Let every decay begin where it would if no wheel sensor showed the landing, as one of them may be at fault.
+
+    Parameters
+    ----------
+    campaign
+        The campaign.
+    decays
+        As they were found.
+    """
+    masked = campaign
+    for channel, sensor in enumerate(campaign.sensors):
+        if sensor.on != "body":
+            masked = mask_channel(channel).of_campaign(masked)
+    starts = {decay.file: decay.start for decay in prepare(masked).decays}
+    moved = []
+    for decay in decays:
+        shift = round((starts.get(decay.file, decay.start) - decay.start) * decay.rate)
+        moved.append(decay.moved(max(shift, -decay.earlier.shape[1])) if shift < decay.samples / 2 else decay)
+    return tuple(moved)
