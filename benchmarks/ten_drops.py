@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import sprung
 from sprung.estimation import FitResult, FitStatistics, fit_jointly, fit_linear, fit_nonlinear
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection.structure import choose_model
+from sprung.selection.structure import choose_structure
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, LinearModel, NonlinearModel, Sensor, Vehicle
 
@@ -68,7 +68,7 @@ class Task:
 def ten_drops(times: int = 1) -> Task:
     """Simulate the campaign, sampled so many times as often: 1500 samples in each decay, times that."""
     campaign = _simulated(times)
-    choice = choose_model(campaign)
+    choice = choose_structure(campaign)
     # Everybody fits from where free vibration begins, as found in a campaign of the usual rate.
     drops = tuple(replace(drop, start=start) for drop, start in zip(campaign.drops, _starts(), strict=True))
     decays = tuple(
@@ -77,7 +77,7 @@ def ten_drops(times: int = 1) -> Task:
     )
     if {decay.values.shape for decay in decays} != {(8, times * SAMPLES)}:
         raise ValueError(f"decays of {[decay.values.shape for decay in decays]}; record for longer")
-    return Task(campaign, decays, choice.models, tuple(campaign.sensors), choice.known)
+    return Task(campaign, decays, choice.linear_models, tuple(campaign.sensors), choice.known)
 
 
 def _simulated(times: int) -> sprung.Campaign:
@@ -134,8 +134,8 @@ def ten_rubbing_drops() -> FrictionTask:
     friction = {"F_f": 100.0, "F_r": 100.0, "s_f": 2e5, "s_r": 2e5}
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | friction, name="rubbing car")
     campaign = sprung.simulate(car, loads=[_LOAD], rate=RATE, duration=_RECORDED, noise=0.02, seed=1)
-    choice = choose_model(campaign, "shared", ("friction",))
-    plain = choice.having(())
+    choice = choose_structure(campaign, "shared", ("friction",))
+    plain = choice.with_terms(())
     decays = tuple(replace(decay, values=decay.values[:, :SAMPLES]) for decay in prepare(campaign).decays)
-    linear = fit_linear(decays, plain.models, campaign.sensors, plain.known)
-    return FrictionTask(campaign, decays, choice.stepped, campaign.sensors, choice.known, linear)
+    linear = fit_linear(decays, plain.linear_models, campaign.sensors, plain.known)
+    return FrictionTask(campaign, decays, choice.nonlinear_models, campaign.sensors, choice.known, linear)

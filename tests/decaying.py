@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal import Mode, modes_from
+from sprung.vibration import Mode, make_modes
 
 Array = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class System:
     def modes(self) -> tuple[Mode, ...]:
         """From the eigenvalue problem of the state matrix."""
         poles, vectors = np.linalg.eig(self.state)
-        return modes_from(poles, vectors[: len(self.M)])
+        return make_modes(poles, vectors[: len(self.M)])
 
     def decays(self, count: int, rate: float, seconds: float, seed: int = 0) -> list[Array]:
         """Give accelerations from as many random states."""

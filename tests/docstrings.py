@@ -49,6 +49,7 @@ ROOMS = (
     "tables",
     "units",
     "vehicle",
+    "vibration",
 )
 
 UNIT = re.compile(

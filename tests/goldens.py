@@ -35,9 +35,8 @@ _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 def campaign_of(vehicle: str, *names: str) -> Campaign:
     """Read a campaign of the repository, with only these of its drops, or with all of them."""
     whole = sprung.read(DATA / vehicle)
-    kept = [i for i, one in enumerate(whole.recordings) if not names or one.name.removesuffix(".csv") in names]
-    drops, recordings = tuple(whole.drops[i] for i in kept), tuple(whole.recordings[i] for i in kept)
-    return dataclasses.replace(whole, drops=drops, recordings=recordings)
+    drops = (drop for drop in whole.drops if not names or drop.recording.name.removesuffix(".csv") in names)
+    return dataclasses.replace(whole, drops=tuple(drops))
 
 
 def accepted() -> sprung.Result:
@@ -68,7 +67,7 @@ def unidentifiable() -> sprung.Result:
     values = two.recordings[0].values.copy()
     values[list(two.recordings[0].channels).index("wheel_fl")] = float("nan")
     recording = dataclasses.replace(two.recordings[0], values=values, faults=(fault,))
-    return _linear(dataclasses.replace(two, recordings=(recording, two.recordings[1])))
+    return _linear(two.with_recordings((recording, two.recordings[1])))
 
 
 def _linear(campaign: Campaign) -> sprung.Result:

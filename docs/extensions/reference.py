@@ -43,6 +43,7 @@ ROOMS = (
     "campaign",
     "formats",
     "files",
+    "vibration",
     "vehicle",
     "tables",
     "uncertainty",

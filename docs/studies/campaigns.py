@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import sprung
 from sprung.planning import Bound, PlannedDrop, PlannedTest, Subject
 from sprung.uncertainty import NORMAL_95, KnownValue
-from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, quantity
+from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -113,7 +113,7 @@ class Case:
         names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))
         std = WEIGHING * self.vehicle.total_mass
         draws = np.zeros(len(self.weighed)) if random is None else random.standard_normal(len(self.weighed))
-        truth = [quantity(name, names, values)[0] for name in self.weighed]
+        truth = [evaluate_quantity(name, names, values)[0] for name in self.weighed]
         return {
             name: KnownValue(x + std * z, std) for name, x, z in zip(self.weighed, truth, draws.tolist(), strict=True)
         }
@@ -130,7 +130,7 @@ class Case:
         recordings = tuple(
             replace(one, values=self.measure(one.values, self.noise, random)) for one in clean.recordings
         )
-        return replace(clean, recordings=recordings, known=self.known(np.random.default_rng([seed, 1])))
+        return replace(clean.with_recordings(recordings), known=self.known(np.random.default_rng([seed, 1])))
 
     @cached_property
     def truth(self) -> dict[str, float]:
@@ -233,7 +233,7 @@ def _bound(case: Case, used: tuple[int, ...]) -> Real:
     covariance = Bound(subject, told + PlannedTest(subject, ()).prior).covariance
     gradients = np.eye(len(subject.names))
     if not case.scaled:
-        total, gradient = quantity("total_mass", subject.names, subject.values)
+        total, gradient = evaluate_quantity("total_mass", subject.names, subject.values)
         scales = np.array([PARAMETERS[name].scales for name in subject.names])
         gradients[scales] -= gradient * subject.slopes / total
     spread: Real = np.sqrt(np.einsum("ij,jk,ik->i", gradients, covariance, gradients))

@@ -13,7 +13,7 @@ from campaigns import AXLES, WEIGHING, Measure, ballast, white
 import sprung
 from sprung.campaign import Drop
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Sensor, Vehicle, Wheel, quantity
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Sensor, Vehicle, Wheel, evaluate_quantity
 
 OFFSET = 0.05
 """m/s² root-mean-square: what a sensor that feels gravity reads too much at rest, anew in every drop."""
@@ -85,13 +85,13 @@ class DropTest:
         for one in self.exact.recordings:
             off = OFFSET * felt * random.standard_normal((len(self.sensors), 1))
             recordings.append(replace(one, values=measure(one.values + off, self.noise, random)))
-        return replace(self.exact, recordings=tuple(recordings), known=self._known(random))
+        return replace(self.exact.with_recordings(recordings), known=self._known(random))
 
     def _known(self, random: np.random.Generator) -> dict[str, KnownValue]:
         names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))
         std = WEIGHING * self.vehicle.total_mass
         return {
-            name: KnownValue(quantity(name, names, values)[0] + std * random.standard_normal(), std)
+            name: KnownValue(evaluate_quantity(name, names, values)[0] + std * random.standard_normal(), std)
             for name in self.weighed
         }
 

@@ -20,7 +20,7 @@ from wireless import wireless
 
 import sprung
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, quantity
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, evaluate_quantity
 
 Agreement = Literal["linear", "nonlinear"]
 """How closely two programs must agree: to 1e-6 of each value, or to 0.02 standard errors (nonlinear laws, faults corrected)."""
@@ -61,7 +61,7 @@ def _car(**more: float) -> sprung.Campaign:
 
 def _weighed(name: str) -> float:
     parameters = TABLE_1_CAR.parameters
-    return quantity(name, tuple(parameters), np.array(list(parameters.values())))[0]
+    return evaluate_quantity(name, tuple(parameters), np.array(list(parameters.values())))[0]
 
 
 def _rubbing(vehicle: Vehicle, **more: float) -> sprung.Campaign:
@@ -88,7 +88,7 @@ def _two_vehicles() -> sprung.Campaign:
     """Return drops of which every second one is another vehicle's."""
     one, other = FLEET[0].campaign(1), replace(FLEET[0], vehicle=_OTHER).campaign(1)
     pairs = zip(one.recordings, other.recordings, strict=True)
-    return replace(one, recordings=tuple(pair[i % 2] for i, pair in enumerate(pairs)))
+    return one.with_recordings(pair[i % 2] for i, pair in enumerate(pairs))
 
 
 _OTHER = Vehicle.from_parameters(

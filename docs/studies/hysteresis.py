@@ -72,7 +72,7 @@ def measured(
         quiet = np.hstack([np.zeros((len(S), rest)), S @ acceleration]) + STANDARD_GRAVITY
         values = quiet + noise * random.standard_normal(quiet.shape)
         recordings.append(replace(recording, values=values, start=0.0))
-    return replace(shape, recordings=tuple(recordings))
+    return shape.with_recordings(recordings)
 
 
 def _followed(vehicle: Vehicle, campaign: sprung.Campaign, law: Law, rate: float, duration: float) -> Real:

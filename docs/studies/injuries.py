@@ -79,7 +79,7 @@ def changed(
         for channel in channels if only in (None, i) else ():
             values[channel] = how(values[channel])
         recordings.append(replace(one, values=values))
-    return replace(campaign, recordings=tuple(recordings))
+    return campaign.with_recordings(recordings)
 
 
 def of_kind(campaign: sprung.Campaign, kind: str) -> list[int]:
@@ -148,7 +148,7 @@ def exchanged(first: str, second: str, in_one: bool = False) -> Act:
         )
         names = tuple(campaign.sensors[i].channel for i in (one, other))
         where = (*names, campaign.recordings[drop].name) if in_one else names
-        return Injured(replace(campaign, recordings=recordings), where)
+        return Injured(campaign.with_recordings(recordings), where)
 
     return act
 
@@ -242,7 +242,7 @@ def twist(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator
     recordings = tuple(
         replace(one, values=one.values + size * more) for one, more in zip(campaign.recordings, twists, strict=True)
     )
-    return Injured(replace(campaign, recordings=recordings), ())
+    return Injured(campaign.with_recordings(recordings), ())
 
 
 def units(factor: float) -> Callable[[np.random.Generator, float], Change]:

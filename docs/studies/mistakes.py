@@ -106,7 +106,7 @@ def one_drop(how: Other) -> Act:
         recordings = list(campaign.recordings)
         noise = recordings[i].values - test.exact.recordings[i].values
         recordings[i] = replace(recordings[i], values=happened + noise)
-        return Injured(replace(campaign, recordings=tuple(recordings)), (recordings[i].name,))
+        return Injured(campaign.with_recordings(recordings), (recordings[i].name,))
 
     return act
 

@@ -26,7 +26,8 @@ from scipy.io import loadmat
 from scipy.optimize import linear_sum_assignment
 
 from sprung.errors import InputError
-from sprung.modal import METHODS, Mode, follow_modes, identify_modes
+from sprung.modal import METHODS, amplitude_dependence, identify_modes
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -226,7 +227,7 @@ def beam(path: Path) -> list[dict[str, Any]]:
     rate = 1 / float(np.diff(data.time).mean())
     record = np.stack([data.acc1, data.acc2, data.acc3])[:, int(0.02 * rate) :]
     modes = identify_modes([record], rate)
-    traces = follow_modes([record], rate, modes)
+    traces = amplitude_dependence([record], rate, modes)
     rows = []
     for peak in (80.5, 297.7):
         trace = min(traces, key=lambda one, peak=peak: abs(one.mode.frequency - peak))  # type: ignore[misc]

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.modal import Mode, cramer_rao_bound, modes_of
-from sprung.vehicle import TABLE_1_CAR, Vehicle, Wheel, free_decay, half_sine_bump, tyre_rates
+from sprung.modal import cramer_rao_bound
+from sprung.vehicle import TABLE_1_CAR, Vehicle, Wheel, drive_over_half_sine_bump, free_decay, tyre_rates
+from sprung.vibration import Mode, compute_modes
 
 Real = NDArray[np.float64]
 
@@ -20,7 +21,7 @@ HEIGHT, PASSAGE = 0.09, 0.2
 
 RATE, SECONDS = 1000.0, 4.0
 
-CAR = modes_of(TABLE_1_CAR.matrices())
+CAR = compute_modes(TABLE_1_CAR.matrices())
 """Modes of the Table 1 car."""
 
 
@@ -29,7 +30,7 @@ def bumps(vehicle: Vehicle = TABLE_1_CAR, rate: float = RATE, seconds: float = S
     matrices = vehicle.matrices()
     found = []
     for wheels in BUMPS:
-        _, state = half_sine_bump(matrices, tyre_rates(vehicle), wheels, HEIGHT, PASSAGE, 1 / rate, 1)
+        _, state = drive_over_half_sine_bump(matrices, tyre_rates(vehicle), wheels, HEIGHT, PASSAGE, 1 / rate, 1)
         found.append(free_decay(matrices, state, 1 / rate, round(seconds * rate)).acceleration)
     return found
 

@@ -120,7 +120,9 @@ def search(case: Case, number: int) -> Search:
     fitted = fit_campaign(case.campaign(number))
     choice, fit = fitted.choice, fitted.fit
     truth = {name: float(getattr(case.vehicle, name)) for name in fit.names}
-    from_truth = fit_linear(fitted.prepared.decays, choice.models, fitted.campaign.sensors, choice.known, start=truth)
+    from_truth = fit_linear(
+        fitted.prepared.decays, choice.linear_models, fitted.campaign.sensors, choice.known, start=truth
+    )
     poles = np.linalg.eigvals(case.vehicle.matrices().state)
     result = result_of(fitted)
     return Search(

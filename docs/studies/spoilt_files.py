@@ -87,7 +87,7 @@ def uneven(test: DropTest, campaign: sprung.Campaign, random: np.random.Generato
         return [lines[0], *([f"{float(line[0]) + by:.7f}", *line[1:]] for line, by in stamped)]
 
     name = recordings[i].name
-    return Injured(replace(campaign, recordings=tuple(recordings)), (name,), name, rewrite)
+    return Injured(campaign.with_recordings(recordings), (name,), name, rewrite)
 
 
 def lines_lost(lines: Lines, random: np.random.Generator, test: DropTest) -> Lines:
@@ -114,7 +114,7 @@ def cut(seconds: Callable[[np.random.Generator], float], to_end: bool) -> Act:
         recordings = list(campaign.recordings)
         values: Real = recordings[i].values
         recordings[i] = replace(recordings[i], values=values[:, at:] if to_end else values[:, :at])
-        return Injured(replace(campaign, recordings=tuple(recordings)), (recordings[i].name,))
+        return Injured(campaign.with_recordings(recordings), (recordings[i].name,))
 
     return act
 
@@ -124,7 +124,7 @@ def copied(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) 
     one, other = random.choice(len(campaign.drops), 2, replace=False).tolist()
     recordings = list(campaign.recordings)
     recordings[other] = replace(recordings[other], values=recordings[one].values.copy())
-    return Injured(replace(campaign, recordings=tuple(recordings)), (recordings[one].name, recordings[other].name))
+    return Injured(campaign.with_recordings(recordings), (recordings[one].name, recordings[other].name))
 
 
 def fast_clock(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
@@ -133,7 +133,7 @@ def fast_clock(_: DropTest, campaign: sprung.Campaign, random: np.random.Generat
     factor = 1 + random.choice([-1.0, 1.0]) * random.uniform(0.02, 0.05)
     recordings = list(campaign.recordings)
     recordings[i] = replace(recordings[i], rate=recordings[i].rate * factor)
-    return Injured(replace(campaign, recordings=tuple(recordings)), (recordings[i].name,))
+    return Injured(campaign.with_recordings(recordings), (recordings[i].name,))
 
 
 OF_RECORDINGS: Sequence[Injury] = (

@@ -13,14 +13,14 @@ import sprung
 from sprung.campaign import Campaign, Recording, merged
 from sprung.simulation import default_sensors
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, record_of
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, parse_record
 
 Real = NDArray[np.float64]
 
 REST, AFTER = 0.6, 2.9
 """s that a logger records before and after the release, if it starts when it should."""
 
-BAGS = record_of(
+BAGS = parse_record(
     Load,
     {
         "name": "bags",
@@ -92,8 +92,9 @@ def wireless(
     rows = [sensor.row for sensor in together.sensors]
     S = Rows.of(rows, tuple(parameters)).at(np.array(list(parameters.values())))
     fast = 1 + drift * random.uniform(-1, 1, len(S))
-    recordings, ahead = [], []
-    for drop, one in zip(together.drops, together.recordings, strict=True):
+    drops, ahead = [], []
+    for drop in together.drops:
+        one = drop.recording
         height = drop.height or 0.05
         fall = drop_from_blocks(vehicle, together.load(drop.load), drop.wheels, height, duration=AFTER + apart)
         begins = -REST + apart * random.uniform(-0.5, 0.5, len(S))
@@ -108,12 +109,7 @@ def wireless(
             parts.append(Recording(name, (one.channels[channel],), values[None], float(shown[channel]), rates[channel]))
         ahead.append(shown - begins * fast)
         whole = Recording(f"{drop.label}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
-        recordings.append(merged(whole, [part.start for part in parts]))
-    drops = tuple(
-        replace(drop, file=None, files=tuple(part.name for part in recording.parts))
-        for drop, recording in zip(together.drops, recordings, strict=True)
-    )
-    campaign = replace(
-        together, drops=drops, recordings=tuple(recordings), known={"total_mass": KnownValue(vehicle.total_mass)}
-    )
+        recording = merged(whole, [part.start for part in parts])
+        drops.append(replace(drop, file=None, files=tuple(part.name for part in parts), recording=recording))
+    campaign = replace(together, drops=tuple(drops), known={"total_mass": KnownValue(vehicle.total_mass)})
     return Wireless(campaign, np.array(ahead), together)

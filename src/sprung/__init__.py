@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from sprung import report as report
     from sprung import study as study
     from sprung.analysis import identify
-    from sprung.campaign import Campaign, Drop, read, schema_text, to_sep005, write
+    from sprung.campaign import Campaign, Drop, DropTest, read, schema_text, to_sep005, write
     from sprung.checking import check
     from sprung.drafting import draft
     from sprung.modal_survey import is_recordings, modes
@@ -36,6 +36,7 @@ __all__ = [
     "Campaign",
     "Comparison",
     "Drop",
+    "DropTest",
     "Load",
     "Result",
     "Sensor",
@@ -62,6 +63,7 @@ _HOME = {
     "Campaign": "campaign",
     "Comparison": "study",
     "Drop": "campaign",
+    "DropTest": "campaign",
     "Load": "vehicle",
     "Result": "results",
     "Sensor": "vehicle",

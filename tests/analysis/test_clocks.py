@@ -68,7 +68,7 @@ def jolted(simulated: Wireless, size: float) -> Campaign:
             jolt = size * np.sin(np.pi * since / 0.01) * ((since > 0) & (since < 0.01))
             parts[i] = replace(part, values=part.values + jolt)
         recordings.append(replace(recording, parts=tuple(parts)))
-    return replace(simulated.campaign, recordings=tuple(recordings))
+    return simulated.campaign.with_recordings(recordings)
 
 
 @pytest.mark.long

@@ -70,7 +70,7 @@ def test_a_fall_that_the_model_does_not_explain_is_not_used(campaign: sprung.Cam
         time = recording.start + np.arange(recording.values.shape[1]) / recording.rate
         pull = 8.0 * ((time > 0.405) & (time < 0.43)) * np.array([[1.0]] * 4 + [[0.0]] * 4)
         held.append(replace(recording, values=recording.values + pull))
-    found = sprung.identify(replace(campaign, recordings=tuple(held)), fall=True)
+    found = sprung.identify(campaign.with_recordings(held), fall=True)
     assert found.fit.since == "landing"
     assert "was tried and says nothing more" in found.fit.why
     for channel, noise in landed.fit.noise.items():
@@ -80,7 +80,7 @@ def test_a_fall_that_the_model_does_not_explain_is_not_used(campaign: sprung.Cam
 def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
     """Those after a release that was found, of which nobody said from when on to use them, and whose samples are whole."""
     prepared = prepare(campaign)
-    found = flights(prepared.decays, campaign.drops, prepared.seen)
+    found = flights(prepared.decays, prepared.seen)
     for one, decay, seen in zip(found, prepared.decays, prepared.seen, strict=True):
         assert one is not None
         assert one.decay.events.why_fit == FROM_RELEASE
@@ -89,10 +89,10 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
         assert one.since == pytest.approx(0.012)
     started = [replace(drop, start=0.6) for drop in campaign.drops]
     prepared = prepare(replace(campaign, drops=tuple(started)))
-    assert flights(prepared.decays, started, prepared.seen) == [None] * 3
+    assert flights(prepared.decays, prepared.seen) == [None] * 3
     clipped = [replace(one, values=np.clip(one.values, -30.0, 30.0)) for one in campaign.recordings]
-    prepared = prepare(replace(campaign, recordings=tuple(clipped)))
-    assert flights(prepared.decays, campaign.drops, prepared.seen) == [None] * 3
+    prepared = prepare(campaign.with_recordings(clipped))
+    assert flights(prepared.decays, prepared.seen) == [None] * 3
 
 
 def test_the_campaign_may_say_whether_the_fall_is_used(campaign: sprung.Campaign) -> None:

@@ -205,7 +205,7 @@ def other_wheels_fell(campaign: Campaign) -> Campaign:
 
 
 def turned_over(campaign: Campaign) -> Campaign:
-    return replace(campaign, recordings=tuple(replace(one, values=-one.values) for one in campaign.recordings))
+    return campaign.with_recordings(replace(one, values=-one.values) for one in campaign.recordings)
 
 
 BODY = "body_fl, body_fr, body_rl, body_rr"
@@ -260,7 +260,7 @@ def test_wheels_stated_wrongly_in_one_drop_are_told_of_that_drop(
 ) -> None:
     """One statement is simpler than those of eight sensors, although no other drop of these shows that side, or that end."""
     drops = [replace(recorded.drops[i], wheels=wheels) if i == wrong else recorded.drops[i] for i in kept]
-    spoilt = replace(recorded, drops=tuple(drops), recordings=tuple(recorded.recordings[i] for i in kept))
+    spoilt = replace(recorded, drops=tuple(drops))
     (fault,) = sprung.check(spoilt).faults
     assert (fault.code, fault.where) == ("wheels", recorded.recordings[wrong].name)
     assert f"the release shows {', '.join(recorded.drops[wrong].wheels)} to have fallen" in fault.what
@@ -304,7 +304,7 @@ def test_check_leaves_out_the_drops_that_cannot_be_used_as_declared(recorded: Ca
 def test_a_copy_is_one_fault(recorded: Campaign) -> None:
     recordings = list(recorded.recordings)
     recordings[5] = replace(recordings[0], name=recordings[5].name)
-    checked = sprung.check(replace(recorded, recordings=tuple(recordings)))
+    checked = sprung.check(recorded.with_recordings(recordings))
     assert [(fault.code, fault.where) for fault in checked.faults] == [("copy", recordings[5].name)]
     assert checked.summary == "9 of 10 drops usable"
 
@@ -341,7 +341,7 @@ def test_places_of_the_load_measured_from_the_rear_axle(recorded: Campaign) -> N
 
 def test_a_unit_that_is_wrong_for_all_sensors_is_told_once(recorded: Campaign) -> None:
     in_g = tuple(replace(one, values=9.80665 * one.values) for one in recorded.recordings)
-    (fault,) = sprung.check(replace(recorded, recordings=in_g)).faults
+    (fault,) = sprung.check(recorded.with_recordings(in_g)).faults
     assert fault.code == "unit"
     assert fault.where.split(", ") == [one.channel for one in SENSORS]
     assert 'unit = "m/s^2" for them' in fault.do

@@ -96,7 +96,7 @@ def coloured(channel: str) -> Campaign:
             noise[k] = 0.9 * noise[k - 1] + np.sqrt(1 - 0.81) * noise[k]
         values[list(recording.channels).index(channel)] += 0.03 * noise
         recordings.append(replace(recording, values=values))
-    return replace(clean, recordings=tuple(recordings))
+    return clean.with_recordings(recordings)
 
 
 def test_the_result_says_what_enlarged_the_error_bars() -> None:

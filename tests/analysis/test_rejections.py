@@ -12,7 +12,7 @@ from scipy.linalg import expm
 
 import sprung
 from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle, drop_from_blocks
-from sprung.vehicle.rows import body_point
+from sprung.vehicle.kinematics import body_point
 
 Array = NDArray[np.float64]
 
@@ -57,8 +57,8 @@ def with_a_loose_mass(mass: float, frequency: float, damping: float, play: float
         readings = sensors @ np.array(accelerations).T + 9.80665
         noisy = readings + 0.02 * random.standard_normal(readings.shape)
         recordings.append(replace(recording, values=noisy, start=0.0))
-    begun = tuple(replace(drop, start=0.0) for drop in clean.drops)
-    return replace(clean, recordings=tuple(recordings), drops=begun)
+    begun = replace(clean, drops=tuple(replace(drop, start=0.0) for drop in clean.drops))
+    return begun.with_recordings(recordings)
 
 
 def _generator(M: Array, C: Array, K: Array, felt: Array, stop: float, play: float) -> Array:

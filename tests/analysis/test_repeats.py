@@ -14,8 +14,9 @@ from sprung.vehicle import TABLE_1_CAR, WHEELS
 
 def by_two_loggers(campaign: Campaign) -> Campaign:
     """Give a campaign as if one logger had recorded the wheels and one the body."""
-    drops, recordings = [], []
-    for drop, one in zip(campaign.drops, campaign.recordings, strict=True):
+    drops = []
+    for drop in campaign.drops:
+        one = drop.recording
         parts = tuple(
             Recording(
                 f"{drop.label}_{logger}.csv",
@@ -30,9 +31,9 @@ def by_two_loggers(campaign: Campaign) -> Campaign:
             )
         )
         whole = Recording(f"{drop.label}*", one.channels, np.empty((len(one.channels), 0)), 0.0, 1.0, parts=parts)
-        recordings.append(merged(whole, [part.start for part in parts]))
-        drops.append(replace(drop, file=None, files=tuple(part.name for part in parts)))
-    return replace(campaign, drops=tuple(drops), recordings=tuple(recordings))
+        recording = merged(whole, [part.start for part in parts])
+        drops.append(replace(drop, file=None, files=tuple(part.name for part in parts), recording=recording))
+    return replace(campaign, drops=tuple(drops))
 
 
 def test_repeats_by_several_loggers_each_have_their_series(tmp_path: Path) -> None:

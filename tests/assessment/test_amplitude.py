@@ -14,7 +14,6 @@ import sprung
 from sprung.assessment import BodyMotion, Trace, mode_amplitudes
 from sprung.assessment.sliding import follow_mode
 from sprung.estimation import FitStatistics
-from sprung.modal import modes_of
 from sprung.vehicle import (
     SCHOOL_BUS,
     TABLE_1_CAR,
@@ -24,11 +23,12 @@ from sprung.vehicle import (
     nonlinear_elements,
     seven_degrees_of_freedom,
 )
+from sprung.vibration import compute_modes
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 Real = NDArray[np.float64]
 RATE = 250.0
-MODES = [mode for mode in modes_of(TABLE_1_CAR.matrices()) if mode.pole.imag > 0]
+MODES = [mode for mode in compute_modes(TABLE_1_CAR.matrices()) if mode.pole.imag > 0]
 BODY = [i for i, mode in enumerate(MODES) if (mode.name or "").startswith("body")]
 
 
@@ -108,7 +108,7 @@ def fit_of(bus: sprung.Vehicle) -> FitStatistics:
     square = np.zeros((len(names), len(names)))
     known: dict[str, float] = {}
     return FitStatistics(
-        names, values, values, square, square, nothing, nothing, nothing, 1.0, (), known, 0.0, 0, True, 1, 1
+        names, values, values, square, square, nothing, nothing, nothing, 1.0, (), (), known, 0.0, 0, True, 1, 1
     )
 
 
@@ -121,7 +121,7 @@ def of_friction(bus: sprung.Vehicle) -> NonlinearModel:
 def test_dry_friction_lets_frequencies_rise_as_the_motion_dies() -> None:
     """From those of springs and tyres to those of the body on its tyres, the springs held: figures 7 to 9."""
     bus = replace(SCHOOL_BUS, F_f=1000.0, F_r=1500.0, s_f=2e6, s_r=3e6)
-    held = modes_of(replace(SCHOOL_BUS, k_sf=SCHOOL_BUS.k_sf + 2e6, k_sr=SCHOOL_BUS.k_sr + 3e6).matrices())
+    held = compute_modes(replace(SCHOOL_BUS, k_sf=SCHOOL_BUS.k_sf + 2e6, k_sr=SCHOOL_BUS.k_sr + 3e6).matrices())
     highest = {mode.name: mode.frequency for mode in held if mode.pole.imag > 0}
     found = mode_amplitudes(fit_of(bus), of_friction(bus), sensors_of_the_bus(), motions_of(bus))
     bounce, roll = (next(one for one in found if one.mode == f"body {way}") for way in ("bounce", "roll"))

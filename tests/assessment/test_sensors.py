@@ -67,9 +67,7 @@ def test_a_quiet_rest_does_not_take_the_colour_of_what_moves(decays: tuple[FreeD
 
 
 def rounded(clean: Campaign, step: float) -> Campaign:
-    return replace(
-        clean, recordings=tuple(replace(r, values=step * np.round(r.values / step)) for r in clean.recordings)
-    )
+    return clean.with_recordings(replace(r, values=step * np.round(r.values / step)) for r in clean.recordings)
 
 
 def test_steps_are_known_though_a_high_pass_was_undone() -> None:
@@ -77,7 +75,7 @@ def test_steps_are_known_though_a_high_pass_was_undone() -> None:
     clean = sprung.simulate(TABLE_1_CAR, noise=0.01, seed=1)
     sensors = tuple(replace(one, high_pass=0.1) for one in clean.sensors)
     centred = [replace(r, values=r.values - r.values[:, :100].mean(axis=1, keepdims=True)) for r in clean.recordings]
-    campaign = rounded(replace(clean, sensors=sensors, recordings=tuple(centred)), step)
+    campaign = rounded(replace(clean.with_recordings(centred), sensors=sensors), step)
     for decay in prepare(campaign).decays:
         assert decay.resolution == pytest.approx(np.full(8, step))
         assert decay.undone == (0.1,) * 8

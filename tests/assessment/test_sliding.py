@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sprung.assessment.sliding import follow_mode
-from sprung.modal import Mode, modes_of
 from sprung.vehicle import Vehicle
+from sprung.vibration import Mode, compute_modes
 
 # Wheels that hop at 27 Hz: k_t = (2π 27 Hz)² m_u.
 M_U = 30.0
@@ -33,7 +33,7 @@ STIFF = Vehicle(
 
 @pytest.fixture(scope="module")
 def modes() -> list[Mode]:
-    return [mode for mode in modes_of(STIFF.matrices()) if mode.pole.imag != 0]
+    return [mode for mode in compute_modes(STIFF.matrices()) if mode.pole.imag != 0]
 
 
 @pytest.mark.parametrize(("seed", "which"), [(53, 1), (229, 2)])

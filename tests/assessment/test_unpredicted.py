@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 import sprung
@@ -11,7 +9,7 @@ from sprung.assessment import Verdict, body_motions, judge, judge_residuals, val
 from sprung.campaign import Campaign
 from sprung.estimation import Prediction, fit_linear, to_estimates, uncertainty_of
 from sprung.preprocess import prepare
-from sprung.selection.structure import choose_model
+from sprung.selection.structure import choose_structure
 from sprung.vehicle import TABLE_1_CAR
 
 LOAD = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
@@ -24,9 +22,9 @@ def campaign(seed: int, **changed: float) -> Campaign:
 
 def judged(made: Campaign) -> Verdict:
     """Fit and judge without looking for what may be wrong, which would leave the drop out."""
-    choice, decays = choose_model(made), prepare(made).decays
-    optimum = fit_linear(decays, choice.models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
-    fit, channels = uncertainty_of(optimum, decays), [sensor.channel for sensor in made.sensors]
+    choice, decays = choose_structure(made), prepare(made).decays
+    optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
+    fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
     drops = validate_drops(optimum, fit, decays, channels, body_motions(fit, decays, made.sensors))
     return judge(fit, judge_residuals(fit, decays), to_estimates(fit, choice.known).parameters, channels, (), drops)
 
@@ -37,7 +35,7 @@ def test_another_vehicle_in_one_drop_is_named(changed: dict[str, float]) -> None
     spoilt = tuple(
         two if i == 3 else one for i, (one, two) in enumerate(zip(made.recordings, other.recordings, strict=True))
     )
-    verdict = judged(replace(made, recordings=spoilt))
+    verdict = judged(made.with_recordings(spoilt))
     assert verdict.state != "accept"
     said = [reason for reason in verdict.reasons if "do not predict" in reason]
     assert len(said) == 1

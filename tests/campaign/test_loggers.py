@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sprung.campaign import Drop, Recording, drop_names, merged, read
-from sprung.campaign.campaign import recording_names
+from sprung.campaign import Drop, Recording, drop_names, merged, read, recording_names
 from sprung.errors import InputError
 
 SENSORS = """
@@ -128,7 +127,7 @@ def test_a_logger_without_a_file_is_missing_from_the_drop(tmp_path: Path) -> Non
     ],
 )
 def test_files_are_called_by_what_they_have_in_common(files: tuple[str, ...], name: str) -> None:
-    assert Drop(files=files).recording == name
+    assert Drop(files=files).recording_name == name
 
 
 @pytest.mark.parametrize(

@@ -46,10 +46,8 @@ def test_a_drop_with_a_name_is_fitted_like_any_other(folder: Folder) -> None:
     named = sprung.read(folder.path)
     plain = replace(
         named,
-        drops=tuple(replace(drop, name=None) for drop in named.drops),
-        recordings=tuple(
-            replace(recording, name=str(drop.file))
-            for recording, drop in zip(named.recordings, named.drops, strict=True)
+        drops=tuple(
+            replace(drop, name=None, recording=replace(drop.recording, name=str(drop.file))) for drop in named.drops
         ),
     )
     results = [sprung.identify(campaign) for campaign in (named, plain)]

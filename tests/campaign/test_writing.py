@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sprung.campaign import Campaign, Drop, ModelChoice, Recording, read, write
+from sprung.campaign import Campaign, Drop, DropTest, ModelChoice, Recording, read, write
 from sprung.campaign.comments import SECTIONS, meaning
 from sprung.errors import InputError
 from sprung.files import atomic_write
@@ -73,7 +73,7 @@ def campaigns(draw: st.DrawFn) -> Campaign:
             st.sampled_from(["a.csv", "sub/a.csv", "b c.CSV", "d.txt", "e.f.csv"]), min_size=1, max_size=3, unique=True
         )
     )
-    drops, recordings = [], []
+    drops = []
     for file in files:
         samples = draw(st.integers(2, 12))
         values = np.array(draw(st.lists(st.lists(numbers, min_size=samples, max_size=samples), min_size=4, max_size=4)))
@@ -81,15 +81,14 @@ def campaigns(draw: st.DrawFn) -> Campaign:
             values[draw(st.integers(0, 3))] = np.nan
         start, rate = draw(st.floats(-10, 1e4)), draw(st.floats(64, 5000))
         channels = tuple(sensor.channel for sensor in where)
-        recordings.append(Recording(file, channels, values, start, rate))
-        drops.append(Drop(file=file, load=draw(st.sampled_from(["empty", load.name])), wheels=("rr", "fl"), start=None))
+        drop = Drop(file=file, load=draw(st.sampled_from(["empty", load.name])), wheels=("rr", "fl"), start=None)
+        drops.append(drop.with_recording(Recording(file, channels, values, start, rate)))
     # What a vehicle may have that carries these loads and sensors: reading refuses what none has.
     weighed = [("m_s", 200, 6e4), ("k_tf", 8e3, 5e7), ("total_mass", 200, 6e4)]
     return Campaign(
         name=draw(st.text(st.characters(codec="utf-8"), min_size=1, max_size=9)),
         sensors=where,
         drops=tuple(drops),
-        recordings=tuple(recordings),
         loads=(EMPTY, load),
         wheelbase=draw(st.none() | st.builds(KnownValue, st.floats(1.5, 12), deviations)),
         cg_height=draw(st.none() | st.floats(0.1, 4)),
@@ -144,8 +143,7 @@ def one_drop(**changes: Any) -> Campaign:
     campaign = Campaign(
         name="car",
         sensors=tuple(Sensor(channel=f"body_{i}", on="body", position=position) for i, position in enumerate(where)),
-        drops=(Drop(),),
-        recordings=(Recording("x", ("body_0", "body_1", "body_2"), np.ones((3, 5)), 0.0, 500.0),),
+        drops=(DropTest(recording=Recording("x", ("body_0", "body_1", "body_2"), np.ones((3, 5)), 0.0, 500.0)),),
     )
     return dataclasses.replace(campaign, **changes)
 
@@ -213,7 +211,7 @@ def test_comments_say_what_every_section_and_key_is_for(tmp_path: Path) -> None:
 def test_names_stay_in_the_folder_and_apart(tmp_path: Path) -> None:
     recording = one_drop().recordings[0]
     drops = (Drop(), Drop(), Drop(file="/elsewhere/x.mf4"), Drop(file="../x.csv"), Drop(file="X.csv"))
-    campaign = one_drop(drops=drops, recordings=(recording,) * 5)
+    campaign = one_drop(drops=tuple(drop.with_recording(recording) for drop in drops))
     back = read(write(campaign, tmp_path / "out"))
     files = [drop.file for drop in back.drops]
     assert files == ["empty_bounce.csv", "empty_bounce_2.csv", "x.csv", "x_2.csv", "X_3.csv"]

@@ -29,7 +29,7 @@ def changed(campaign: Campaign, change: dict[str, Any], drop: int = 0) -> Campai
 
 def spoilt(campaign: Campaign, values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Campaign:
     """Give the first recording other values."""
-    return replace(campaign, recordings=(replace(campaign.recordings[0], values=values), *campaign.recordings[1:]))
+    return campaign.with_recordings((replace(campaign.recordings[0], values=values), *campaign.recordings[1:]))
 
 
 @pytest.fixture(scope="module")

@@ -255,7 +255,7 @@ def test_what_came_of_it() -> None:
 
     def all_cut(_: DropTest, campaign: sprung.Campaign, __: np.random.Generator) -> Injured:
         short = tuple(replace(one, values=one.values[:, :50]) for one in campaign.recordings)
-        return Injured(replace(campaign, recordings=short), (short[0].name,))
+        return Injured(campaign.with_recordings(short), (short[0].name,))
 
     refused = try_one(1, 0, Injury("all cut", ("no-decay",), "all recordings end at once", all_cut))
     assert refused is not None

@@ -14,11 +14,11 @@ from sprung.estimation import FitResult, fit_linear, uncertainty_of
 from sprung.estimation.closed_form import Likelihood
 from sprung.preprocess import FreeDecay, FromFlight, prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, record_of
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, parse_record
 
 Real = NDArray[np.float64]
 
-LOAD = record_of(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
+LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 CAMPAIGN, QUIET = (
     free_decays(TABLE_1_CAR, loads=[LOAD], states=2, noise=noise, seed=3, duration=1.5, rate=200)
     for noise in (0.02, 0.0)
@@ -51,7 +51,7 @@ def decays(**what: float) -> list[FreeDecay]:
 
 
 def likelihood(those: list[FreeDecay]) -> Likelihood:
-    return Likelihood.of(those, MODELS, ROWS)
+    return Likelihood(those, MODELS, ROWS)
 
 
 def cost(fit: Likelihood, values: Real) -> float:
@@ -172,7 +172,7 @@ def test_records_moved_in_time_give_the_same_vehicle_and_that_delay() -> None:
         return fit_linear(those, MODELS, CAMPAIGN.sensors, known, start=start)
 
     one, other = fitted(still), fitted(moved)
-    std = np.sqrt(np.diag(uncertainty_of(one, still).covariance))
+    std = np.sqrt(np.diag(uncertainty_of(one).covariance))
     assert np.all(np.abs(one.values - other.values) < 1.5 * std + 1e-12)  # all but two samples are the same
-    late, _ = other.point.place.delays(other.point.weights, np.zeros((15, 15)))[0]
+    late, _ = other.clock_delays(np.zeros((15, 15)))[0]
     assert late[1] - late[0] == pytest.approx(shift / 200, abs=3e-4)

@@ -14,17 +14,17 @@ from sprung.estimation.starts import VehicleSize
 from sprung.preprocess import prepare
 from sprung.simulation import simulate
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, record_of
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, parse_record
 from strategies import vehicles
 
-BAGS = record_of(
+BAGS = parse_record(
     Load,
     {
         "name": "bags",
         "items": [{"mass": 140, "position": (-1.0, 0.2, 0.5)}, {"mass": 100, "position": (-2.9, 0.0, 0.5)}],
     },
 )
-CRATES = record_of(
+CRATES = parse_record(
     Load,
     {
         "name": "crates",

@@ -23,13 +23,13 @@ from sprung.vehicle import (
     Sensor,
     Vehicle,
     Wheel,
-    record_of,
+    parse_record,
     seven_degrees_of_freedom,
 )
 from strategies import vehicles
 
 # Off the centreline and off the centre of gravity, so that ΔM is full.
-LOAD = record_of(
+LOAD = parse_record(
     Load,
     {
         "name": "bags",
@@ -172,12 +172,11 @@ def test_left_and_right_are_alike() -> None:
 def test_the_order_of_channels_changes_nothing(order: list[int]) -> None:
     campaign = free_decays(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], states=3, noise=0.02, seed=8, rate=250)
     shuffled = replace(
-        campaign,
-        sensors=tuple(campaign.sensors[i] for i in order),
-        recordings=tuple(
+        campaign.with_recordings(
             replace(r, values=r.values[order], channels=tuple(r.channels[i] for i in order))
             for r in campaign.recordings
         ),
+        sensors=tuple(campaign.sensors[i] for i in order),
     )
     here, _ = fit(campaign, TABLE_1_CAR, start=TABLE_1_CAR.parameters)
     there, _ = fit(shuffled, TABLE_1_CAR, start=TABLE_1_CAR.parameters)
@@ -187,9 +186,8 @@ def test_the_order_of_channels_changes_nothing(order: list[int]) -> None:
 def test_a_later_clock_and_another_offset_change_nothing() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=9)
     offsets = np.linspace(-3, 3, 8)[:, None]
-    moved = replace(
-        campaign,
-        recordings=tuple(replace(r, start=r.start + 1234.5, values=r.values + offsets) for r in campaign.recordings),
+    moved = campaign.with_recordings(
+        replace(r, start=r.start + 1234.5, values=r.values + offsets) for r in campaign.recordings
     )
     here, _ = fit(campaign, TABLE_1_CAR)
     there, _ = fit(moved, TABLE_1_CAR)
@@ -200,7 +198,7 @@ def test_a_channel_left_out_costs_certainty_only() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=10)
     spoilt = np.array(campaign.recordings[0].values)
     spoilt[5] = np.nan
-    less = replace(campaign, recordings=(replace(campaign.recordings[0], values=spoilt), *campaign.recordings[1:]))
+    less = campaign.with_recordings((replace(campaign.recordings[0], values=spoilt), *campaign.recordings[1:]))
     here, _ = fit(campaign, TABLE_1_CAR)
     there, _ = fit(less, TABLE_1_CAR)
     spread = np.sqrt(np.diag(there.relative_covariance))
@@ -230,11 +228,10 @@ def test_body_sensors_alone_are_enough_for_the_body() -> None:
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=11)
     body = [i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body"]
     blind = replace(
-        campaign,
-        sensors=tuple(campaign.sensors[i] for i in body),
-        recordings=tuple(
+        campaign.with_recordings(
             replace(r, values=r.values[body], channels=tuple(r.channels[i] for i in body)) for r in campaign.recordings
         ),
+        sensors=tuple(campaign.sensors[i] for i in body),
     )
     found, estimates = fit(blind, TABLE_1_CAR)
     assert found.converged

@@ -13,11 +13,11 @@ from sprung.estimation.expm_likelihood import evaluate_drop
 from sprung.estimation.solution import differentiate_modes, solve_modes
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, record_of
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, parse_record
 
 Real = NDArray[np.float64]
 
-LOAD = record_of(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
+LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 
 
 # 1/σ² with which the initial states' own reach weighs nothing beside the records.
@@ -30,14 +30,14 @@ def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[Likelihood, Rea
     names = tuple(vehicle.parameters)
     models = {load.name: vehicle.model(load) for load in campaign.loads}
     sensors = Rows.of([sensor.row for sensor in campaign.sensors], names)
-    likelihood = Likelihood.of(decays, models, sensors)
+    likelihood = Likelihood(decays, models, sensors)
     values = np.array(list(vehicle.parameters.values()))
     return likelihood, values, [decay.values for decay in decays], [decay.load for decay in decays]
 
 
 def basis(likelihood: Likelihood, values: Real, load: str, samples: int, rate: float = 200) -> Real:
     """Give every column that a free initial state and the offsets can make, channel after channel, from matrix exponentials."""
-    matrices = likelihood.models[likelihood.records.loads.index(load)].matrices(values)
+    matrices = likelihood.models[load].matrices(values)
     sensors = likelihood.sensors.at(values)
     columns = []
     for state in np.eye(14):
@@ -187,7 +187,7 @@ def test_both_ways_agree(vehicle: Vehicle) -> None:
     states = likelihood.at(values).states(weights)
     for drop, (whole, load) in enumerate(zip(records, loads, strict=True)):
         record = whole - whole.mean(axis=1, keepdims=True)
-        model = likelihood.models[likelihood.records.loads.index(load)]
+        model = likelihood.models[load]
         one = evaluate_drop(model, likelihood.sensors, values, record, 200.0, weights)
         np.testing.assert_allclose(found.residual[drop], one.residual, rtol=1e-9)
         np.testing.assert_allclose(gradients[drop] * values, one.gradient * values, rtol=1e-7, atol=1e-3)

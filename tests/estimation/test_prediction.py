@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -12,7 +10,7 @@ import sprung
 from sprung.campaign import Campaign
 from sprung.estimation import FitResult, Likelihood, Prediction, fit_linear, predictions
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection.structure import choose_model
+from sprung.selection.structure import choose_structure
 from sprung.vehicle import TABLE_1_CAR, Rows
 
 LOAD = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
@@ -24,24 +22,24 @@ def campaign(seed: int, **changed: float) -> Campaign:
 
 
 def fitted(made: Campaign, without: int | None = None) -> tuple[FitResult, list[FreeDecay]]:
-    choice, decays = choose_model(made), list(prepare(made).decays)
+    choice, decays = choose_structure(made), list(prepare(made).decays)
     kept = [decay for i, decay in enumerate(decays) if i != without]
     start = TABLE_1_CAR.parameters
-    return fit_linear(kept, choice.models, made.sensors, choice.known, start=start), decays
+    return fit_linear(kept, choice.linear_models, made.sensors, choice.known, start=start), decays
 
 
 def odd_one_out(**changed: float) -> Campaign:
     """The second drop is another vehicle's."""
     made = campaign(1)
     other = campaign(2, **changed).recordings[1]
-    return replace(made, recordings=tuple(other if i == 1 else one for i, one in enumerate(made.recordings)))
+    return made.with_recordings(other if i == 1 else one for i, one in enumerate(made.recordings))
 
 
 def predicted_by_a_fit(made: Campaign, position: int, weights: NDArray[np.float64]) -> float:
     """The sum of squares of one drop at the end of a fit to all others."""
     others, decays = fitted(made, without=position)
     rows = Rows.of([sensor.row for sensor in made.sensors], others.names)
-    alone = Likelihood.of([decays[position]], choose_model(made).models, rows).at(others.values)
+    alone = Likelihood([decays[position]], choose_structure(made).linear_models, rows).at(others.values)
     return float(alone.misfit(weights)[0][0] @ weights)
 
 
@@ -50,8 +48,8 @@ def predicted_by_a_fit(made: Campaign, position: int, weights: NDArray[np.float6
 )
 def test_one_step_predicts_what_a_fit_without_the_drop_does(position: int, changed: dict[str, float]) -> None:
     made = odd_one_out(**changed)
-    optimum, decays = fitted(made)
-    found, weights = predictions(optimum, decays)[position], optimum.point.weights
+    optimum, _ = fitted(made)
+    found, weights = predictions(optimum)[position], optimum.point.weights
     # The noise levels of the fit without the drop are not quite the same, and the step is of second order.
     grown = predicted_by_a_fit(made, position, weights) - found.fitted
     assert found.squares - found.fitted == pytest.approx(grown, rel=0.1, abs=0.5)
@@ -60,8 +58,8 @@ def test_one_step_predicts_what_a_fit_without_the_drop_does(position: int, chang
 def test_where_nothing_is_wrong_distances_are_chi_squared() -> None:
     found: list[Prediction] = []
     for seed in range(12):
-        optimum, decays = fitted(campaign(seed))
-        found += predictions(optimum, decays)
+        optimum, _ = fitted(campaign(seed))
+        found += predictions(optimum)
     ratio = [one.distance[0] / one.distance[1] for one in found]
     directions = sum(one.distance[1] for one in found)
     # The mean of chi-squared over its degrees of freedom is one, its standard deviation √(2/n).
@@ -71,7 +69,7 @@ def test_where_nothing_is_wrong_distances_are_chi_squared() -> None:
 
 
 def test_a_drop_that_is_unlike_the_others_is_far_from_them() -> None:
-    optimum, decays = fitted(odd_one_out(c_sf=1.2 * TABLE_1_CAR.c_sf))
-    distances = [one.distance[0] / one.distance[1] for one in predictions(optimum, decays)]
+    optimum, _ = fitted(odd_one_out(c_sf=1.2 * TABLE_1_CAR.c_sf))
+    distances = [one.distance[0] / one.distance[1] for one in predictions(optimum)]
     assert int(np.argmax(distances)) == 1
     assert distances[1] > 100

@@ -36,7 +36,7 @@ def body_alone(campaign: Campaign) -> Campaign:
         replace(one, values=one.values[chosen], channels=tuple(one.channels[i] for i in chosen))
         for one in campaign.recordings
     )
-    return replace(campaign, sensors=tuple(campaign.sensors[i] for i in chosen), recordings=recordings)
+    return replace(campaign.with_recordings(recordings), sensors=tuple(campaign.sensors[i] for i in chosen))
 
 
 def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, KnownValue]]:
@@ -46,7 +46,7 @@ def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, Know
     decays = prepare(campaign).decays
     models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
     optimum = fit_linear(decays, models, campaign.sensors, known, start=TRUTH)
-    return optimum, uncertainty_of(optimum, decays), known
+    return optimum, uncertainty_of(optimum), known
 
 
 def both(campaign: Campaign, name: str) -> tuple[Estimate, Estimate]:
@@ -72,7 +72,7 @@ class LongWay:
     def __init__(self, campaign: Campaign) -> None:
         decays = prepare(campaign).decays
         models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
-        self.likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
+        self.likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
         self.free = [name for name in NAMES if name not in ("m_s", "b", "t_f")]
         self.samples = len(decays) * decays[0].samples
 
@@ -137,7 +137,7 @@ def test_inflation_widens_the_profile_as_it_widens_the_curvature() -> None:
     campaign = drops(seed=2, noise=0.02, known={"total_mass": KnownValue(1.001 * TABLE_1_CAR.total_mass, 5.0)})
     other = replace(TABLE_1_CAR, k_sf=1.03 * TABLE_1_CAR.k_sf)
     differs = free_decays(other, states=3, noise=0.02, seed=2, rate=100, duration=1.5)
-    mixed = replace(campaign, recordings=(*campaign.recordings[:2], differs.recordings[2]))
+    mixed = campaign.with_recordings((*campaign.recordings[:2], differs.recordings[2]))
     optimum, fit, known = fitted(mixed)
     assert fit.inflation > 4
     for name in ("total_mass", "k_sr", "t_r"):

@@ -20,7 +20,7 @@ from sprung.estimation import (
 )
 from sprung.estimation.time_stepping import SteppedLikelihood
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection.structure import ModelStructure, choose_model
+from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Rows, Vehicle
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
@@ -41,25 +41,25 @@ def decays(campaign: Campaign) -> tuple[FreeDecay, ...]:
 
 @pytest.fixture(scope="module")
 def plain(campaign: Campaign) -> ModelStructure:
-    return choose_model(campaign, "shared", ())
+    return choose_structure(campaign, "shared", ())
 
 
 @pytest.fixture(scope="module")
 def optimum(campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure) -> FitResult:
-    return fit_linear(decays, plain.models, campaign.sensors, plain.known)
+    return fit_linear(decays, plain.linear_models, campaign.sensors, plain.known)
 
 
 def test_with_nothing_to_step_it_is_the_linear_likelihood(
     campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
 ) -> None:
     """The summit, its noise and its information are those of the linear fit; friction of no force changes none of them."""
-    larger = plain.having(("friction",))
+    larger = plain.with_terms(("friction",))
     start = optimum.parameters | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5}
     known = dict(plain.known) | {
         name: sprung.uncertainty.KnownValue(value) for name, value in start.items() if name[:2] in ("F_", "s_")
     }
     found = fit_nonlinear(
-        decays, larger.stepped, campaign.sensors, known, start=start, states=optimum.states, near=True
+        decays, larger.nonlinear_models, campaign.sensors, known, start=start, states=optimum.states, near=True
     )
     for name, value in optimum.parameters.items():
         assert found.parameters[name] == pytest.approx(value, rel=2e-5)
@@ -74,13 +74,13 @@ def test_scores_are_those_of_the_linear_fit(
     campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
 ) -> None:
     """What an anti-roll bar would gain is told by modes as by steps."""
-    larger = plain.having(("anti-roll",))
+    larger = plain.with_terms(("anti-roll",))
     start = optimum.parameters | {"k_af": 0.0, "k_ar": 0.0}
-    by_modes = score_linear_term(decays, larger.models, campaign.sensors, larger.known, start)
-    all_in = plain.having(("anti-roll", "friction"))
+    by_modes = score_linear_term(decays, larger.linear_models, campaign.sensors, larger.known, start)
+    all_in = plain.with_terms(("anti-roll", "friction"))
     by_steps = score_stepped_terms(
         decays,
-        all_in.stepped,
+        all_in.nonlinear_models,
         campaign.sensors,
         all_in.known,
         values=start | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5},
@@ -100,16 +100,16 @@ def test_scores_of_forces_need_no_steps(campaign: Campaign, plain: ModelStructur
     drops = [replace(drop, file=None) for drop in campaign.drops]
     other = sprung.simulate(rubbing, loads=[LOAD], drops=drops, rate=500, noise=0.02, seed=4)
     theirs = prepare(other).decays
-    found = fit_linear(theirs, plain.models, other.sensors, plain.known, start=optimum.parameters)
+    found = fit_linear(theirs, plain.linear_models, other.sensors, plain.known, start=optimum.parameters)
     extras = ("friction", "rebound", "progressive")
-    larger = plain.having(extras)
+    larger = plain.with_terms(extras)
     neutral = {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5, "r_f": 1.0, "r_r": 1.0, "p_f": 0.0, "p_r": 0.0}
     values = found.parameters | neutral
     brought = {extra: EXTRA_PARAMETERS[extra] for extra in extras}
-    by_modes = score_nonlinear_terms(found, theirs, larger.stepped, values, brought)
+    by_modes = score_nonlinear_terms(found, larger.nonlinear_models, values, brought)
     by_steps = score_stepped_terms(
         theirs,
-        larger.stepped,
+        larger.nonlinear_models,
         other.sensors,
         larger.known,
         values=values,
@@ -129,7 +129,7 @@ def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(
     value = optimum.parameters["m_uf"] * 1.002
     expected = wald_test(optimum, [("m_uf", value)])
     known = dict(plain.known) | {"m_uf": sprung.uncertainty.KnownValue(value)}
-    held = fit_linear(decays, plain.models, campaign.sensors, known, start=optimum.parameters | {"m_uf": value})
+    held = fit_linear(decays, plain.linear_models, campaign.sensors, known, start=optimum.parameters | {"m_uf": value})
     assert 2 * (optimum.loglikelihood - held.loglikelihood) == pytest.approx(expected, rel=0.05)
 
 
@@ -137,20 +137,20 @@ def test_a_friction_that_went_astray_begins_anew_without_a_jolt(
     campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
 ) -> None:
     """Memories of more than one cannot be: without them each drop begins with the forces, so the accelerations, it had."""
-    larger = plain.having(("friction",))
+    larger = plain.with_terms(("friction",))
     values = np.array(
         [(optimum.parameters | {"F_f": 30.0, "F_r": 80.0, "s_f": 6e4, "s_r": 1.2e5})[n] for n in larger.names]
     )
     rows = Rows.of([sensor.row for sensor in campaign.sensors], larger.names)
     states = np.hstack([optimum.states, np.tile([1.0, 0.3, -1.4, 1.3], (len(decays), 1))])
-    likelihood = SteppedLikelihood.of(decays, larger.stepped, rows, states, False, 0.002)
+    likelihood = SteppedLikelihood.of(decays, larger.nonlinear_models, rows, states, False, 0.002)
     anew = likelihood.at(values).believable()
     assert anew is not None
     np.testing.assert_array_equal(anew[:, 14:], np.tile([1.0, 0.3, 0.0, 0.0], (len(decays), 1)))
     np.testing.assert_array_equal(anew[:, 7:14], states[:, 7:14])
     assert np.all(np.abs(anew[:, :7] - states[:, :7]).max(axis=1) > 1e-3)
     begun = [one.at(values).motion(np.ones(8), 0, 0, 1) for one in (likelihood, likelihood.beginning(anew))]
-    model, forces = larger.stepped["empty"], np.array([30.0, 30.0, 80.0, 80.0])
+    model, forces = larger.nonlinear_models["empty"], np.array([30.0, 30.0, 80.0, 80.0])
     matrices, G = model.linear.matrices(values), model.forces.rows.at(values)
     pulls = [matrices.K @ one[:7, 0] + matrices.C @ one[7:14, 0] + G.T @ (forces * one[14:, 0]) for one in begun]
     np.testing.assert_allclose(pulls[1], pulls[0], rtol=1e-9, atol=1e-6)

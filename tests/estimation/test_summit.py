@@ -12,7 +12,7 @@ from sprung.estimation import escape_local_optimum, fit_linear, score_linear_ter
 from sprung.estimation.problem import EstimationProblem
 from sprung.preprocess import prepare
 from sprung.simulation import simulate
-from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, record_of
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, parse_record
 
 # Stiff and lightly damped at the rear, where five drops say little of the wheels: one of 500 drawn at random whose
 # likelihood had two summits, and every start ended on the lower one.
@@ -47,7 +47,7 @@ def test_the_gain_of_a_larger_model_is_known_before_it_is_fitted(apart: float) -
     half = {"t_f1": 0.74 + apart, "t_r1": 0.74 - apart, "t_f2": 0.74, "t_r2": 0.74}
     shared = {name: value for name, value in TABLE_1_CAR.parameters.items() if not name.startswith("t_")}
     car = Vehicle.from_parameters(shared | half)
-    ballast = record_of(Load, {"name": "ballast", "items": [{"mass": 200, "position": (-1.5, 0.0, 0.5)}]})
+    ballast = parse_record(Load, {"name": "ballast", "items": [{"mass": 200, "position": (-1.5, 0.0, 0.5)}]})
     campaign = simulate(car, loads=[ballast], noise=0.05, seed=3)
     decays = prepare(campaign).decays
     assert campaign.wheelbase is not None

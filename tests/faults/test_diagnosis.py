@@ -67,7 +67,7 @@ def samples(change: Callable[[Real], None], only: str | None = None) -> Change:
             if only in (None, recording.name):
                 change(values)
             recordings.append(replace(recording, values=values))
-        return replace(campaign, recordings=tuple(recordings))
+        return campaign.with_recordings(recordings)
 
     return spoil
 
@@ -145,7 +145,7 @@ def happened(file: str, vehicle: Vehicle = CAR, more: Sequence[Item] = ()) -> Ch
         )
         recordings = list(campaign.recordings)
         recordings[i] = replace(recordings[i], values=recordings[i].values - stated + motion)
-        return replace(campaign, recordings=tuple(recordings))
+        return campaign.with_recordings(recordings)
 
     return spoil
 
@@ -268,7 +268,7 @@ PASSENGER = Item(mass=90, position=(-1.2, 0.35, 0.7))
 
 def slower(campaign: sprung.Campaign) -> sprung.Campaign:
     recordings = [replace(one, rate=one.rate * (0.97 if one.name == FILES[4] else 1.0)) for one in campaign.recordings]
-    return replace(campaign, recordings=tuple(recordings))
+    return campaign.with_recordings(recordings)
 
 
 def silent(values: Real) -> None:
@@ -357,6 +357,6 @@ def test_nothing_is_named_where_the_noise_is_not_white(kind: str) -> None:
             noise = np.asarray(lfilter([np.sqrt(1 - kept**2)], [1, -kept], noise, axis=1))
         values = recording.values + 0.02 * noise[:, 200:]
         recordings.append(replace(recording, values=values if kind == "low-passed" else step * np.round(values / step)))
-    result = sprung.identify(replace(exact, recordings=tuple(recordings)))
+    result = sprung.identify(exact.with_recordings(recordings))
     assert result.faults == ()
     assert result.verdict.state == "accept"

@@ -74,7 +74,7 @@ def fast() -> Campaign:
 def usual(fast: Campaign) -> sprung.Result:
     """All channels at 500 Hz."""
     return sprung.identify(
-        replace(fast, recordings=tuple(replace(one, values=one.values[:, ::2], rate=500) for one in fast.recordings))
+        fast.with_recordings(replace(one, values=one.values[:, ::2], rate=500) for one in fast.recordings)
     )
 
 

@@ -8,17 +8,10 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from sprung.errors import InputError
-from sprung.modal import (
-    APPROXIMATE,
-    METHODS,
-    eigensystem_realisation,
-    identify_modes,
-    modes_of,
-    name_by_sensors,
-    similarity,
-)
+from sprung.modal import APPROXIMATE, METHODS, eigensystem_realisation, identify_modes
 from sprung.simulation import default_sensors
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Rows, Vehicle, free_decay
+from sprung.vibration import compute_modes, modal_assurance_criterion, name_modes_at_sensors
 from strategies import vehicles
 
 Array = NDArray[np.float64]
@@ -44,13 +37,13 @@ def records(vehicle: Vehicle, noise: float, offset: float, seed: int, seconds: f
 
 @pytest.mark.parametrize("vehicle", [SCHOOL_BUS, TABLE_1_CAR], ids=lambda vehicle: vehicle.name)
 def test_without_noise_poles_shapes_and_names_are_exact_whatever_the_offsets(vehicle: Vehicle) -> None:
-    truth = modes_of(vehicle.matrices())
+    truth = compute_modes(vehicle.matrices())
     found = eigensystem_realisation(records(vehicle, 0.0, 5.0, seed=1), RATE)
     assert_allclose([mode.pole for mode in found], [mode.pole for mode in truth], rtol=1e-9)
-    named = name_by_sensors(found, default_sensors(vehicle), vehicle.a)
+    named = name_modes_at_sensors(found, default_sensors(vehicle), vehicle.a)
     assert [mode.name for mode in named] == [mode.name for mode in truth]
     for one, other in zip(named, truth, strict=True):
-        assert similarity(one.shape[:, None], other.shape[:, None])[0, 0] > 1 - 1e-9
+        assert modal_assurance_criterion(one.shape[:, None], other.shape[:, None])[0, 0] > 1 - 1e-9
 
 
 @given(vehicles)
@@ -66,7 +59,7 @@ def test_any_vehicle_without_noise(vehicle: Vehicle) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_noise_of_a_usual_sensor_leaves_every_mode_within_one_percent(seed: int) -> None:
     # 0.02 m/s² rms (2 mg). A prototype measured 0.02-0.3 % over such drops (median of four seeds).
-    truth = modes_of(TABLE_1_CAR.matrices())
+    truth = compute_modes(TABLE_1_CAR.matrices())
     found = identify_modes(records(TABLE_1_CAR, 0.02, 0.1, seed), RATE)
     assert len(found) == 7
     distance = np.abs(np.array([mode.pole for mode in found])[:, None] - [mode.pole for mode in truth]).min(axis=0)
@@ -76,7 +69,7 @@ def test_noise_of_a_usual_sensor_leaves_every_mode_within_one_percent(seed: int)
 def test_the_order_is_what_the_drops_excite() -> None:
     # All four wheels at once excite only what is alike left and right: body bounce and pitch and two wheel modes.
     found = eigensystem_realisation(records(TABLE_1_CAR, 0.0, 0.0, seed=0)[:1], RATE)
-    names = {mode.name for mode in name_by_sensors(found, default_sensors(TABLE_1_CAR), TABLE_1_CAR.a)}
+    names = {mode.name for mode in name_modes_at_sensors(found, default_sensors(TABLE_1_CAR), TABLE_1_CAR.a)}
     assert len(found) == 4
     assert {"body bounce", "body pitch"} < names
     assert "body roll" not in names
@@ -90,12 +83,12 @@ def test_channel_order_start_and_unit_do_not_matter(order: list[int], shift: int
     changed = eigensystem_realisation([factor * record[order, shift:] for record in measured], RATE)
     assert_allclose([mode.pole for mode in changed], [mode.pole for mode in plain], rtol=1e-7)
     for one, other in zip(plain, changed, strict=True):
-        assert similarity(one.shape[order, None], other.shape[:, None])[0, 0] > 1 - 1e-7
+        assert modal_assurance_criterion(one.shape[order, None], other.shape[:, None])[0, 0] > 1 - 1e-7
 
 
 @pytest.mark.parametrize("method", [method for method in METHODS if method not in (*APPROXIMATE, "svm-printed")])
 def test_every_method_is_exact_without_noise_behind_the_one_door(method: str) -> None:
-    truth = modes_of(TABLE_1_CAR.matrices())
+    truth = compute_modes(TABLE_1_CAR.matrices())
     found = identify_modes(records(TABLE_1_CAR, 0.0, 0.0, seed=4), RATE, method=method)
     assert_allclose([mode.pole for mode in found], [mode.pole for mode in truth], rtol=1e-7)
     assert all(mode.shape.shape == (8,) for mode in found)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from decaying import SYSTEMS, System, poles
 from sprung.errors import InputError
-from sprung.modal import Mode, Modes, identify_modes, maximum_likelihood, modes_of, similarity
+from sprung.modal import ModeSet, identify_modes, maximum_likelihood
 from sprung.vehicle import Vehicle, free_decay
+from sprung.vibration import Mode, compute_modes, modal_assurance_criterion
 from strategies import vehicles
 
 Array = NDArray[np.float64]
@@ -39,14 +40,14 @@ def test_any_vehicle_without_noise(vehicle: Vehicle, seed: int) -> None:
     states = random.standard_normal((5, 14)) * np.repeat([0.01, 0.3], 7)
     records = [free_decay(vehicle.matrices(), state, 0.002, 1600).acceleration for state in states]
     found = maximum_likelihood(records, 500.0)
-    expected = poles(modes_of(vehicle.matrices()))
+    expected = poles(compute_modes(vehicle.matrices()))
     distance = np.abs(poles(found)[:, None] - expected).min(axis=0)
     assert np.all(distance < 1e-8 * np.abs(expected))
     # What is left is rounding, the processor's own: its spectrum enlarges nothing.
-    assert [mode.spread.excess for mode in found if mode.spread is not None] == [1.0] * len(found)
+    assert [mode.uncertainty.excess for mode in found if mode.uncertainty is not None] == [1.0] * len(found)
 
 
-def matched(found: Modes) -> list[Mode]:
+def matched(found: ModeSet) -> list[Mode]:
     """Bring modes into the order of the car's, the nearest to each."""
     measured = np.array([mode.pole for mode in found])
     return [found[int(np.argmin(np.abs(measured - true.pole)))] for true in CAR]
@@ -94,8 +95,8 @@ def test_coloured_noise_makes_the_uncertainty_grow() -> None:
             noise[:, k] = 0.98 * noise[:, k - 1] + np.sqrt(1 - 0.98**2) * noise[:, k]
         records.append(record + size * noise)
     found = maximum_likelihood(records, 1000.0)
-    assert found[0].spread is not None
-    assert 40 < found[0].spread.excess < 150
+    assert found[0].uncertainty is not None
+    assert 40 < found[0].uncertainty.excess < 150
     for mode in (found[0], found[1]):
         true = CAR[int(np.argmin([abs(one.pole - mode.pole) for one in CAR]))]
         assert mode.frequency_std is not None
@@ -116,7 +117,7 @@ def test_channel_order_and_unit_do_not_matter(order: list[int], factor: float) -
     changed = maximum_likelihood([factor * record[order] for record in measured], 250.0)
     assert_allclose(poles(changed), poles(plain), rtol=1e-6)
     for one, other in zip(plain, changed, strict=True):
-        assert similarity(one.shape[order, None], other.shape[:, None])[0, 0] > 1 - 1e-6
+        assert modal_assurance_criterion(one.shape[order, None], other.shape[:, None])[0, 0] > 1 - 1e-6
 
 
 def test_records_may_differ_in_length() -> None:

@@ -7,7 +7,7 @@ import pytest
 from modal_records import CAR, bumps, noisy
 
 from decaying import SYSTEMS
-from sprung.modal import Criteria, complexity, stabilisation_diagram
+from sprung.modal import StabilityCriteria, modal_phase_collinearity, stabilisation_diagram
 
 
 def test_the_seven_modes_of_the_car_stay_and_no_other() -> None:
@@ -29,7 +29,7 @@ def test_a_true_mode_is_coherent_from_first_to_last_block_row_however_damped() -
 def test_stricter_criteria_leave_less() -> None:
     records = noisy(bumps(), 20.0, 2)
     usual = stabilisation_diagram(records, 1000.0)
-    strict = stabilisation_diagram(records, 1000.0, criteria=Criteria(frequency=1e-4, damping=1e-3))
+    strict = stabilisation_diagram(records, 1000.0, criteria=StabilityCriteria(frequency=1e-4, damping=1e-3))
     assert len(strict.chosen) < len(usual.chosen)
 
 
@@ -51,4 +51,4 @@ def test_real_poles_stay_too() -> None:
     ],
 )
 def test_phase_collinearity(shape: list[complex], expected: float) -> None:
-    assert complexity(shape) == pytest.approx(expected, abs=1e-12)
+    assert modal_phase_collinearity(shape) == pytest.approx(expected, abs=1e-12)

@@ -9,8 +9,9 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 from sprung.errors import InputError
-from sprung.modal import modes_of, state_matrix, state_variable_method
-from sprung.vehicle import TABLE_1_CAR, Vehicle, free_decay, half_sine_bump, tyre_rates
+from sprung.modal import state_matrix, state_variable_method
+from sprung.vehicle import TABLE_1_CAR, Vehicle, drive_over_half_sine_bump, free_decay, tyre_rates
+from sprung.vibration import compute_modes
 from strategies import vehicles
 
 Array = NDArray[np.float64]
@@ -36,7 +37,7 @@ def test_a_pendulum_by_hand() -> None:
 def test_one_bump_under_the_left_wheels_gives_the_state_matrix_exactly(kind: str) -> None:
     # The paper's simulation, section 3.
     matrices = TABLE_1_CAR.matrices()
-    _, state = half_sine_bump(matrices, tyre_rates(TABLE_1_CAR), ("fl", "rl"), 0.09, 0.2, 1e-3, 1)
+    _, state = drive_over_half_sine_bump(matrices, tyre_rates(TABLE_1_CAR), ("fl", "rl"), 0.09, 0.2, 1e-3, 1)
     record = getattr(free_decay(matrices, state, 2e-3, 1000), kind)
     A = state_variable_method([record], 500.0, lag=10).state_matrix
     size = np.sqrt(np.outer(np.diag(matrices.K), np.diag(matrices.K)))
@@ -56,10 +57,12 @@ def test_poles_and_shapes_of_any_vehicle_overdamped_ones_too(vehicle: Vehicle) -
 def test_pairs_of_real_poles_are_found_and_put_into_the_state_matrix() -> None:
     vehicle = replace(TABLE_1_CAR, c_sf=9000.0, c_sr=9000.0)
     matrices = vehicle.matrices()
-    assert sum(mode.pole.imag == 0 for mode in modes_of(matrices)) >= 4
+    assert sum(mode.pole.imag == 0 for mode in compute_modes(matrices)) >= 4
     found = state_variable_method(decays(vehicle, 1000.0, 800), 1000.0, lag=5)
     assert_allclose(found.state_matrix, matrices.state, atol=1e-6 * np.abs(matrices.state).max())
-    assert sum(mode.pole.imag == 0 for mode in found.modes) == sum(mode.pole.imag == 0 for mode in modes_of(matrices))
+    assert sum(mode.pole.imag == 0 for mode in found.modes) == sum(
+        mode.pole.imag == 0 for mode in compute_modes(matrices)
+    )
 
 
 def test_units_of_channels_do_not_change_the_poles() -> None:

@@ -10,8 +10,9 @@ from modal_records import CAR, bumps, noisy
 
 import sprung
 from sprung.errors import InputError
-from sprung.modal import identify_modes, modes_of
+from sprung.modal import identify_modes
 from sprung.vehicle import TABLE_1_CAR, Vehicle
+from sprung.vibration import compute_modes
 
 LIVELY = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"c_sf": 700.0, "c_sr": 700.0}, name="lively")
 
@@ -74,7 +75,7 @@ def lively(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_recording_of_a_drop_is_used_after_its_landing(lively: Path) -> None:
     """From its largest reading on, with tyres off the ground, twenty modes came out, sixteen of which the car does not have."""
     found = sprung.modes(lively, amplitude=True)["recordings"]
-    truth = [mode.frequency for mode in modes_of(LIVELY.matrices())]
+    truth = [mode.frequency for mode in compute_modes(LIVELY.matrices())]
     for mode in found:
         assert mode.frequency_std is not None
         # Two modes of unlike axles that lie within 2 % may appear as one.

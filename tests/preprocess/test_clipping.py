@@ -61,7 +61,7 @@ def test_a_range_changes_with_its_unit() -> None:
     clipped = at_full_scale()
     in_g = [replace(one, values=np.clip(one.values, -FULL, FULL) / 9.80665) for one in CLEAN.recordings]
     codes = {
-        f.code for decay in prepare(replace(CLEAN, sensors=RANGED, recordings=tuple(in_g))).decays for f in decay.faults
+        f.code for decay in prepare(replace(CLEAN.with_recordings(in_g), sensors=RANGED)).decays for f in decay.faults
     }
     assert codes == {"unit", "clipped"}
     assert (np.abs(clipped.values) == FULL).any()

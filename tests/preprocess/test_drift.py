@@ -27,7 +27,7 @@ def drifting(clean: Campaign, size: float) -> Campaign:
         replace(one, values=one.values + walk * np.linspace(0, 1, one.values.shape[1]))
         for one, walk in zip(clean.recordings, walks, strict=True)
     ]
-    return replace(clean, recordings=tuple(recordings))
+    return clean.with_recordings(recordings)
 
 
 @pytest.mark.parametrize(("duration", "rest", "size"), [(3.2, 0.4, 0.2), (6.0, 0.5, 0.5)])
@@ -53,7 +53,7 @@ def test_a_level_that_settles_elsewhere_is_named_and_left_alone() -> None:
     values = clean.recordings[0].values.copy()
     values[2, 520:] += 0.3  # 40 ms after the release
     settled = replace(clean.recordings[0], values=values)
-    prepared = prepare(replace(clean, recordings=(settled, *clean.recordings[1:])))
+    prepared = prepare(clean.with_recordings((settled, *clean.recordings[1:])))
     (fault,) = prepared.decays[0].faults
     assert (fault.code, fault.where) == ("drift", "empty_bounce.csv: body_rl")
     assert "baseline drift of +0.3 m/s²" in fault.what

@@ -19,7 +19,7 @@ def changed(factors: dict[int, float], offset: float = 0.0) -> sprung.Campaign:
     factor = np.ones(8)
     factor[list(factors)] = list(factors.values())
     recordings = [replace(one, values=(one.values + offset) * factor[:, None]) for one in CLEAN.recordings]
-    return replace(CLEAN, recordings=tuple(recordings))
+    return CLEAN.with_recordings(recordings)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,7 @@ def ac_coupled(*channels: int, corner: float | None) -> sprung.Campaign:
         level = np.zeros((8, 1))
         level[list(channels)] = 9.80665
         recordings = tuple(replace(one, values=one.values - level) for one in campaign.recordings)
-        return replace(campaign, recordings=recordings)
+        return campaign.with_recordings(recordings)
     return campaign
 
 
@@ -75,7 +75,7 @@ def test_ac_coupled_sensors_do_not_vote(channels: tuple[int, ...]) -> None:
     factor = np.ones((8, 1))
     factor[7] = 1 / 9.80665
     recordings = tuple(replace(one, values=one.values * factor) for one in campaign.recordings)
-    faults = [fault for decay in prepare(replace(campaign, recordings=recordings)).decays for fault in decay.faults]
+    faults = [fault for decay in prepare(campaign.with_recordings(recordings)).decays for fault in decay.faults]
     assert [(fault.code, fault.where) for fault in faults] == [("unit", "wheel_rr")]
 
 
@@ -84,7 +84,7 @@ def test_an_offset_of_one_meter_per_second_squared_is_no_gravity_in_g() -> None:
     campaign = ac_coupled(*range(8), corner=None)
     values = [one.values + (np.arange(8) == 2)[:, None] for one in campaign.recordings]
     recordings = tuple(replace(one, values=v) for one, v in zip(campaign.recordings, values, strict=True))
-    assert all(decay.faults == () for decay in prepare(replace(campaign, recordings=recordings)).decays)
+    assert all(decay.faults == () for decay in prepare(campaign.with_recordings(recordings)).decays)
 
 
 def test_a_silent_channel_among_others_that_feel_gravity_is_named() -> None:
@@ -108,7 +108,7 @@ def test_a_high_pass_that_is_none_is_not_undone() -> None:
 def test_an_offset_is_named_and_does_no_harm(offset: float, said: str) -> None:
     level = 9.80665 * offset * (np.arange(8) == 6)[:, None]
     recordings = tuple(replace(one, values=one.values + level) for one in CLEAN.recordings)
-    result = sprung.identify(replace(CLEAN, recordings=recordings))
+    result = sprung.identify(CLEAN.with_recordings(recordings))
     (fault,) = result.faults
     assert (fault.code, fault.where) == ("offset", "wheel_rl")
     assert re.search(said, fault.what)

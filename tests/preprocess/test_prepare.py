@@ -48,9 +48,8 @@ def test_a_decay_moves_and_moves_back() -> None:
 
 
 def cut(campaign: Campaign, seconds: float) -> Campaign:
-    return replace(
-        campaign,
-        recordings=tuple(replace(r, values=r.values[:, : int(seconds * r.rate)]) for r in campaign.recordings),
+    return campaign.with_recordings(
+        replace(r, values=r.values[:, : int(seconds * r.rate)]) for r in campaign.recordings
     )
 
 
@@ -64,10 +63,10 @@ def test_limits_given_by_the_user_hold() -> None:
 
 def test_too_short_a_recording_is_left_out_and_told() -> None:
     campaign = simulate(TABLE_1_CAR, noise=0.02, seed=5)
-    short = replace(campaign, recordings=(cut(campaign, 0.7).recordings[0], *campaign.recordings[1:]))
+    short = campaign.with_recordings((cut(campaign, 0.7).recordings[0], *campaign.recordings[1:]))
     prepared = prepare(short)
     assert len(prepared.decays) == 4
-    ((drop, _, faults),) = prepared.left_out
+    ((drop, faults),) = prepared.left_out
     assert drop.label == "empty_bounce"
     assert faults[-1].code == "no-decay"
     assert "empty_bounce.csv" in faults[-1].where
@@ -77,11 +76,10 @@ def test_no_wheel_sensors_at_all() -> None:
     campaign = simulate(TABLE_1_CAR, noise=0.02, seed=6)
     body = [i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body"]
     blind = replace(
-        campaign,
-        sensors=tuple(campaign.sensors[i] for i in body),
-        recordings=tuple(
+        campaign.with_recordings(
             replace(r, values=r.values[body], channels=tuple(r.channels[i] for i in body)) for r in campaign.recordings
         ),
+        sensors=tuple(campaign.sensors[i] for i in body),
     )
     for decay, drop in zip(prepare(blind).decays, campaign.drops, strict=True):
         assert decay.start >= landing(TABLE_1_CAR, drop, 0.4)
@@ -92,7 +90,7 @@ def test_a_dead_channel_is_left_out_of_its_drop_and_told() -> None:
     values = campaign.recordings[1].values.copy()
     values[4] = 9.81
     dead = replace(campaign.recordings[1], values=values)
-    decays = prepare(replace(campaign, recordings=(campaign.recordings[0], dead, *campaign.recordings[2:]))).decays
+    decays = prepare(campaign.with_recordings((campaign.recordings[0], dead, *campaign.recordings[2:]))).decays
     assert [fault.code for fault in decays[1].faults] == ["flat"]
     assert campaign.sensors[4].channel in decays[1].faults[0].where
     assert list(np.flatnonzero(~decays[1].usable)) == [4]
@@ -102,14 +100,10 @@ def test_a_dead_channel_is_left_out_of_its_drop_and_told() -> None:
 def test_a_copy_tells_nothing_new() -> None:
     campaign = simulate(TABLE_1_CAR, noise=0.02, seed=8)
     copy = replace(campaign.recordings[0], name="again.csv")
-    more = replace(
-        campaign,
-        drops=(*campaign.drops, replace(campaign.drops[0], file="again.csv")),
-        recordings=(*campaign.recordings, copy),
-    )
+    more = replace(campaign, drops=(*campaign.drops, replace(campaign.drops[0], file="again.csv", recording=copy)))
     prepared = prepare(more)
     assert len(prepared.decays) == 5
-    assert prepared.left_out[0][2][0].code == "copy"
+    assert prepared.left_out[0][1][0].code == "copy"
 
 
 def test_two_parts_of_one_recording_are_no_copies() -> None:
@@ -118,8 +112,7 @@ def test_two_parts_of_one_recording_are_no_copies() -> None:
     twice = replace(
         campaign,
         drops=tuple(replace(campaign.drops[0], start=start, end=end) for start, end in parts),
-        recordings=(campaign.recordings[0], replace(campaign.recordings[0], name="empty_bounce.csv (2)")),
-    )
+    ).with_recordings((campaign.recordings[0], replace(campaign.recordings[0], name="empty_bounce.csv (2)")))
     prepared = prepare(twice)
     assert not prepared.left_out
     assert [decay.name for decay in prepared.decays] == ["empty_bounce", "empty_bounce (2)"]

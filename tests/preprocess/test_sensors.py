@@ -91,9 +91,7 @@ def test_a_spike_does_not_pass_for_the_landing() -> None:
         values = recording.values.copy()
         values[number % 8, 1100:1104] += 200.0
         spiked.append(replace(recording, values=values))
-    for decay, truth in zip(
-        prepare(replace(clean, recordings=tuple(spiked))).decays, prepare(clean).decays, strict=True
-    ):
+    for decay, truth in zip(prepare(clean.with_recordings(spiked)).decays, prepare(clean).decays, strict=True):
         assert abs(decay.start - truth.start) < 0.1
 
 
@@ -102,11 +100,10 @@ def test_wheels_without_sensors_fall_too() -> None:
     clean = campaign({})
     kept = [i for i, sensor in enumerate(clean.sensors) if sensor.on not in ("rl", "rr")]
     half = replace(
-        clean,
-        sensors=tuple(clean.sensors[i] for i in kept),
-        recordings=tuple(
+        clean.with_recordings(
             replace(r, values=r.values[kept], channels=tuple(r.channels[i] for i in kept)) for r in clean.recordings
         ),
+        sensors=tuple(clean.sensors[i] for i in kept),
     )
     result = sprung.identify(half)
     assert result.verdict.state == "accept"

@@ -81,7 +81,7 @@ def test_the_fault_tells_how_many_and_where() -> None:
 
 def test_the_fit_is_none_the_worse() -> None:
     recordings = [spiked(clean, 6, 2, 60.0, seed)[0] for seed, clean in enumerate(CLEAN.recordings)]
-    result = sprung.identify(replace(CLEAN, recordings=tuple(recordings)))
+    result = sprung.identify(CLEAN.with_recordings(recordings))
     assert result.verdict.state == "accept"
     assert {fault.code for fault in result.faults} == {"spike"}
     for name, one in sprung.identify(CLEAN).parameters.items():
@@ -119,5 +119,5 @@ def test_nothing_is_told_below_200_samples_a_second() -> None:
 def test_a_channel_that_is_left_out_stays_so() -> None:
     values = CLEAN.recordings[0].values.copy()
     values[5] = np.nan
-    decays = prepare(replace(CLEAN, recordings=(replace(CLEAN.recordings[0], values=values), *CLEAN.recordings[1:])))
+    decays = prepare(CLEAN.with_recordings((replace(CLEAN.recordings[0], values=values), *CLEAN.recordings[1:])))
     assert not decays.decays[0].usable[5]

@@ -63,7 +63,7 @@ def exchanged(campaign: Campaign, one: int, other: int) -> Campaign:
     """Exchange two channels in all drops."""
     order = np.arange(len(campaign.sensors))
     order[[one, other]] = other, one
-    return replace(campaign, recordings=tuple(replace(r, values=r.values[order]) for r in campaign.recordings))
+    return campaign.with_recordings(replace(r, values=r.values[order]) for r in campaign.recordings)
 
 
 def test_exchanged_channels_and_a_weak_one_are_not_wheels_that_fell_otherwise() -> None:
@@ -74,7 +74,7 @@ def test_exchanged_channels_and_a_weak_one_are_not_wheels_that_fell_otherwise() 
     weak[fl] = 0.05
     rest = campaign.recordings[0].values[:, :100].mean(axis=1, keepdims=True)
     recordings = tuple(replace(one, values=rest + weak * (one.values - rest)) for one in campaign.recordings)
-    assert told(replace(campaign, recordings=recordings)) == []
+    assert told(campaign.with_recordings(recordings)) == []
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from goldens import RESULTS, stored_result
 from layouts import check_view_is_whole
 from sprung.checking import ChannelReport, Check, DropReport
 from sprung.errors import Fault
-from sprung.modal_survey import FoundMode, LoadModes
+from sprung.modal_survey import IdentifiedMode, LoadModes
 from sprung.report import check_view, comparison_view, modes_view, page_of, result_view, text_of
 from sprung.uncertainty import Estimate
 from sprung.vehicle import WHEELS
@@ -216,11 +216,11 @@ def left_out() -> DropReport:
     )
 
 
-def mode(name: str, frequency: float, ratio: float, *std: float, **more: Any) -> FoundMode:
+def mode(name: str, frequency: float, ratio: float, *std: float, **more: Any) -> IdentifiedMode:
     """Make up a mode; without standard uncertainties of frequency and damping ratio its method tells none."""
     rate = 2 * math.pi * frequency
     damped = frequency * math.sqrt(1 - ratio**2)
-    return FoundMode(
+    return IdentifiedMode(
         name=name,
         pole=(-ratio * rate, 2 * math.pi * damped),
         frequency=frequency,

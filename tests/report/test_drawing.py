@@ -43,7 +43,7 @@ def campaign() -> Campaign:
     values = made.recordings[0].values.copy()
     values[4] = values[4].clip(-25, 25)
     values[0] = 9.81
-    return replace(made, recordings=(replace(made.recordings[0], values=values),))
+    return made.with_recordings((replace(made.recordings[0], values=values),))
 
 
 @pytest.fixture(scope="module")
@@ -119,9 +119,9 @@ def test_the_same_recordings_give_the_same_drawing(campaign: Campaign, check: Ch
 
 def test_a_drop_left_out_and_one_without_release(campaign: Campaign) -> None:
     recording = campaign.recordings[0]
-    short = sprung.check(replace(campaign, recordings=(replace(recording, values=recording.values[:, :300]),)))
+    short = sprung.check(campaign.with_recordings((replace(recording, values=recording.values[:, :300]),)))
     assert any(text.startswith("left out: ") and "no-decay" in text for text in texts(*draw_check(short).values()))
-    late = sprung.check(replace(campaign, recordings=(replace(recording, values=recording.values[:, 230:]),)))
+    late = sprung.check(campaign.with_recordings((replace(recording, values=recording.values[:, 230:]),)))
     said = texts(*draw_check(late).values())
     assert not any(text.startswith("release") for text in said)
     assert any("no release was found" in text for text in said)
@@ -137,7 +137,7 @@ def test_long_recordings_stay_small(campaign: Campaign) -> None:
     recording = campaign.recordings[0]
     random = np.random.default_rng(1)
     rest = recording.values[:, -1:] + random.normal(0, 0.02, (8, 400_000))
-    long = replace(campaign, recordings=(replace(recording, values=np.hstack([recording.values, rest])),))
+    long = campaign.with_recordings((replace(recording, values=np.hstack([recording.values, rest])),))
     [svg] = draw_check(sprung.check(long)).values()
     assert len(svg) < 700_000
 
@@ -196,7 +196,7 @@ def test_names_of_every_kind(check: Check, tmp_path: Path) -> None:
 def test_names_of_channels(campaign: Campaign) -> None:
     odd = ("$a$", '<b> & "c"', "d" * 200, *campaign.recordings[0].channels[3:])
     sensors = tuple(replace(sensor, channel=name) for sensor, name in zip(campaign.sensors, odd, strict=True))
-    renamed = replace(campaign, sensors=sensors, recordings=(replace(campaign.recordings[0], channels=odd),))
+    renamed = replace(campaign.with_recordings((replace(campaign.recordings[0], channels=odd),)), sensors=sensors)
     said = texts(*draw_check(sprung.check(renamed)).values())
     assert {"$a$", '<b> & "c"'} <= set(said)
     assert any(text.startswith("ddd") and text.endswith("…") for text in said)

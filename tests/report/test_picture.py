@@ -109,7 +109,7 @@ def hostile() -> Campaign:
     name = '</script><script>alert("1")</script>&amp;'
     sensors = (replace(made.sensors[0], channel=name), *made.sensors[1:])
     recordings = tuple(replace(one, channels=(name, *one.channels[1:])) for one in made.recordings)
-    return replace(made, name=f"{name}\x1b[31m", sensors=sensors, recordings=recordings)
+    return replace(made.with_recordings(recordings), name=f"{name}\x1b[31m", sensors=sensors)
 
 
 @pytest.fixture(scope="module")

@@ -28,9 +28,7 @@ LOAD = Load(name="sand", items=(Item(mass=140, position=(-1.0, 0.3, 0.7)),))
 
 
 def campaign(**changes: Any) -> Campaign:
-    whole = Campaign(
-        "car", SENSORS, (), (), (EMPTY, LOAD), KnownValue(2.76), cg_height=0.55, wheel_height=0.3, known=KNOWN
-    )
+    whole = Campaign("car", SENSORS, (), (EMPTY, LOAD), KnownValue(2.76), cg_height=0.55, wheel_height=0.3, known=KNOWN)
     return replace(whole, **changes)
 
 

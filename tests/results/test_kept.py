@@ -12,11 +12,11 @@ import pytest
 import sprung
 from sprung.campaign import Campaign
 from sprung.errors import ResultFileError
-from sprung.modal import modes_of, similarity
 from sprung.report import page_of
 from sprung.results import Result
 from sprung.results.series import packed
 from sprung.vehicle import TABLE_1_CAR
+from sprung.vibration import compute_modes, modal_assurance_criterion
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def campaign() -> Campaign:
     spiked = second.values.copy()
     spiked[5, 900] = 300.0
     short = replace(third, values=third.values[:, :300])
-    return replace(made, recordings=(first, replace(second, values=spiked), short))
+    return made.with_recordings((first, replace(second, values=spiked), short))
 
 
 @pytest.fixture(scope="module")
@@ -43,14 +43,14 @@ def folder(result: Result, tmp_path: Path) -> Path:
 
 
 def test_shapes_are_those_of_the_vehicle(result: Result) -> None:
-    truth = {mode.name: mode.shape for mode in modes_of(TABLE_1_CAR.matrices())}
+    truth = {mode.name: mode.shape for mode in compute_modes(TABLE_1_CAR.matrices())}
     for mode in result.modes["empty"][:2]:  # bounce and pitch, which these drops tell
         shape = np.array([complex(*part) for part in mode.motion])
         assert shape.size == 7
         assert np.abs(shape).max() == pytest.approx(1)
         assert shape[np.argmax(np.abs(shape))] == pytest.approx(1)  # in phase with what moves most
         # Two drops tell where the centre of gravity is to 4 % only: the parts of bounce and pitch are that sure.
-        assert float(similarity(shape[:, None], truth[mode.name][:, None])[0, 0]) > 1 - 0.1**2
+        assert float(modal_assurance_criterion(shape[:, None], truth[mode.name][:, None])[0, 0]) > 1 - 0.1**2
 
 
 def test_whole_recordings_are_kept_also_of_what_was_left_out(campaign: Campaign, result: Result) -> None:

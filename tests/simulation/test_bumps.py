@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from sprung.simulation import half_sine_bumps
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import TABLE_1_CAR, WHEELS, Added, Load, Sensor, free_decay, half_sine_bump, tyre_rates
+from sprung.vehicle import TABLE_1_CAR, WHEELS, Added, Load, Sensor, drive_over_half_sine_bump, free_decay, tyre_rates
 
 # Ten per cent of every mass of Table 1, the paper's lost eq. (20).
 TENTH = Load(name="tenth", added=Added(mass=138, I_yy=244, I_xx=38, m_uf=4.05, m_ur=4.54))
@@ -22,7 +22,7 @@ def test_the_decay_starts_at_the_end_of_the_bump(rate: float) -> None:
         assert drop.start == pytest.approx(before / rate + 0.2)
         assert_allclose(recording.values[:, :before], STANDARD_GRAVITY, rtol=1e-12)
         matrices = TABLE_1_CAR.matrices(campaign.load(drop.load))
-        _, end = half_sine_bump(matrices, tyre_rates(TABLE_1_CAR), ("fl", "rl"), 0.09, 0.2, 1 / rate, 2)
+        _, end = drive_over_half_sine_bump(matrices, tyre_rates(TABLE_1_CAR), ("fl", "rl"), 0.09, 0.2, 1 / rate, 2)
         first = int(np.flatnonzero(recording.time > before / rate + 0.2 - 1e-9)[0])
         lag = recording.time[first] - before / rate - 0.2
         assert lag < 1 / rate

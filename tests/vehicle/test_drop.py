@@ -19,7 +19,7 @@ from sprung.vehicle import (
     SCHOOL_BUS,
     TABLE_1_CAR,
     WHEELS,
-    Fall,
+    DropMotion,
     Item,
     Load,
     Motion,
@@ -237,7 +237,7 @@ def test_samples_do_not_depend_on_the_rate_or_the_first_one(step: float, start: 
     assert_allclose(half.acceleration[:, ::2], motion.acceleration, atol=1e-10 * scale)
 
 
-BUS_FALL: Fall = drop_from_blocks(SCHOOL_BUS, height=0.06)
+BUS_FALL: DropMotion = drop_from_blocks(SCHOOL_BUS, height=0.06)
 
 
 @pytest.mark.parametrize("tyres", [{}, DAMPED_TYRES], ids=["plain", "tyre damping"])

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 import sprung
 from sprung.errors import InputError
-from sprung.modal import modes_of
-from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, drop_from_blocks, record_of, static_wheel_loads
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, drop_from_blocks, parse_record, static_wheel_loads
+from sprung.vibration import compute_modes
 
 HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held
 
@@ -17,7 +17,7 @@ WITH_ENGINE = replace(
     TABLE_1_CAR, m_e=160.0, k_e=160.0 * HANGING**2, c_e=0.14 * 160.0 * HANGING, x_e=0.1, name="car with an engine"
 )
 
-BALLAST = record_of(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
+BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
 
 
 def test_the_matrices_are_those_of_a_body_and_an_engine_of_their_own() -> None:
@@ -59,7 +59,7 @@ def test_in_the_air_only_gravity_moves_the_whole_vehicle() -> None:
 
 
 def test_its_mode_has_its_name() -> None:
-    named = {mode.name: mode for mode in modes_of(WITH_ENGINE.matrices())}
+    named = {mode.name: mode for mode in compute_modes(WITH_ENGINE.matrices())}
     assert len(coordinates(WITH_ENGINE.parameters)) == 8
     # On a body that gives way it swings faster than on one that is held.
     assert named["engine bounce"].frequency == pytest.approx(10.87, abs=0.01)

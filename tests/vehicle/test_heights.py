@@ -12,14 +12,14 @@ from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
 import sprung
-from sprung.vehicle import LEVEL, TABLE_1_CAR, Heights, Load, Vehicle, record_of
+from sprung.vehicle import LEVEL, TABLE_1_CAR, Heights, Load, Vehicle, parse_record
 
 Array = NDArray[np.float64]
 
 G = 9.80665
 CG, WHEEL = 0.55, 0.29
 CAR = Vehicle.from_parameters(TABLE_1_CAR.parameters, cg_height=CG, wheel_height=WHEEL)
-BALLAST = record_of(
+BALLAST = parse_record(
     Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.0, 0.9), "inertia": (5.0, 8.0)}]}
 )
 CORNERS = [(x, side, wheel) for wheel, (x, side) in enumerate(product((CAR.a, -CAR.b), (1.0, -1.0)))]
@@ -59,7 +59,7 @@ def potential(X: Array, load: float) -> float:
 def test_gravity_tips_what_stands_above_its_wheels(load: float) -> None:
     """The stiffness of the vehicle, loaded above its centre of gravity or not, is the curvature of its energy at rest."""
     # A load over the centre of gravity, whose moments are left out: only what its height does is looked at.
-    above = record_of(Load, {"name": "above", "items": [{"mass": 150.0, "position": (-CAR.a, 0.0, 0.9)}]})
+    above = parse_record(Load, {"name": "above", "items": [{"mass": 150.0, "position": (-CAR.a, 0.0, 0.9)}]})
     K = CAR.matrices(above if load else sprung.vehicle.EMPTY).K
     assert_allclose(K, hessian(lambda X: potential(X, load), 1e-4), rtol=1e-5, atol=2e-3 * G)
     assert K[2, 2] < TABLE_1_CAR.matrices().K[2, 2] - 0.9 * (CAR.m_s + load) * G * (CG - WHEEL)

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from sprung.errors import InputError
-from sprung.vehicle import DERIVED, EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle, separated, static_wheel_loads
+from sprung.vehicle import DERIVED, EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle, static_wheel_loads, with_separate_tracks
 
 TABLE_1 = TABLE_1_CAR.parameters
 
@@ -30,11 +30,11 @@ def test_half_distances_shared_or_separate() -> None:
 
 
 def test_parted_half_distances_make_the_same_vehicle() -> None:
-    apart = separated(TABLE_1)
+    apart = with_separate_tracks(TABLE_1)
     assert {"t_f1", "t_f2", "t_r1", "t_r2"} <= apart.keys()
     assert not {"t_f", "t_r"} & apart.keys()
     assert Vehicle.from_parameters(apart, name=TABLE_1_CAR.name) == TABLE_1_CAR
-    assert separated(SCHOOL_BUS.parameters) == SCHOOL_BUS.parameters
+    assert with_separate_tracks(SCHOOL_BUS.parameters) == SCHOOL_BUS.parameters
 
 
 def test_extras_are_parameters_only_where_they_are_not_zero() -> None:

@@ -18,8 +18,8 @@ from sprung.vehicle import (
     Matrices,
     Vehicle,
     affine_response,
+    drive_over_half_sine_bump,
     free_decay,
-    half_sine_bump,
     tyre_rates,
 )
 
@@ -142,7 +142,9 @@ def over_bump(vehicle: Vehicle, ground: Callable[[float], tuple[float, float]], 
 @pytest.mark.parametrize("step", [0.002, 0.0033], ids=["end on a sample", "end between samples"])
 def test_half_sine_bump_against_an_integrator(vehicle: Vehicle, step: float) -> None:
     samples = int(0.6 / step)
-    motion, end = half_sine_bump(vehicle.matrices(), tyre_rates(vehicle), ("fl", "rl"), 0.09, 0.2, step, samples)
+    motion, end = drive_over_half_sine_bump(
+        vehicle.matrices(), tyre_rates(vehicle), ("fl", "rl"), 0.09, 0.2, step, samples
+    )
     expected = over_bump(vehicle, shifted_bump, step * np.arange(samples))
     assert_allclose(np.vstack([motion.displacement, motion.velocity]), expected, atol=1e-9)
 
@@ -150,13 +152,17 @@ def test_half_sine_bump_against_an_integrator(vehicle: Vehicle, step: float) -> 
     later = int(np.ceil(0.2 / step - 1e-9))
     decay = free_decay(vehicle.matrices(), end, later * step - 0.2 + step, 2)
     assert_allclose(decay.acceleration[:, 1], motion.acceleration[:, later + 1], atol=1e-9)
-    close, at_end = half_sine_bump(vehicle.matrices(), tyre_rates(vehicle), ("fl", "rl"), 0.09, 0.2, 0.2 - 1e-9, 2)
+    close, at_end = drive_over_half_sine_bump(
+        vehicle.matrices(), tyre_rates(vehicle), ("fl", "rl"), 0.09, 0.2, 0.2 - 1e-9, 2
+    )
     assert_allclose(close.displacement[:, 1], at_end[:7], atol=1e-8)
     assert_allclose(close.velocity[:, 1], at_end[7:], atol=1e-6)
 
 
 def test_acceleration_over_the_bump_is_the_derivative_of_velocity() -> None:
-    motion, _ = half_sine_bump(TYRE_DAMPED.matrices(), tyre_rates(TYRE_DAMPED), ("fr",), 0.05, 0.2, 1e-5, 20_000)
+    motion, _ = drive_over_half_sine_bump(
+        TYRE_DAMPED.matrices(), tyre_rates(TYRE_DAMPED), ("fr",), 0.05, 0.2, 1e-5, 20_000
+    )
     slope = (motion.velocity[:, 2:] - motion.velocity[:, :-2]) / 2e-5
     assert_allclose(slope, motion.acceleration[:, 1:-1], atol=1e-4)
 
@@ -167,14 +173,18 @@ def test_equation_19_as_printed_jumps_and_is_not_the_half_sine_that_is_meant() -
     assert shifted_bump(0.0)[0] == pytest.approx(0.0)
     assert shifted_bump(0.2)[0] == pytest.approx(0.0, abs=1e-15)
     times = 0.002 * np.arange(250)
-    motion, _ = half_sine_bump(TABLE_1_CAR.matrices(), tyre_rates(TABLE_1_CAR), ("fl", "rl"), 0.09, 0.2, 0.002, 250)
+    motion, _ = drive_over_half_sine_bump(
+        TABLE_1_CAR.matrices(), tyre_rates(TABLE_1_CAR), ("fl", "rl"), 0.09, 0.2, 0.002, 250
+    )
     literal = over_bump(TABLE_1_CAR, literal_bump, times)[:7]
     assert np.abs(literal - motion.displacement).max() > 0.05
 
 
 @pytest.mark.parametrize("samples", [1, 50, 100, 101, 102])
 def test_half_sine_bump_gives_as_many_samples_as_asked_for(samples: int) -> None:
-    motion, _ = half_sine_bump(TABLE_1_CAR.matrices(), tyre_rates(TABLE_1_CAR), ("fl",), 0.09, 0.2, 0.002, samples)
+    motion, _ = drive_over_half_sine_bump(
+        TABLE_1_CAR.matrices(), tyre_rates(TABLE_1_CAR), ("fl",), 0.09, 0.2, 0.002, samples
+    )
     assert {part.shape for part in motion} == {(7, samples)}
 
 

@@ -11,16 +11,16 @@ from sprung.vehicle import (
     EMPTY,
     SCHOOL_BUS,
     TABLE_1_CAR,
-    Block,
+    BlockSupport,
     Load,
     Vehicle,
     Wheel,
     drop_from_blocks,
-    drops_with_forces,
-    record_of,
+    parse_record,
+    simulate_nonlinear_drops,
 )
 
-BALLAST = record_of(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
+BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS])
@@ -30,7 +30,7 @@ def test_hardly_any_force_makes_hardly_any_difference(vehicle: Vehicle) -> None:
     cases: list[tuple[Load, tuple[Wheel, ...], float]] = [
         (EMPTY, ("fl", "fr"), 0.05), (BALLAST, ("fl", "rl"), 0.08), (EMPTY, ("fl",), 0.1),
     ]  # fmt: skip
-    motions = drops_with_forces(almost, [Block(*case) for case in cases], 0.002, 600, 0.001)
+    motions = simulate_nonlinear_drops(almost, [BlockSupport(*case) for case in cases], 0.002, 600, 0.001)
     for (load, wheels, height), motion in zip(cases, motions, strict=True):
         exact = drop_from_blocks(vehicle, load, wheels, height, duration=1.3).motion(0.002, 600, 0.001)
         for name in ("displacement", "velocity"):

@@ -16,13 +16,13 @@ from sprung.vehicle import (
     Stepper,
     Vehicle,
     free_decay,
-    ground_forces,
+    ground_contact_elements,
     nonlinear_elements,
     parameter_names,
-    record_of,
+    parse_record,
     seven_degrees_of_freedom,
 )
-from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ElementInput, ForceLaw
+from sprung.vehicle.force_laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ElementInput, ForceLaw
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ CAR = Vehicle.from_parameters(
     TABLE_1_CAR.parameters
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
 )
-BALLAST = record_of(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
+BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
 
 def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
@@ -40,7 +40,7 @@ def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
 
 def model_of(extras: tuple[str, ...], load: Load = EMPTY, ground: bool = False) -> NonlinearModel:
     names, _ = values_of(extras)
-    forces = nonlinear_elements("separate", extras) + (ground_forces(extras) if ground else ())
+    forces = nonlinear_elements("separate", extras) + (ground_contact_elements(extras) if ground else ())
     return NonlinearModel.of(seven_degrees_of_freedom("separate", extras), forces, names, load)
 
 

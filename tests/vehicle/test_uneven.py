@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import sprung
-from sprung.vehicle import TABLE_1_CAR, Vehicle, separate_names
+from sprung.vehicle import TABLE_1_CAR, Vehicle, separate_track_names
 
 UNEVEN = {"y_s": 0.03, "d_ksf": 800.0, "d_csr": 400.0, "d_ktr": -5000.0}
 RIGID = {"n_r": 0.7, "m_xr": -12.0}
@@ -57,7 +57,7 @@ def test_a_rigid_axle_is_one_body_on_two_tyres() -> None:
 
 
 def test_on_a_rigid_axle_springs_and_dampers_may_stand_apart() -> None:
-    assert separate_names("n_r") == ("n_r1", "n_r2")
+    assert separate_track_names("n_r") == ("n_r1", "n_r2")
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"n_r1": 0.6, "n_r2": 0.8})
     assert (car.tracks, car.extras, car.n_f1, car.n_r) == ("separate", ("rigid-axle",), 1.0, None)
     assert {"t_f1", "n_r1", "n_r2", "m_xr"} <= car.parameters.keys()

@@ -29,8 +29,8 @@ def amplitudes_of(
     loads = [decay.load for decay in fitted.prepared.decays]
     load = EMPTY.name if EMPTY.name in loads else loads[0]
     # Modes belong to a vehicle on the ground.
-    grounded = replace(choice, airborne=False)
-    model = grounded.stepped[load] if choice.nonlinear else choice.models[load]
+    grounded = replace(choice, unilateral_tyres=False)
+    model = grounded.nonlinear_models[load] if choice.is_nonlinear else choice.linear_models[load]
     own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
     found = mode_amplitudes(fitted.fit, model, fitted.campaign.sensors, own, progress)
     return tuple(replace(one, load=load) for one in found)

@@ -19,7 +19,7 @@ from sprung.estimation import (
     synchronise_by_decay,
 )
 from sprung.preprocess import FreeDecay, Prepared
-from sprung.vehicle import Vehicle, separated
+from sprung.vehicle import Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def clock_reports(
     decays
         What was fitted.
     """
-    found = optimum.point.place.delays(optimum.point.weights, fit.covariance)
+    found = optimum.clock_delays(fit.covariance)
     return {decays[i].file: tuple(_reported(decays[i].clocks, *delays)) for i, delays in found.items()}
 
 
@@ -100,7 +100,7 @@ def set_clocks(
             for decay, other in zip(released, timed, strict=True)
         }
         recordings = [replace(one, clocks=tuple(known.get(one.name, one.clocks))) for one in campaign.recordings]
-        prepared = prepare_again(replace(campaign, recordings=tuple(recordings)))
+        prepared = prepare_again(campaign.with_recordings(recordings))
     by_file = {decay.file: decay.clocks for decay in timed}
     decays = [_told_before(one, by_file.get(one.file, ()), optimum.parameters) for one in prepared.decays]
     return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays)), optimum
@@ -139,7 +139,7 @@ def told_by_flights(
         return None
     decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
     found = fit(decays)
-    values = separated(found.parameters)
+    values = with_separate_tracks(found.parameters)
     missed = sum(
         one.missed(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)])) for one in told
     )
@@ -152,10 +152,7 @@ def _released(
 ) -> list[FreeDecay]:
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
     vehicle = Vehicle.nearest(optimum.parameters, name=campaign.name, **campaign.heights.by_key)
-    by_name = {
-        seen.recording.name: (seen, replace(drop, wheels=seen.wheels))
-        for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
-    }
+    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.seen}
     return [
         synchronise_at_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
         for decay in decays

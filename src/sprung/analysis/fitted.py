@@ -24,7 +24,7 @@ from sprung.faults import (
 )
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
-from sprung.selection import fit_from
+from sprung.selection import fit_structure
 from sprung.vehicle import Tracks
 
 _DIAGNOSES = 3
@@ -60,7 +60,7 @@ def fit_campaign(
             stand, mended = other, (*mended, *told)
     stand = stand.with_forces()
     for turn in range(_DIAGNOSES):
-        same = turn == 0 and not mended and not stand.way.choice.nonlinear
+        same = turn == 0 and not mended and not stand.way.structure.is_nonlinear
         taken = told if same and told is not None else _looked_at(stand)
         if not taken:
             break
@@ -71,7 +71,7 @@ def fit_campaign(
         if accused:
             break
     if any(one.settle is not None for one in mended):
-        listed = scores(stand.campaign, stand.way.decays, stand.way.optimum)
+        listed = scores(stand.campaign, stand.way.decays, stand.way.fit)
         mended = tuple(one if one.settle is None else one.settle(listed) for one in mended)
         stand = begin(mended).with_forces()
     accused = (*dict.fromkeys(undeclared.values()), *accused)
@@ -86,13 +86,13 @@ def _is_sound(fitted: Fitted) -> bool:
 
 def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
     """Use what flights tell of the vehicle that had to tell the clocks of several loggers."""
-    if not _is_sound(fitted) or fitted.choice.followed:
+    if not _is_sound(fitted) or fitted.choice.is_time_stepped:
         return fitted
     told = told_by_flights(
         fitted.campaign,
         fitted.prepared,
         fitted.optimum,
-        lambda decays: fit_from(fitted.choice, decays, fitted.optimum, CONVERGED, progress),
+        lambda decays: fit_structure(fitted.choice, decays, fitted.optimum, CONVERGED, progress),
     )
     if told is None:
         return fitted
@@ -101,7 +101,7 @@ def _with_flights(fitted: Fitted, progress: Progress) -> Fitted:
         why=f"{fitted.why}; the flights that determined the clock offsets are fitted too",
         prepared=fitted.prepared._replace(decays=decays),
         optimum=optimum,
-        fit=uncertainty_of(optimum, decays),
+        fit=uncertainty_of(optimum),
     )
 
 
@@ -167,5 +167,5 @@ def _looked_at(stand: Stand) -> tuple[Hypothesis, ...]:
 
 def _bench(stand: Stand, decays: Sequence[FreeDecay]) -> Bench:
     """Return the fit against which faults are looked for, with the larger of the models that are open."""
-    choice = stand.way.choice
-    return Bench.of(stand.campaign, decays, "separate" if choice.open else choice.tracks, choice.linear_extras)
+    choice = stand.way.structure
+    return Bench.of(stand.campaign, decays, "separate" if choice.tracks_open else choice.tracks, choice.linear_terms)

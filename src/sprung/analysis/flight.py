@@ -17,8 +17,8 @@ from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
 from sprung.preprocess import Flight, FreeDecay, Prepared, flights
 from sprung.progress import Progress, Step, silent
-from sprung.selection import ModelSearch, ModelStructure, fit_from, tilted
-from sprung.vehicle import WHEELS, Block, Rows, Vehicle, coordinates, drops_with_forces, quantity
+from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
+from sprung.vehicle import WHEELS, BlockSupport, Rows, Vehicle, coordinates, evaluate_quantity, simulate_nonlinear_drops
 
 Real = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ def is_needed(fit: FitStatistics) -> bool:
         Of the decays.
     """
     scaling = fit.scaling
-    total, gradient = quantity("total_mass", fit.names, fit.values)
+    total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     # Falling tells nothing of the absolute scale: what is left of the uncertainties when the total mass is given.
     within = np.eye(len(fit.names)) - np.outer(scaling, gradient * fit.slopes / total)
     errors = np.sqrt(np.diag(within @ fit.relative_covariance @ within.T)) * np.abs(fit.slopes)
@@ -103,22 +103,22 @@ def fly(
     Flown or None
         None where no drop can be used so, or where the vehicle did something during the fall that the model does not have.
     """
-    found = flights(prepared.decays, campaign.drops, prepared.seen)
+    found = flights(prepared.decays, prepared.seen)
     if not any(found):
         return None
     progress(Step("using the fall"))
     begun = _begun(campaign, choice, optimum, found)
     decays = tuple(one.decay if one else decay for one, decay in zip(found, prepared.decays, strict=True))
-    airborne = replace(choice, airborne=True)
-    higher = fit_from(airborne, decays, optimum, CONVERGED, progress, begun)
-    way = tilted(ModelSearch(airborne, higher, decays, (), progress))
-    if not way.optimum.converged or np.any(way.optimum.noise > _NO_WORSE * optimum.noise):
+    airborne = replace(choice, unilateral_tyres=True)
+    higher = fit_structure(airborne, decays, optimum, CONVERGED, progress, begun)
+    way = select_gravity_leakage(ModelSearch(airborne, higher, decays, (), progress))
+    if not way.fit.converged or np.any(way.fit.noise > _NO_WORSE * optimum.noise):
         return None
-    now = uncertainty_of(way.optimum, decays)
+    now = uncertainty_of(way.fit)
     known = np.sqrt(np.diag(fit.covariance)) > 0
     ratios = np.sqrt(np.diag(now.covariance)[known] / np.diag(fit.covariance)[known])
     sharper = float(np.median(ratios))
-    return Flown(way.choice, way.optimum, decays, now, sharper) if sharper < 1 else None
+    return Flown(way.structure, way.fit, decays, now, sharper) if sharper < 1 else None
 
 
 def _begun(campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]) -> Real:
@@ -136,10 +136,10 @@ def _start(flight: Flight, vehicle: Vehicle, campaign: Campaign, rows: Real) -> 
     decay = flight.decay
     load, rate = campaign.load(decay.load), decay.rate
     heights = _HEIGHTS if flight.height is None else (flight.height,)
-    blocks = [Block(load, flight.wheels or WHEELS, height) for height in heights]
+    blocks = [BlockSupport(load, flight.wheels or WHEELS, height) for height in heights]
     offset = flight.since % (1 / rate)
     before, samples = round((flight.since - offset) * rate), int(_LONG_ENOUGH * rate)
-    motions = drops_with_forces(vehicle, blocks, 1 / rate, before + samples, offset)
+    motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, before + samples, offset)
     told = (decay.values - decay.rest.level[:, None])[:, :samples]
     missed = [
         np.nansum((told - (rows @ motion.acceleration)[:, before : before + told.shape[1]]) ** 2) for motion in motions

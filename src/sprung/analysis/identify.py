@@ -205,7 +205,7 @@ def result_of(
         next_step=None if rejected else next_step(to_design(fitted)).text,
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
-            **({} if rejected else characteristics_of(fit, choice.known, choice.models[EMPTY.name])),
+            **({} if rejected else characteristics_of(fit, choice.known, choice.linear_models[EMPTY.name])),
             **about_roll_axis(fit, choice.heights),
             **{name: estimate_of(fit, choice.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
@@ -213,7 +213,10 @@ def result_of(
         scale=estimates.scale,
         unidentifiable=estimates.unidentifiable,
         correlation=estimates.correlation,
-        modes={load: () if rejected else mode_estimates(fit, choice.models[load], campaign.sensors) for load in loads},
+        modes={
+            load: () if rejected else mode_estimates(fit, choice.linear_models[load], campaign.sensors)
+            for load in loads
+        },
         fit=_fit_report(choice, why, path, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *accused))),
@@ -242,11 +245,11 @@ def _fit_report(
         samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
         drops=len(decays),
         noise=dict(zip(channels, fit.noise.tolist(), strict=True)),
-        model=choice.extras,
+        model=choice.terms,
         tracks=choice.tracks,
         why=why,
         axes=axes_of(choice.heights),
-        since="release" if choice.airborne else "landing",
+        since="release" if choice.unilateral_tyres else "landing",
         path=path,
         method=METHOD,
         iterations=fit.iterations,

@@ -16,12 +16,12 @@ _BEFORE_DECAY = 0.1
 def to_design(fitted: Fitted) -> PlannedTest:
     """Take what was fitted as a test to which others may be added, of the vehicle that was found as far as it is linear."""
     campaign, decays = fitted.campaign, fitted.prepared.decays
-    choice = fitted.choice.having(fitted.choice.linear_extras)
-    fit = fitted.fit.only(parameter_names(choice.tracks, choice.extras))
+    choice = fitted.choice.with_terms(fitted.choice.linear_terms)
+    fit = fitted.fit.only(parameter_names(choice.tracks, choice.terms))
     subject = subject_of_fit(
         fit,
         choice.tracks,
-        choice.extras,
+        choice.terms,
         {name: one for name, one in choice.known.items() if not name.startswith(LOAD_MASS)},
         campaign.sensors,
         rate=float(np.median([decay.rate for decay in decays])),
@@ -31,8 +31,8 @@ def to_design(fitted: Fitted) -> PlannedTest:
     )
     used = {decay.file for decay in decays}
     dropped = [
-        PlannedDrop(campaign.load(drop.load), seen.wheels, drop.height or DEFAULT_HEIGHT)
-        for drop, seen in zip(campaign.drops, fitted.prepared.seen, strict=True)
+        PlannedDrop(campaign.load(seen.drop.load), seen.wheels, seen.drop.height or DEFAULT_HEIGHT)
+        for seen in fitted.prepared.seen
         if seen.recording.name in used
     ]
     return campaign_of_fit(subject, fit, dropped)

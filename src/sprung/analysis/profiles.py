@@ -8,7 +8,7 @@ from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
 from sprung.estimation import FitResult, FitStatistics, estimate_of, profiled
 from sprung.progress import Progress, counted
-from sprung.selection import choose_model
+from sprung.selection import choose_structure
 from sprung.uncertainty import Estimate, KnownValue
 from sprung.vehicle import DERIVED, Tracks, parameter_names
 
@@ -43,10 +43,10 @@ def check_asked(
     names = (profile,) if isinstance(profile, str) else tuple(profile)
     if not names:
         return ()
-    choice = choose_model(campaign, tracks, None if extras is None else tuple(extras))
+    choice = choose_structure(campaign, tracks, None if extras is None else tuple(extras))
     # Where the records are to decide about the half-distances, either names will do.
-    either: tuple[Tracks, ...] = ("shared", "separate") if choice.open else (choice.tracks,)
-    allowed = {ALL, *DERIVED, *(name for one in either for name in parameter_names(one, choice.extras))}
+    either: tuple[Tracks, ...] = ("shared", "separate") if choice.tracks_open else (choice.tracks,)
+    allowed = {ALL, *DERIVED, *(name for one in either for name in parameter_names(one, choice.terms))}
     problems = Problems()
     for name in names:
         if name not in allowed:

@@ -28,13 +28,13 @@ from sprung.selection import (
     ModelSearch,
     ModelStructure,
     SelectionStep,
-    carried,
-    choose_model,
-    fit_from,
-    linear,
-    nonlinear,
-    wanting,
-    with_forces,
+    choose_structure,
+    fit_forced_terms,
+    fit_requested_terms,
+    fit_structure,
+    select_linear_terms,
+    select_nonlinear_terms,
+    select_roll_axis_height,
 )
 from sprung.vehicle import LINEAR_EXTRAS, Tracks
 
@@ -92,26 +92,30 @@ class Stand(NamedTuple):
     @property
     def open_to_forces(self) -> bool:
         """Whether forces with laws of their own will be looked for."""
-        return any(extra not in LINEAR_EXTRAS for extra in self.wanted.free)
+        return any(extra not in LINEAR_EXTRAS for extra in self.wanted.open_terms)
 
     @property
     def suspicion(self) -> Suspicion:
         """Whether there is reason to look for what is wrong."""
-        return suspicious(self.campaign, self.way.decays, self.way.optimum)
+        return suspicious(self.campaign, self.way.decays, self.way.fit)
 
     def with_forces(self) -> Stand:
         """Fit the forces that are wanted, or that the records ask for."""
-        plain = replace(self.plain, carried_at=self.way.choice.carried_at)
-        way = with_forces(self.way, self.wanted) if self.wanted.nonlinear else nonlinear(self.way, plain)
-        return self._replace(way=_from_contact(way) if way.choice.nonlinear else way)
+        plain = replace(self.plain, carried_at=self.way.structure.carried_at)
+        way = (
+            fit_forced_terms(self.way, self.wanted)
+            if self.wanted.is_nonlinear
+            else select_nonlinear_terms(self.way, plain)
+        )
+        return self._replace(way=_from_contact(way) if way.structure.is_nonlinear else way)
 
     def judged(self) -> Fitted:
         """Say how sure the fit is."""
         way = self.way
         way.progress(Step("computing the uncertainties"))
-        optimum, decays = escape_local_optimum(way.optimum), tuple(way.decays)
+        optimum, decays = escape_local_optimum(way.fit), tuple(way.decays)
         prepared = self.prepared._replace(decays=decays)
-        return Fitted(self.campaign, way.choice, way.why, prepared, optimum, uncertainty_of(optimum, decays), way.path)
+        return Fitted(self.campaign, way.structure, way.reason, prepared, optimum, uncertainty_of(optimum), way.steps)
 
 
 def begun(
@@ -134,9 +138,9 @@ def begun(
     for one in changes:
         changed = one.change(campaign)
         campaign = replace(changed, faults=(*changed.faults, one.fault))
-    wanted = choose_model(campaign, tracks, None if extras is None else tuple(extras))
+    wanted = choose_structure(campaign, tracks, None if extras is None else tuple(extras))
     # An engine that no sensor feels is put into a vehicle that is there already: nothing tells of it before.
-    choice = wanted.having(tuple(extra for extra in wanted.linear_extras if extra != ENGINE))
+    choice = wanted.with_terms(tuple(extra for extra in wanted.linear_terms if extra != ENGINE))
     prepared = leave_out(campaign, prepare(campaign, progress) if changes else prepared, left_out)
     _need_decays(campaign, prepared)
     prepared, first = set_clocks(
@@ -147,8 +151,10 @@ def begun(
     )
     start = None if first is None else first.parameters
     first = _ascend(campaign, choice, prepared.decays, start, NEAR, progress, guess)
-    way = carried(ModelSearch(choice, first, prepared.decays, (), progress))
-    way = linear(wanting(way, [extra for extra in wanted.linear_extras if extra not in choice.extras]))
+    way = select_roll_axis_height(ModelSearch(choice, first, prepared.decays, (), progress))
+    way = select_linear_terms(
+        fit_requested_terms(way, [extra for extra in wanted.linear_terms if extra not in choice.terms])
+    )
     way = _from_contact(way)
     return Stand(campaign, wanted, choice, prepared, way)
 
@@ -157,11 +163,11 @@ def _from_contact(way: ModelSearch) -> ModelSearch:
     """Let the fitted vehicle say where each decay begins, and fit to the end."""
     decays, optimum = fit_from_contact(
         way.decays,
-        way.choice.models,
-        way.optimum,
-        lambda decays, found, states: fit_from(way.choice, decays, found, CONVERGED, way.progress, states),
+        way.structure.linear_models,
+        way.fit,
+        lambda decays, found, states: fit_structure(way.structure, decays, found, CONVERGED, way.progress, states),
     )
-    return replace(way, decays=decays, optimum=optimum)
+    return replace(way, decays=decays, fit=optimum)
 
 
 def _ascend(
@@ -173,7 +179,7 @@ def _ascend(
     progress: Progress,
     guess: Mapping[str, float],
 ) -> FitResult:
-    models, sensors, known = choice.models, campaign.sensors, choice.known
+    models, sensors, known = choice.linear_models, campaign.sensors, choice.known
     return fit_linear(decays, models, sensors, known, start=start, guess=guess, enough=enough, progress=progress)
 
 
@@ -183,7 +189,7 @@ def _need_decays(campaign: Campaign, prepared: Prepared) -> None:
     problems = Problems()
     where = "campaign" if campaign.path is None else campaign.path.name
     problems.add(where, "no drop that can be used", "at least one", "Read the reasons below and record again.")
-    for _, _, faults in prepared.left_out:
+    for _, faults in prepared.left_out:
         for fault in faults:
             problems.add(fault.where, fault.what, "a usable decay", fault.do)
     problems.raise_if_any()

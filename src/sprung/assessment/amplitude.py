@@ -16,9 +16,9 @@ from sprung.assessment.bodies import BodyMotion, body_rows
 from sprung.assessment.sliding import Trace, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
-from sprung.modal import Mode, modes_of
 from sprung.progress import Progress, counted, silent
 from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, free_decay
+from sprung.vibration import Mode, compute_modes
 
 Real = NDArray[np.float64]
 
@@ -97,7 +97,7 @@ def mode_amplitudes(
     """
     linear = model.linear if isinstance(model, NonlinearModel) else model
     matrices = linear.matrices(fit.values)
-    modes = [mode for mode in modes_of(matrices) if mode.pole.imag != 0]
+    modes = [mode for mode in compute_modes(matrices) if mode.pole.imag != 0]
     rows = body_rows(fit, sensors)
     told = [one for one in motions if np.isfinite(one.measured).all()]
     found = []

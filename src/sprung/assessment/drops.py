@@ -96,8 +96,8 @@ def validate_drops(
     dict
         By the drop's name.
     """
-    predicted: Sequence[Prediction | None] = predictions(optimum, decays) if len(decays) > 1 else [None] * len(decays)
-    weights, found = optimum.point.weights, {}
+    predicted: Sequence[Prediction | None] = predictions(optimum) if len(decays) > 1 else [None] * len(decays)
+    weights, found = optimum.weights, {}
     # Coloured noise tells less; that drops disagree is what is to be seen here.
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
     noise = noise_of_sensors(fit, decays)

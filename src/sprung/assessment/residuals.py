@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.assessment.sensors import moments, sensor_noise
 from sprung.display import shown
-from sprung.estimation import FitStatistics, residual_records
+from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
 
 Real = NDArray[np.float64]
@@ -57,7 +57,7 @@ def judge_residuals(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Misfit:
     So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
-    residuals = residual_records(fit.fitted, decays)
+    residuals = fit.residuals
     signals = [decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays]
     left, signal = moments(residuals), moments(signals)
     noise = sensor_noise(decays, left)

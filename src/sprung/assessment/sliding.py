@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from sprung.display import shown
-from sprung.modal import Mode
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

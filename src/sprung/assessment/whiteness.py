@@ -11,7 +11,7 @@ from scipy.signal import fftconvolve
 
 from sprung.assessment.sensors import moments, sensor_noise
 from sprung.display import shown
-from sprung.estimation import FitStatistics, residual_records
+from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
 
 Real = NDArray[np.float64]
@@ -60,7 +60,7 @@ def noise_of_sensors(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Real:
     ndarray
         m/s² root-mean-square, shape (channel,).
     """
-    seen = sensor_noise(decays, moments(residual_records(fit.fitted, decays)))
+    seen = sensor_noise(decays, moments(fit.residuals))
     variance = seen.variance + seen.added
     at_rest = np.where((seen.samples > 0) & (seen.variance > 0), np.sqrt(variance), np.inf)
     return np.minimum(at_rest, fit.noise)
@@ -88,7 +88,7 @@ def remainders(fit: FitStatistics, decays: Sequence[FreeDecay], noise: Real) -> 
             int(channel): _remainder(record[channel], decay.rate, float(noise[channel]))
             for channel in np.flatnonzero(decay.usable)
         }
-        for decay, record in zip(decays, residual_records(fit.fitted, decays), strict=True)
+        for decay, record in zip(decays, fit.residuals, strict=True)
     )
 
 

@@ -1,17 +1,9 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
 from sprung.campaign.beforehand import Given, known_quantities
-from sprung.campaign.campaign import (
-    KINDS,
-    Campaign,
-    Drop,
-    ModelChoice,
-    TestRecord,
-    drop_names,
-    kind_of,
-    recording_names,
-)
+from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
 from sprung.campaign.completeness import Missing
+from sprung.campaign.drop import KINDS, Drop, DropTest, drop_names, kind_of, recording_names
 from sprung.campaign.gaps import gap, gaps_in
 from sprung.campaign.in_memory import check_statements, require_plausible
 from sprung.campaign.loggers import files_named_after
@@ -34,6 +26,7 @@ __all__ = [
     "Campaign",
     "CampaignSource",
     "Drop",
+    "DropTest",
     "Given",
     "LoggerClock",
     "Missing",

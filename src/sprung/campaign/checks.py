@@ -71,7 +71,11 @@ def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
         ("load", "name"): [("name", load.name, None) for load in file.load],
         # "./a.csv" is "a.csv"; one file may hold several drops, each in its window.
         ("drop", "file"): [
-            ("files" if drop.files else "file", ", ".join(str(PurePath(one)) for one in drop.recordings), drop.window)
+            (
+                "files" if drop.files else "file",
+                ", ".join(str(PurePath(one)) for one in drop.recording_files),
+                drop.window,
+            )
             for drop in file.drop
         ],
         ("drop", "name"): [("name", drop.name or "", None) for drop in file.drop],

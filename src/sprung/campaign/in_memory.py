@@ -12,7 +12,8 @@ from sprung.errors import Problems
 from sprung.vehicle import EMPTY
 
 if TYPE_CHECKING:
-    from sprung.campaign.campaign import Campaign, Drop
+    from sprung.campaign.campaign import Campaign
+    from sprung.campaign.drop import Drop
     from sprung.uncertainty import KnownValue
     from sprung.vehicle import Heights, Load, Sensor
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sprung.campaign.campaign import Drop
+from sprung.campaign.drop import Drop
 from sprung.campaign.merging import merged
 from sprung.campaign.recording import Recording
 from sprung.campaign.signals import column_of, recording_of

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sprung.campaign.campaign import Campaign, Drop, ModelChoice, TestRecord, recording_names
+from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
 from sprung.campaign.checks import check, refused_unit
 from sprung.campaign.completeness import missing_in_file
 from sprung.campaign.document import toml_document
+from sprung.campaign.drop import Drop, DropTest, recording_names
 from sprung.campaign.loggers import Wanted, named_apart, recording_of_drop
 from sprung.campaign.schema import CampaignFile, VehicleFileSchema
 from sprung.campaign.signals import column_of
@@ -158,19 +159,16 @@ def read_document(
     _check_channels(draft, tables, problems)
     _check_starts_and_ends(draft, tables, problems)
     sensors = named_apart(draft.file.sensor)
-    read = _recordings(draft, sensors, tables, of_recordings, progress)
+    drops = _recorded(draft, sensors, tables, of_recordings, progress)
     problems.raise_if_any()
-    recordings = tuple(read.values())
-    if not recordings:
+    if not drops:
         unread.raise_if_any()
-    _refuse_unusable(recordings)
+    _refuse_unusable([drop.recording for drop in drops.values()])
     vehicle = draft.file.vehicle
-    drops = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     return Campaign(
         name=vehicle.name or _printable(path.absolute().parent.name),
         sensors=sensors,
-        drops=tuple(drop for index, drop in drops.items() if index in read),
-        recordings=recordings,
+        drops=tuple(drops.values()),
         loads=_loads(draft.file),
         wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
         cg_height=vehicle.cg_height,
@@ -182,7 +180,9 @@ def read_document(
         path=path,
         files=_sources(files, path, signals or {}),
         missing=missing,
-        unread=tuple(drop for index, drop in drops.items() if index not in read),
+        unread=tuple(
+            drop for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True) if index not in drops
+        ),
         identification=vehicle.identification,
         test=draft.file.test,
     )
@@ -337,14 +337,14 @@ def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Mapping[str
             )
 
 
-def _recordings(
+def _recorded(
     draft: Draft[CampaignFile],
     sensors: Sequence[Sensor],
     tables: Mapping[int, Mapping[str, Table]],
     problems: Problems,
     progress: Progress,
-) -> dict[int, Recording]:
-    """Make the recording of every drop whose files could be read; by the drop's index."""
+) -> dict[int, DropTest]:
+    """Return every drop whose files could be read, with its recording; by the drop's index."""
     pairs = [
         Wanted(written, named)
         for written, named in zip(draft.file.sensor, sensors, strict=True)
@@ -352,12 +352,12 @@ def _recordings(
     ]
     understood = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
     drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
-    recordings: dict[int, Recording] = {}
+    recorded: dict[int, DropTest] = {}
     names = counted(progress, "checking the clocks and units of the recordings", tuple(recording_names(drops)))
     for (index, of_drop), drop, name in zip(tables.items(), drops, names, strict=True):
         with problems.collecting():
-            recordings[index] = recording_of_drop(of_drop, pairs, drop, name)
-    return recordings
+            recorded[index] = drop.with_recording(recording_of_drop(of_drop, pairs, drop, name))
+    return recorded
 
 
 def _check_starts_and_ends(
@@ -378,7 +378,7 @@ def _printable(name: str) -> str:
     return name.encode("utf-8", errors="replace").decode()
 
 
-def _refuse_unusable(recordings: tuple[Recording, ...]) -> None:
+def _refuse_unusable(recordings: Sequence[Recording]) -> None:
     if any(recording.usable.any() for recording in recordings):
         return
     raise InputError(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.vehicle import separated
+from sprung.vehicle import with_separate_tracks
 
 ROUGHLY = 0.05
 """s: how far two clocks may stand apart where only the first motion that a logger shows has tied them."""
@@ -47,7 +47,7 @@ class LoggerClock:
 
     def expected(self, parameters: Mapping[str, float]) -> float:
         """Give how late it is as far as is known, s, for a vehicle of these parameters, SI."""
-        apart = separated(parameters)
+        apart = with_separate_tracks(parameters)
         return self.late + sum(slope * apart[name] for name, slope in self.follows.items())
 
 

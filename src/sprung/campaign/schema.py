@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from sprung.campaign.campaign import Drop, ModelChoice, TestRecord
+from sprung.campaign.campaign import ModelChoice, TestRecord
+from sprung.campaign.drop import Drop
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     import os
     from collections.abc import Iterator, Mapping, Sequence
 
-    from sprung.campaign.campaign import Campaign, Drop
+    from sprung.campaign.campaign import Campaign
+    from sprung.campaign.drop import DropTest
     from sprung.campaign.recording import Recording
     from sprung.uncertainty import KnownValue
 
@@ -68,25 +69,29 @@ def campaign_files(campaign: Campaign) -> dict[str, bytes]:
     campaign
         The campaign.
     """
-    pieces = [recording.parts or (recording,) for recording in campaign.recordings]
-    names = tuple(_file_names(campaign.drops, pieces))
+    names = tuple(_file_names(campaign.drops))
     sensors = {sensor.channel: sensor for sensor in campaign.sensors}
     files = {
         name: _table(piece, [sensors[channel] for channel in piece.channels])
-        for own, of_drop in zip(names, pieces, strict=True)
-        for name, piece in zip(own, of_drop, strict=True)
+        for of_drop, drop in zip(names, campaign.drops, strict=True)
+        for name, piece in zip(of_drop, _pieces(drop.recording), strict=True)
     }
     files[SCHEMA_FILE] = schema_text().encode()
     files[FILE] = (SCHEMA_LINE + commented(_toml(_document(campaign, names)))).encode()
     return files
 
 
-def _file_names(drops: Sequence[Drop], pieces: Sequence[Sequence[Recording]]) -> Iterator[tuple[str, ...]]:
-    """Name each drop's text tables: their files' own names where these stay within the folder, and no two alike."""
+def _pieces(recording: Recording) -> tuple[Recording, ...]:
+    """Return what each logger recorded: one file is written for each."""
+    return recording.parts or (recording,)
+
+
+def _file_names(drops: Sequence[DropTest]) -> Iterator[tuple[str, ...]]:
+    """Yield the names of each drop's text tables: its files' own where these stay within the folder, and no two alike."""
     taken: set[str] = set()
-    for drop, of_drop in zip(drops, pieces, strict=True):
-        own = []
-        for file in [piece.name for piece in of_drop] if len(of_drop) > 1 else [drop.file]:
+    for drop in drops:
+        pieces, own = _pieces(drop.recording), []
+        for file in [piece.name for piece in pieces] if len(pieces) > 1 else [drop.file]:
             path = PurePosixPath(file or drop.label)
             if path.is_absolute() or ".." in path.parts:
                 path = PurePosixPath(path.name)
@@ -118,7 +123,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
         "drop": [
             ({"file": own[0]} if len(own) == 1 else {"files": list(own)})
             | {"load": drop.load, "wheels": drop.wheels}
-            | written(drop, "file", "files", "window")
+            | written(drop, "file", "files", "window", "recording")
             for own, drop in zip(files, campaign.drops, strict=True)
         ],
     }

@@ -267,16 +267,16 @@ def _without_drop(drafted: Draft) -> Iterator[Fault]:
 def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     """Judge recordings that have been prepared already."""
     used = {decay.file: decay for decay in prepared.decays}
-    left_out = {recording.name: faults for _, recording, faults in prepared.left_out}
+    left_out = {drop.recording.name: faults for drop, faults in prepared.left_out}
     reports = []
-    for drop, short, seen in zip(campaign.drops, drop_names(campaign.drops), prepared.seen, strict=True):
+    for short, seen in zip(drop_names(campaign.drops), prepared.seen, strict=True):
         name = seen.recording.name
         decay = used.get(name)
         faults = left_out[name] if decay is None else decay.faults
-        reports.append(_report(drop, short, seen, decay, faults, campaign.sensors))
-    recorded = tuple(Recorded.of(*pair) for pair in zip(prepared.seen, campaign.recordings, strict=True))
+        reports.append(_report(short, seen, decay, faults, campaign.sensors))
+    recorded = tuple(Recorded.of(seen) for seen in prepared.seen)
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
-    of_left_out = [fault for _, _, faults in prepared.left_out for fault in faults]
+    of_left_out = [fault for _, faults in prepared.left_out for fault in faults]
     everything = tuple(dict.fromkeys((*campaign.faults, *of_drops, *of_left_out)))  # one may be that of several drops
     reports += [_unread(drop, everything) for drop in campaign.unread]
     return Check(tuple(reports), everything, recorded, campaign, campaign.missing)
@@ -284,25 +284,24 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
 
 def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
-    file = drop.recording or drop.label
+    file = drop.recording_name or drop.label
     codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
     kind, title = kind_of(drop.wheels), drop.name or ""
     return DropReport(file, drop.load, None, None, codes, kind=kind, wheels=drop.wheels, name=drop.label, title=title)
 
 
 def _report(
-    drop: Drop,
     name: str,
     seen: DropObservation,
     decay: FreeDecay | None,
     faults: Sequence[Fault],
     sensors: Sequence[Sensor],
 ) -> DropReport:
-    recording = seen.recording
+    drop, recording = seen.drop, seen.recording
     released = None if seen.release is None else recording.start + seen.release / recording.rate
     events = Events(release=released) if decay is None else decay.events
     return DropReport(
-        file=recording.name if drop.name is None else drop.recording or recording.name,
+        file=recording.name if drop.name is None else drop.recording_name or recording.name,
         load=drop.load,
         start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Recording
 from sprung.display import shown
 from sprung.preprocess import DropObservation, Mark
 
@@ -38,19 +37,17 @@ class Recorded:
     marks: tuple[Mark, ...] = ()
 
     @classmethod
-    def of(cls, seen: DropObservation, as_read: Recording) -> Recorded:
+    def of(cls, seen: DropObservation) -> Recorded:
         """Take what a recording shows.
 
         Parameters
         ----------
         seen
             What its drop shows.
-        as_read
-            The same before anything was left out.
         """
-        values = seen.recording.values
-        if values.shape == as_read.values.shape:
-            values = np.where(np.isnan(values).any(axis=1, keepdims=True), as_read.values, values)
+        values, as_read = seen.recording.values, seen.drop.recording.values
+        if values.shape == as_read.shape:
+            values = np.where(np.isnan(values).any(axis=1, keepdims=True), as_read, values)
         return cls(seen.recording.start, seen.recording.rate, values.astype(np.float32), seen.marks)
 
     @property

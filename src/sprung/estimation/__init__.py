@@ -16,14 +16,7 @@ from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
 from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
-from sprung.estimation.statistics import (
-    FitStatistics,
-    Inflater,
-    fit_jointly,
-    overdispersion_of,
-    residual_records,
-    uncertainty_of,
-)
+from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, overdispersion_of, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 from sprung.estimation.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 
@@ -70,7 +63,6 @@ __all__ = [
     "parameters_from_matrices",
     "predictions",
     "profiled",
-    "residual_records",
     "score_faults",
     "score_linear_term",
     "score_nonlinear_terms",

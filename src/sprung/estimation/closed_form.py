@@ -64,33 +64,31 @@ class Likelihood:
 
     Attributes
     ----------
-    records
-        The decays.
+    decays
+        What is fitted.
     models
-        Equations of motion by the position of the load in the records.
+        Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters.
+        The sensors' rows over the fit's parameters, in the order of the decays' channels.
     """
 
-    records: Records
-    models: tuple[LinearModel, ...]
+    decays: Sequence[FreeDecay]
+    models: Mapping[str, LinearModel]
     sensors: Rows
 
-    @classmethod
-    def of(cls, decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Rows) -> Likelihood:
-        """Take up the records, once.
+    def with_decays(self, decays: Sequence[FreeDecay]) -> Likelihood:
+        """Return the likelihood of other decays with the same models and sensors."""
+        return Likelihood(decays, self.models, self.sensors)
 
-        Parameters
-        ----------
-        decays
-            What to fit.
-        models
-            Equations of motion by load name.
-        sensors
-            The sensors' rows, in the order of the decays' channels.
-        """
-        records = Records.of(decays, next(iter(models.values())).names)
-        return cls(records, tuple(models[load] for load in records.loads), sensors)
+    @cached_property
+    def records(self) -> Records:
+        """The decays, centred and cut into blocks."""
+        return Records.of(self.decays, next(iter(self.models.values())).names)
+
+    @cached_property
+    def model_of(self) -> tuple[LinearModel, ...]:
+        """Equations of motion by the position of the load in the records."""
+        return tuple(self.models[load] for load in self.records.loads)
 
     @cached_property
     def observations(self) -> Real:
@@ -106,7 +104,7 @@ class Likelihood:
     @cached_property
     def loads(self) -> LinearModel:
         """The models of all loads side by side."""
-        return LinearModel.side_by_side(self.models)
+        return LinearModel.side_by_side(self.model_of)
 
     @cached_property
     def span(self) -> float:
@@ -350,7 +348,7 @@ class LikelihoodAt:
         for run in likelihood.records.runs:
             for i, position in enumerate(run.order.tolist()):
                 group = run.group[i]
-                model, rate = likelihood.models[run.load[group]], 1.0 / float(run.step[group])
+                model, rate = likelihood.model_of[run.load[group]], 1.0 / float(run.step[group])
                 found[position] = evaluate_drop(
                     model, likelihood.sensors, self.values, run.record(i), rate, run.present * weights
                 )

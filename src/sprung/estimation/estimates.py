@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
-from sprung.modal import leading_entry
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import LOAD_MASS, PARAMETERS, quantity
+from sprung.vehicle import LOAD_MASS, PARAMETERS, evaluate_quantity
+from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
 
@@ -139,7 +139,7 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) 
     -------
     Estimate
     """
-    value, gradient = quantity(name, fit.names, fit.values)
+    value, gradient = evaluate_quantity(name, fit.names, fit.values)
     unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
     if name in known and known[name].is_exact:
         exact = known[name].value
@@ -162,7 +162,7 @@ def _interval(name: str, value: float, std: float) -> tuple[float, float]:
 
 
 def _scale(fit: FitStatistics) -> Scale:
-    total, gradient = quantity("total_mass", fit.names, fit.values)
+    total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
@@ -199,7 +199,7 @@ def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tup
             together[i, np.argmax(shares[i])] = True
     for direction, moved in zip(directions.T, together.T, strict=True):
         names = tuple(name for name, moves in zip(fit.names, moved, strict=True) if moves)
-        leading = direction[leading_entry(direction)]
+        leading = direction[largest_entry(direction)]
         ways = [
             f"{name} {'up' if part * leading > 0 else 'down'}"
             for name, part, moves in zip(fit.names, direction, moved, strict=True)

@@ -10,16 +10,17 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import Likelihood
+from sprung.estimation.closed_form import Likelihood, LikelihoodAt
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.overdispersion import birge_ratio
+from sprung.estimation.overdispersion import birge_ratio, corrections
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, NEARER, EstimationProblem, Iterate, least_information
 from sprung.estimation.starts import VehicleSize, start_grid
+from sprung.estimation.time_stepping import SteppedLikelihoodAt
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_names
+from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
 
 Real = NDArray[np.float64]
 
@@ -82,6 +83,31 @@ class FitResult:
         return self.point.converged
 
     @property
+    def decays(self) -> Sequence[FreeDecay]:
+        """What was fitted."""
+        return self.problem.likelihood.decays
+
+    @property
+    def weights(self) -> Real:
+        """1/σ² of each channel with which the states and the derivatives were computed, s⁴/m², shape (channel,)."""
+        return self.point.weights
+
+    @property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); 0 for channels that are left out."""
+        return self.point.evaluation.residual
+
+    @cached_property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+        return tuple(self.point.place.fitted(self.point.weights))
+
+    @cached_property
+    def residuals(self) -> tuple[Real, ...]:
+        """Measured minus modelled, m/s²: one array of shape (channel, time) per drop, NaN for channels that are left out."""
+        return tuple(_centred(decay.values - record) for decay, record in zip(self.decays, self.fitted, strict=True))
+
+    @cached_property
     def noise(self) -> Real:
         """Noise level of each channel, m/s², shape (channel,)."""
         evaluation = self.point.evaluation
@@ -116,15 +142,72 @@ class FitResult:
         """By how much the drops contradict each other, as a factor on every variance; 1 where not significantly."""
         return birge_ratio(*self.problem.by_drop(self.point))
 
-    @property
+    @cached_property
     def states(self) -> Real:
         """{X, Ẋ} of each drop at the start of its decay, SI, shape (drop, state)."""
         return self.point.place.states(self.point.weights)
+
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """Return the motion of a drop around the start of its decay.
+
+        Parameters
+        ----------
+        drop
+            Its position.
+        before, after
+            How many samples before the first one, and how many from it on.
+
+        Returns
+        -------
+        ndarray
+            {X, Ẋ}, with forces that have a memory their memories too, SI, shape (state, time).
+        """
+        return self.point.place.motion(self.point.weights, drop, before, after)
+
+    def residual_sums_of(self, decays: Sequence[FreeDecay]) -> Real:
+        """Residual sums of squares of this vehicle on other decays, their initial states eliminated; as `residual_sums`."""
+        return self._of(decays).misfit(self.point.weights)[0]
+
+    def states_of(self, decays: Sequence[FreeDecay]) -> Real:
+        """{X, Ẋ} of this vehicle at the start of other decays, SI, shape (drop, state)."""
+        return self._of(decays).states(self.point.weights)
+
+    def _of(self, decays: Sequence[FreeDecay]) -> LikelihoodAt | SteppedLikelihoodAt:
+        return self.problem.likelihood.with_decays(decays).at(self.values)
+
+    def clock_delays(self, covariance: Real) -> dict[int, tuple[Real, Real]]:
+        """Return the estimated delays of the loggers' clocks.
+
+        Parameters
+        ----------
+        covariance
+            Of the parameters, SI, shape (parameter, parameter).
+
+        Returns
+        -------
+        dict
+            By the position of the drop the delays, s, shape (logger,), and their covariance; drops of one logger are not
+            in it.
+        """
+        return self.point.place.delays(self.point.weights, covariance)
+
+    @property
+    def drop_corrections(self) -> tuple[Real, NDArray[np.int64]]:
+        """Each drop's own correction to the joint estimate.
+
+        In units of its standard errors, squared and summed, shape (drop,); and in how many directions it has information.
+        """
+        return corrections(*self.problem.by_drop(self.point))
 
     def after(self, before: FitResult) -> FitResult:
         """Give this summit with the history of the one before, from which it was reached."""
         steps = before.steps + self.steps
         return replace(self, steps=steps, starts=before.starts, starts_agreeing=before.starts_agreeing)
+
+
+def _centred(record: Real) -> Real:
+    centred: Real = record - record.mean(axis=1, keepdims=True)
+    return centred
 
 
 def fit_linear(
@@ -186,7 +269,7 @@ def fit_linear(
         return _best(problem, [problem.maximise(problem.priors.bind(at(usual[0])), None, enough, CLOSE_BY)], enough)
     likelihood = problem.likelihood
     assert isinstance(likelihood, Likelihood)  # noqa: S101 (made above; for the type checker)
-    nominal = [model.with_known(masses) for model in likelihood.models] if masses else likelihood.models
+    nominal = [model.with_known(masses) for model in likelihood.model_of] if masses else likelihood.model_of
     direct = modulating_function_estimate(likelihood.records.runs, nominal, sensors, outline)
     tried = [] if direct is None else [(at(direct | masses), NEARER)]
     places = [at(values) for values in usual]
@@ -206,7 +289,7 @@ def fit_linear(
 
 def _completed(guess: Mapping[str, float], usual: Mapping[str, float]) -> dict[str, float]:
     """Complete a guess by a usual vehicle's values; half-distances that it shares hold for springs and dampers apart too."""
-    shared = {own: value for name, value in guess.items() for own in separate_names(name)}
+    shared = {own: value for name, value in guess.items() for own in separate_track_names(name)}
     apart = {name: guess[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in guess}
     return {**usual, **shared, **apart, **guess}
 
@@ -277,7 +360,7 @@ def _climb(
     typical: Mapping[str, float],
 ) -> EstimationProblem:
     names = next(iter(models.values())).names
-    likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in sensors], names))
+    likelihood = Likelihood(tuple(decays), models, Rows.of([sensor.row for sensor in sensors], names))
     return EstimationProblem(likelihood, PriorsAndConstraints(Coordinates.beside(names, typical), known))
 
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
-from sprung.modal import Mode, leading_entry, name_modes, paper_name
 from sprung.vehicle import LinearModel, Rows, Sensor
+from sprung.vibration import Mode, largest_entry, name_modes, paper_name
 
 Real = NDArray[np.float64]
 
@@ -124,5 +124,5 @@ def _estimate(
 
 def _largest_one(shape: NDArray[np.complex128]) -> tuple[tuple[float, float], ...]:
     """Turn and scale a shape so that its largest entry is 1; real and imaginary part of each."""
-    scaled = shape / shape[leading_entry(shape)]
+    scaled = shape / shape[largest_entry(shape)]
     return tuple((float(part.real), float(part.imag)) for part in scaled)

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from sprung.estimation.monomials import expand, parameters_of
 from sprung.estimation.records import RecordBatch
 from sprung.estimation.starts import VehicleSize
-from sprung.modal import waves
-from sprung.vehicle import LAWS, PARAMETERS, LinearModel, Rows, Sensor
+from sprung.vehicle import LINEAR_LAWS, PARAMETERS, LinearModel, Rows, Sensor
+from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -83,7 +83,7 @@ def modulating_function_estimate(
     products = _products(normal, keys, (0, 0, sprung))
     if products is None:
         return None
-    laws = [{key: term for key, term in expand(moved[0], law).items() if key in products} for law in LAWS]
+    laws = [{key: term for key, term in expand(moved[0], law).items() if key in products} for law in LINEAR_LAWS]
     per_mass = dict(zip(names, parameters_of(products, laws, names).tolist(), strict=True))
     per_mass |= {"I_yy": per_mass["I_yy"] - per_mass["a"] ** 2, "b": wheelbase - per_mass["a"]}
     # A known load stands beside the vehicle's own masses as a number.
@@ -192,7 +192,7 @@ class _Modulating(NamedTuple):
         rows = np.array(
             [[-(s**3), 3 * s**2, -3 * s, one], [-(s**2), 2 * s, -one, nothing], [-s, one, nothing, nothing]]
         )
-        falling = waves(-s * step, samples).T
+        falling = exponentials(-s * step, samples).T
         size = np.linalg.norm(derivatives[0] * falling, axis=1)
         functions = np.moveaxis(rows, 2, 0) @ derivatives
         functions *= (falling / size[:, None])[:, None]

@@ -12,7 +12,15 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle import LAWS, Law, LinearModel, Matrices, Tracks, parameter_names, seven_degrees_of_freedom
+from sprung.vehicle import (
+    LINEAR_LAWS,
+    LinearLaw,
+    LinearModel,
+    Matrices,
+    Tracks,
+    parameter_names,
+    seven_degrees_of_freedom,
+)
 
 Real = NDArray[np.float64]
 Key = tuple[int, int, int]
@@ -23,7 +31,7 @@ _NOTHING = 1e-100
 """Sums below this tell nothing, in any unit."""
 
 
-def expand(model: LinearModel, law: Law) -> dict[Key, Real]:
+def expand(model: LinearModel, law: LinearLaw) -> dict[Key, Real]:
     """Write M, C or K as a linear combination of products of parameters.
 
     Parameters
@@ -38,7 +46,7 @@ def expand(model: LinearModel, law: Law) -> dict[Key, Real]:
     dict
         For each product the matrix that it multiplies, shape (7, 7).
     """
-    terms = model.terms[:, LAWS.index(law)]
+    terms = model.terms[:, LINEAR_LAWS.index(law)]
     keyed = zip(model.products.tolist(), terms, strict=True)
     return {(one, two, three): term for (one, two, three), term in keyed if term.any()}
 
@@ -106,7 +114,7 @@ def parameters_from_matrices(matrices: Matrices, tracks: Tracks = "shared") -> d
     names = parameter_names(tracks)
     model = LinearModel.of(seven_degrees_of_freedom(tracks), names)
     products: dict[Key, float] = {}
-    laws = [expand(model, law) for law in LAWS]
+    laws = [expand(model, law) for law in LINEAR_LAWS]
     for identified, terms in zip(matrices, laws, strict=True):
         design = np.stack([term.ravel() for term in terms.values()], axis=1)
         found = np.linalg.lstsq(design, np.asarray(identified, dtype=float).ravel(), rcond=None)[0]
@@ -132,7 +140,7 @@ def shape_of(A: Real, model: LinearModel) -> Real:
     ndarray
         Parameters with m_s = 1 kg, shape (parameter,); NaN where nothing was found.
     """
-    mass, damping, stiffness = (expand(model, law) for law in LAWS)
+    mass, damping, stiffness = (expand(model, law) for law in LINEAR_LAWS)
     keys = list(dict.fromkeys([*mass, *damping, *stiffness]))
     nothing = np.zeros((7, 7))
     columns = [

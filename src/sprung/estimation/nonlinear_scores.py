@@ -17,7 +17,6 @@ from sprung.estimation.closed_form import LikelihoodAt
 from sprung.estimation.expm_likelihood import reach
 from sprung.estimation.fit import FitResult
 from sprung.estimation.problem import identifiable_subspace
-from sprung.estimation.statistics import residual_records
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import ElementInput, NonlinearModel
 
@@ -29,7 +28,6 @@ _ENOUGH = 250.0
 
 def score_nonlinear_terms(
     optimum: FitResult,
-    decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
     values: Mapping[str, float],
     candidates: Mapping[str, Sequence[str]],
@@ -40,8 +38,6 @@ def score_nonlinear_terms(
     ----------
     summit
         Where the linear fit ended.
-    decays
-        What was fitted.
     models
         Equations of motion by load name with all the forces.
     values
@@ -63,10 +59,9 @@ def score_nonlinear_terms(
     if not isinstance(place, LikelihoodAt):
         raise TypeError("scores start from a linear fit")
     brought = list(dict.fromkeys(name for names in candidates.values() for name in names))
-    residuals = residual_records(place.fitted(optimum.point.weights), decays)
     sums = [
         _of_drop(optimum, place, residual, decay, i, models[decay.load], values, brought)
-        for i, (residual, decay) in enumerate(zip(residuals, decays, strict=True))
+        for i, (residual, decay) in enumerate(zip(optimum.residuals, optimum.decays, strict=True))
     ]
     information, gradient = (np.sum(each, axis=0) for each in zip(*sums, strict=True))
     own = len(optimum.names)

@@ -5,13 +5,12 @@ Nothing is fitted again: where the others would have the summit follows from wha
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import Likelihood, LikelihoodAt
+from sprung.estimation.closed_form import LikelihoodAt
 from sprung.estimation.fit import FitResult
 from sprung.estimation.problem import NormalEquations, identifiable_subspace
 from sprung.estimation.time_stepping import SteppedLikelihood, SteppedLikelihoodAt
@@ -48,15 +47,13 @@ class Prediction:
     distance: tuple[float, int]
 
 
-def predictions(optimum: FitResult, decays: Sequence[FreeDecay]) -> tuple[Prediction, ...]:
+def predictions(optimum: FitResult) -> tuple[Prediction, ...]:
     """Predict each drop from all others.
 
     Parameters
     ----------
     summit
         Where the fit of all of them ended.
-    decays
-        What was fitted.
 
     Returns
     -------
@@ -75,7 +72,7 @@ def predictions(optimum: FitResult, decays: Sequence[FreeDecay]) -> tuple[Predic
     gradients, informations = problem.by_drop(point)
     fitted = point.evaluation.residual @ point.weights
     found = []
-    for position, (decay, own, of_own) in enumerate(zip(decays, gradients, informations, strict=True)):
+    for position, (decay, own, of_own) in enumerate(zip(optimum.decays, gradients, informations, strict=True)):
         slope = NormalEquations(information - of_own, gradient - own, free)
         move = slope.newton[0]
         move *= min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300))
@@ -110,8 +107,7 @@ def _alone(
     """Go to parameter values with one drop alone, and the initial state that explains it best there."""
     if isinstance(joint, LikelihoodAt):
         likelihood = joint.likelihood
-        models = dict(zip(likelihood.records.loads, likelihood.models, strict=True))
-        return Likelihood.of([decay], models, likelihood.sensors).at(values)
+        return likelihood.with_decays([decay]).at(values)
     moved = joint.moved(values, weights)
     place = SteppedLikelihoodAt(_of_one(moved.likelihood, position), values, moved.begin[[position]])
     settled = place.moved(values, weights)

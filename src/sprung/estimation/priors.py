@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, quantity
+from sprung.vehicle import PARAMETERS, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -122,7 +122,7 @@ class PriorsAndConstraints:
         if not names:
             return np.zeros(0), np.zeros((0, len(u)))
         values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
-        found = [quantity(name, self.coordinates.names, values) for name in names]
+        found = [evaluate_quantity(name, self.coordinates.names, values) for name in names]
         rows = np.array([gradient for _, gradient in found]) * slopes
         sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero
         return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
@@ -137,7 +137,7 @@ class PriorsAndConstraints:
 
     def change(self, name: str, u: Real, step: Real) -> float:
         """Give by how much a quantity changes with a step of the coordinates, to first order, SI."""
-        _, gradient = quantity(name, self.coordinates.names, self.coordinates.values(u))
+        _, gradient = evaluate_quantity(name, self.coordinates.names, self.coordinates.values(u))
         return float(gradient * self.coordinates.slopes(u) @ step)
 
     def bind(self, u: Real) -> Real:

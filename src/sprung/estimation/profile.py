@@ -19,7 +19,7 @@ from sprung.estimation.priors import PriorsAndConstraints
 from sprung.estimation.problem import CLOSE_BY, EstimationProblem, Iterate
 from sprung.estimation.statistics import FitStatistics
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue
-from sprung.vehicle import PARAMETERS, quantity
+from sprung.vehicle import PARAMETERS, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class Profile:
     @cached_property
     def value(self) -> float:
         """At the summit, SI."""
-        return quantity(self.name, self.fit.names, self.fit.values)[0]
+        return evaluate_quantity(self.name, self.fit.names, self.fit.values)[0]
 
     def interval(self) -> tuple[float | None, float | None]:
         """Give the 95 % interval, SI.
@@ -103,7 +103,7 @@ class Profile:
         priors, u, inflation = self.optimum.problem.priors, self.optimum.point.u, self.fit.inflation
 
         def weighed(name: str, known: KnownValue) -> KnownValue:
-            found, _ = quantity(name, self.fit.names, priors.coordinates.values(u))
+            found, _ = evaluate_quantity(name, self.fit.names, priors.coordinates.values(u))
             return KnownValue(found + (known.value - found) / inflation, known.std / inflation**0.5)
 
         statements = {
@@ -119,7 +119,7 @@ class Profile:
         with np.errstate(all="ignore"):  # out of all bounds it goes where nothing fulfils everything
             u = held.bind(near)
             values = held.coordinates.values(u)
-            found = [(quantity(name, self.fit.names, values)[0], one) for name, one in held.statements.items()]
+            found = [(evaluate_quantity(name, self.fit.names, values)[0], one) for name, one in held.statements.items()]
         if not all(abs(there - one.value) <= _FULFILLED * abs(one.value) for there, one in found if one.is_exact):
             return None
         return replace(self._climb, priors=held).maximise(u, enough=_ENOUGH, damping=CLOSE_BY)
@@ -134,7 +134,7 @@ class Profile:
     @cached_property
     def _direction(self) -> tuple[Real, float]:
         """Give where everything goes when the quantity moves by one, to first order, and its standard uncertainty."""
-        _, gradient = quantity(self.name, self.fit.names, self.fit.values)
+        _, gradient = evaluate_quantity(self.name, self.fit.names, self.fit.values)
         slope = gradient * self.fit.slopes / self._scale
         together = self.fit.relative_covariance @ slope
         variance = float(slope @ together)

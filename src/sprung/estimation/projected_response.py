@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from sprung.estimation.delays import SETTLED, STEPS, Delays
 from sprung.estimation.expm_likelihood import reach
 from sprung.estimation.records import RecordBatch
-from sprung.modal import gram, waves
+from sprung.vibration import exponential_gram, exponentials
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -79,7 +79,7 @@ class ExponentialSums:
         expected = run.expected + run.follows @ values if run.late.size else run.expected
         poles, right = poles[run.load], right[run.load]
         exponent = poles * run.step[:, None]
-        products = gram(exponent, run.samples, run.group)
+        products = exponential_gram(exponent, run.samples, run.group)
         return cls(run, values, expected, poles, shapes[run.load], reach_of(right), products, run.correlate(exponent))
 
     def solve(self, weights: Real) -> ProjectedResponse:
@@ -119,11 +119,11 @@ class ExponentialSums:
     def _delays(self, solved: ProjectedResponse, values: Real) -> Delays:
         weighted = self.shapes.conj() * solved.weights[:, None]
         m = solved.modes
-        gram, data = self.gram[:, :m, :m], self.data[:, :, :m]
+        exponential_gram, data = self.gram[:, :m, :m], self.data[:, :, :m]
         inverse, amplitudes = solved.inverse, solved.amplitudes
         run = self.run
         known = self.expected, run.expected_std, run.follows, run.late, run.flown, self.values
-        return Delays(values, *known, self.poles, self.shapes, weighted, gram, data, inverse, amplitudes)
+        return Delays(values, *known, self.poles, self.shapes, weighted, exponential_gram, data, inverse, amplitudes)
 
     def _solve(self, weights: Real) -> ProjectedResponse:
         w, group, m = self.run.present * weights, self.run.group, self.poles.shape[1]
@@ -320,7 +320,7 @@ class ProjectedResponse:
             upper = poles[load].imag >= 0
             twice = np.where(poles[load].imag > 0, 2.0, 1.0)[upper]
             # The real part of a product of complex numbers is that of pairs of real ones, one of them conjugated.
-            motion = waves(poles[load][upper] * step, int(run.samples[members].max())).view(float)
+            motion = exponentials(poles[load][upper] * step, int(run.samples[members].max())).view(float)
             for one, samples in zip(self._fitted[members][..., upper] * twice, run.samples[members], strict=True):
                 record = np.ascontiguousarray(one.conj()).view(float) @ motion[:samples].T
                 record -= record.mean(axis=1, keepdims=True)

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import LoggerClock
-from sprung.modal import BLOCK, blocks, correlate
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import separate_names
+from sprung.vehicle import separate_track_names
+from sprung.vibration import BLOCK_LENGTH, correlate_with_exponentials, split_into_blocks
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -45,7 +45,9 @@ class FlightInformation(NamedTuple):
         information = np.zeros((len(decays), len(names), len(names)))
         for i, flight in enumerate(decay.flight for decay in decays):
             if flight is not None:
-                own = np.array([[name in separate_names(one) for name in flight.names] for one in names], dtype=float)
+                own = np.array(
+                    [[name in separate_track_names(one) for name in flight.names] for one in names], dtype=float
+                )
                 at[i] = own @ flight.at / np.maximum(own.sum(axis=1), 1)
                 gradient[i], information[i] = own @ flight.gradient, own @ flight.information @ own.T
         return cls(at, gradient, information)
@@ -124,7 +126,7 @@ class RecordBatch:
         groups = {i: alike.index(kind[i]) for i in order}
         order = sorted(order, key=groups.__getitem__)
         samples = np.array([decays[i].samples for i in order])
-        cut = [blocks(decays[i].values, decays[i].usable) for i in order]
+        cut = [split_into_blocks(decays[i].values, decays[i].usable) for i in order]
         return cls(
             order=np.array(order),
             group=np.array([groups[i] for i in order]),
@@ -144,7 +146,7 @@ class RecordBatch:
     @cached_property
     def counts(self) -> Index:
         """How many blocks each record has, shape (record,)."""
-        return -(-self.samples // BLOCK)
+        return -(-self.samples // BLOCK_LENGTH)
 
     @cached_property
     def _first(self) -> Index:
@@ -179,7 +181,7 @@ class RecordBatch:
         long = own[2 * self.samples[own] >= self.samples[own].max()][:most].tolist()
         every = max(int(1 / (step * rate)), 1)
         samples = min(int(longest / step), int(self.samples[long].min()))
-        cut = [blocks(self.record(i)[:, :samples:every]) for i in long]
+        cut = [split_into_blocks(self.record(i)[:, :samples:every]) for i in long]
         return RecordBatch(
             order=self.order[long],
             group=np.zeros(len(long), dtype=np.int64),
@@ -226,7 +228,7 @@ class RecordBatch:
         upper = exponent.imag >= 0
         width = upper.sum(axis=1).max()
         chosen = np.take_along_axis(exponent, np.argsort(~upper, axis=1, kind="stable")[:, :width], axis=1)
-        half = correlate(self.blocked, self.counts, chosen, self.group, secular)
+        half = correlate_with_exponentials(self.blocked, self.counts, chosen, self.group, secular)
         of_pair = (np.cumsum(upper, axis=1) - 1)[self.group]
         whole = np.take_along_axis(half, of_pair[:, None, None], axis=-1)
         whole.imag *= np.where(upper, 1.0, -1.0)[self.group][:, None, None]
@@ -259,7 +261,7 @@ class Records:
         for i in sorted(range(len(decays)), key=lambda i: (decays[i].load, decays[i].rate)):
             loggers = tuple(clock.channels for clock in decays[i].clocks)
             runs = together.setdefault((*decays[i].usable, *channel_shares(decays[i]), loggers), [[]])
-            if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK:
+            if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK_LENGTH:
                 runs.append([])
             runs[-1].append(i)
         return cls(
@@ -294,4 +296,4 @@ def _loggers(decay: FreeDecay) -> Real:
 
 def _by_parameter(clock: LoggerClock, names: Sequence[str]) -> list[float]:
     """Give how a clock follows the parameters of a fit, which may share half-distances; shape (parameter,)."""
-    return [sum(clock.follows.get(own, 0.0) for own in separate_names(name)) for name in names]
+    return [sum(clock.follows.get(own, 0.0) for own in separate_track_names(name)) for name in names]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import Likelihood
 from sprung.estimation.projected_response import inverse_of, reach_of
 from sprung.estimation.solution import solve_modes
-from sprung.modal import gram
+from sprung.vibration import exponential_gram
 
 Real = NDArray[np.float64]
 
@@ -41,13 +41,13 @@ def rank_starts(likelihood: Likelihood, vehicles: Real, weights: Real) -> Real:
     )
     run = largest[0].sketch(largest[1], _RATE, _LONGEST, _MOST)
     energy = run.energy.sum(axis=0)
-    modes = solve_modes(likelihood.models[run.load[0]], likelihood.sensors, vehicles)
+    modes = solve_modes(likelihood.model_of[run.load[0]], likelihood.sensors, vehicles)
     exponent = modes.poles * run.step
     data = run.correlate(exponent.reshape(1, -1), secular=False)
     data = data.reshape(*data.shape[:2], *exponent.shape).transpose(2, 1, 3, 0)
 
     # All records are as long as each other: vehicles differ in their normal equations, drops do not.
-    products = gram(exponent, np.full(len(exponent), run.samples[0]), secular=False)
+    products = exponential_gram(exponent, np.full(len(exponent), run.samples[0]), secular=False)
     shapes, w = modes.shapes, run.present * weights
     weighted = np.swapaxes(shapes.conj(), 1, 2) * w
     inverse = inverse_of((weighted @ shapes) * products + reach_of(modes.right))

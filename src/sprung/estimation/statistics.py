@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -63,7 +63,9 @@ class FitStatistics:
         By how much coloured residuals, or drops that contradict each other, have enlarged the variances: a factor, 1
         where neither is significant.
     fitted
-        What the model makes of every record, its mean taken off; each of shape (channel, time).
+        Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop.
+    residuals
+        Measured minus modelled, centred, m/s²; the same, NaN for channels that are left out.
     contradictions
         For each known quantity by how many standard uncertainties the recordings and everything else that is known would
         rather have another value; not for quantities of which they say nothing.
@@ -91,6 +93,7 @@ class FitStatistics:
     residual: Real
     inflation: float
     fitted: tuple[Real, ...]
+    residuals: tuple[Real, ...]
     contradictions: Mapping[str, float]
     loglikelihood: float
     iterations: int
@@ -176,28 +179,23 @@ def fit_jointly(
     -------
     Fit
     """
-    return uncertainty_of(
-        escape_local_optimum(fit_linear(decays, models, sensors, known, start=start, starts=starts)), decays
-    )
+    return uncertainty_of(escape_local_optimum(fit_linear(decays, models, sensors, known, start=start, starts=starts)))
 
 
-def uncertainty_of(optimum: FitResult, decays: Sequence[FreeDecay]) -> FitStatistics:
-    """Say how sure the fit is.
+def uncertainty_of(optimum: FitResult) -> FitStatistics:
+    """Return the covariance of the estimates, and what it rests on.
 
     Parameters
     ----------
-    summit
-        Where it ended.
-    decays
-        What was fitted.
+    optimum
+        Where the fit ended.
 
     Returns
     -------
     Fit
     """
     problem, best, priors = optimum.problem, optimum.point, optimum.problem.priors
-    fitted = best.place.fitted(best.weights)
-    colours = _colours(optimum, fitted, decays)
+    colours = _colours(optimum)
     colour = float(colours.max())
     inflated = max(colour, optimum.disagreement)
     coloured = 1 < colour == inflated
@@ -215,7 +213,8 @@ def uncertainty_of(optimum: FitResult, decays: Sequence[FreeDecay]) -> FitStatis
         noise=optimum.noise,
         residual=best.evaluation.residual,
         inflation=inflated,
-        fitted=tuple(fitted),
+        fitted=optimum.fitted,
+        residuals=optimum.residuals,
         contradictions=problem.contradictions(best, inflated),
         loglikelihood=optimum.loglikelihood,
         iterations=optimum.steps,
@@ -227,55 +226,30 @@ def uncertainty_of(optimum: FitResult, decays: Sequence[FreeDecay]) -> FitStatis
     )
 
 
-def overdispersion_of(optimum: FitResult, decays: Sequence[FreeDecay]) -> float:
-    """Give by how much a fit's records tell less than white residuals of drops that agree would.
+def overdispersion_of(optimum: FitResult) -> float:
+    """Return the overdispersion of a fit: by how much less its records tell than white residuals of drops that agree would.
 
     Parameters
     ----------
-    summit
+    optimum
         Where the fit ended.
-    decays
-        What was fitted.
 
     Returns
     -------
     float
         Factor on every variance, dimensionless; 1 where neither is significant.
     """
-    fitted = optimum.point.place.fitted(optimum.point.weights)
-    return max(float(_colours(optimum, fitted, decays).max()), optimum.disagreement)
+    return max(float(_colours(optimum).max()), optimum.disagreement)
 
 
-def _colours(optimum: FitResult, fitted: Sequence[Real], decays: Sequence[FreeDecay]) -> Real:
-    """Give by how much the colour of residuals enlarges variances, by channel."""
+def _colours(optimum: FitResult) -> Real:
+    """Return by how much the autocorrelation of the residuals inflates variances, shape (channel,)."""
+    decays = optimum.decays
     # Samples that were interpolated are coloured, but counted for no more than those that were taken.
     there = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
     counted = optimum.problem.likelihood.observations.sum(axis=0) / np.maximum(there, 1)
     rates = [decay.rate for decay in decays]
-    return autocorrelation_inflation(
-        residual_records(fitted, decays), rates, counted=counted, least=optimum.problem.least_variance
-    )
-
-
-def residual_records(fitted: Sequence[Real], decays: Sequence[FreeDecay]) -> Iterator[Real]:
-    """Give measured minus fitted for every drop, one after the other.
-
-    Parameters
-    ----------
-    fitted
-        What the model makes of every record, its mean taken off; each of shape (channel, time), m/s².
-    decays
-        What was fitted.
-
-    Yields
-    ------
-    ndarray
-        Shape (channel, time), m/s²; NaN in channels that are left out.
-    """
-    for decay, record in zip(decays, fitted, strict=True):
-        left = decay.values - record
-        left -= left.mean(axis=1, keepdims=True)
-        yield left
+    return autocorrelation_inflation(optimum.residuals, rates, counted=counted, least=optimum.problem.least_variance)
 
 
 def _directions(optimum: FitResult, inflated: float) -> tuple[Real, Real]:

@@ -23,7 +23,7 @@ from sprung.errors import SprungError
 from sprung.estimation.closed_form import Likelihood
 from sprung.estimation.fit import FitResult
 from sprung.preprocess import DropObservation, FreeDecay, FromFlight
-from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, separated
+from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def synchronise_at_release(
     """
     if seen.release is None:
         return decay
-    parameters, height = separated(vehicle.parameters), drop.height or _LOW
+    parameters, height = with_separate_tracks(vehicle.parameters), drop.height or _LOW
     try:
         fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
         flight, slopes = _flights(parameters, drop, height, load, sensors, vehicle.heights)
@@ -278,8 +278,7 @@ def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tup
     """
     likelihood = optimum.problem.likelihood
     assert isinstance(likelihood, Likelihood)  # noqa: S101 (several loggers are not stepped; for the type checker)
-    models = dict(zip(likelihood.records.loads, likelihood.models, strict=True))
-    place = Likelihood.of(decays, models, likelihood.sensors).at(optimum.values)
+    place = likelihood.with_decays(decays).at(optimum.values)
     untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.std > _UNTOLD}
     timed = list(decays)
     shifts = np.arange(-_FARTHEST, _FARTHEST + _COARSE, _COARSE)

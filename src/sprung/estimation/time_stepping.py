@@ -36,6 +36,12 @@ class SteppedLikelihood:
 
     Attributes
     ----------
+    decays
+        What is fitted.
+    by_load
+        Equations of motion by load name.
+    longest
+        s of a step at most.
     models
         Equations of motion of each kind of step: a load and a rate.
     times
@@ -59,6 +65,9 @@ class SteppedLikelihood:
         load, as everywhere in the fit; shape (drop, state + memory).
     """
 
+    decays: Sequence[FreeDecay]
+    by_load: Mapping[str, NonlinearModel]
+    longest: float
     models: tuple[NonlinearModel, ...]
     times: tuple[float, ...]
     sensors: Rows
@@ -109,6 +118,9 @@ class SteppedLikelihood:
         given = min(begin.shape[1], states.shape[1])
         begin[:, :given] = states[:, :given]
         return cls(
+            decays=decays,
+            by_load=models,
+            longest=longest,
             models=tuple(models[load] for load, _ in kinds),
             times=tuple(1.0 / (rate * every) for _, rate in kinds),
             sensors=sensors,
@@ -143,6 +155,12 @@ class SteppedLikelihood:
         """How far from rest a decay may begin, in standard deviations; shape (state + memory,)."""
         state = self.models[0].state
         return np.concatenate([reach(state), np.full(self.begin.shape[1] - state, _MEMORY)])
+
+    def with_decays(self, decays: Sequence[FreeDecay]) -> SteppedLikelihood:
+        """Return the likelihood of other decays, their initial states being those of the vehicle without nonlinear forces."""
+        one = next(iter(self.by_load.values()))
+        begin = np.zeros((len(decays), one.state + len(one.forces.remembering)))
+        return SteppedLikelihood.of(decays, self.by_load, self.sensors, begin, bool(self.tilting), self.longest)
 
     def beginning(self, states: Real) -> SteppedLikelihood:
         """Give the same with other initial states and memories to start from, shape (drop, state + memory)."""

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from sprung.campaign import Campaign
-from sprung.estimation import FaultScore, FitResult, autocorrelation_inflation, corrections, residual_records, score_faults
+from sprung.estimation import FaultScore, FitResult, autocorrelation_inflation, corrections, score_faults
 from sprung.faults.high_pass import NEGLIGIBLE as NEGLIGIBLE_CORNER
 from sprung.faults.high_pass import CornerScores, score_corners
 from sprung.faults.residual_table import reference_noise, residual_table
@@ -18,7 +18,7 @@ Consistency = Literal["consistent", "inconsistent", "misfit"]
 """The fit agrees with the recordings; a fault of small size would improve it significantly; it does not describe them."""
 
 SIGNIFICANT = 25.0
-"""Gain in twice the log-likelihood, in units of the overdispersion, from which chance is no explanation: five standard errors."""
+"""Gain in twice the log-likelihood, in units of the overdispersion, beyond chance: five standard errors."""
 
 SHARE = 0.5
 """Share of a misfit that a hypothesis has to explain."""
@@ -78,8 +78,7 @@ def score_faults_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitRes
 
 def residual_autocorrelation(decays: Sequence[FreeDecay], fit: FitResult) -> float:
     """Return the largest factor by which autocorrelation of the residuals enlarges the variance of their mean."""
-    residuals = residual_records(fit.point.place.fitted(fit.point.weights), decays)
-    return float(autocorrelation_inflation(residuals, [decay.rate for decay in decays]).max())
+    return float(autocorrelation_inflation(fit.residuals, [decay.rate for decay in decays]).max())
 
 
 def _scores(
@@ -87,7 +86,10 @@ def _scores(
 ) -> tuple[tuple[FaultScore, ...], CornerScores | None]:
     """Return the scores of all faults, and those of all corners together."""
     loads = {load.name: load for load in campaign.loads}
-    scores, corners = score_faults(fit, campaign.sensors, loads, campaign.heights), score_corners(decays, fit, campaign.sensors)
+    scores, corners = (
+        score_faults(fit, campaign.sensors, loads, campaign.heights),
+        score_corners(decays, fit, campaign.sensors),
+    )
     return (scores if corners is None else (*scores, *corners.single())), corners
 
 

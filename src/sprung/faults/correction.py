@@ -59,8 +59,8 @@ class Correction:
     def of_campaign(self, campaign: Campaign) -> Campaign:
         """Return the corrected campaign."""
         if self.samples is not None:
-            recordings = (self._of_recording(recording) for recording in campaign.recordings)
-            campaign = replace(campaign, recordings=tuple(recordings))
+            drops = (replace(drop, recording=self._of_recording(drop.recording)) for drop in campaign.drops)
+            campaign = replace(campaign, drops=tuple(drops))
         return self.description(campaign)
 
     def of_decays(self, campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
@@ -73,10 +73,7 @@ class Correction:
         decays
             Before the correction.
         """
-        loads = {
-            recording.name: drop.load
-            for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-        }
+        loads = {drop.recording.name: drop.load for drop in campaign.drops}
         kept = (replace(decay, load=loads[decay.file]) for decay in decays if decay.file in loads)
         corrected = tuple(self._of_decay(decay) for decay in kept)
         return tuple(decay for decay in corrected if decay.usable.any())
@@ -182,8 +179,9 @@ def exchange_channels(first: int, second: int) -> Correction:
 
     def exchanged(campaign: Campaign) -> Campaign:
         sensors = list(campaign.sensors)
-        sensors[first], sensors[second] = _placed_like(sensors[first], sensors[second]), _placed_like(
-            sensors[second], sensors[first]
+        sensors[first], sensors[second] = (
+            _placed_like(sensors[first], sensors[second]),
+            _placed_like(sensors[second], sensors[first]),
         )
         return replace(campaign, sensors=tuple(sensors))
 
@@ -228,10 +226,7 @@ def relabel_loads(loads: Mapping[str, str]) -> Correction:
     """State other loads for some drops, by the names of their recordings."""
 
     def relabelled(campaign: Campaign) -> Campaign:
-        drops = (
-            replace(drop, load=loads.get(recording.name, drop.load))
-            for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-        )
+        drops = (replace(drop, load=loads.get(drop.recording.name, drop.load)) for drop in campaign.drops)
         return replace(campaign, drops=tuple(drops))
 
     return Correction(description=relabelled)
@@ -256,13 +251,7 @@ def exclude_drops(*recordings: str) -> Correction:
     """Leave drops out, by the names of their recordings."""
 
     def excluded(campaign: Campaign) -> Campaign:
-        kept = [
-            (drop, recording)
-            for drop, recording in zip(campaign.drops, campaign.recordings, strict=True)
-            if recording.name not in recordings
-        ]
-        drops, remaining = (drop for drop, _ in kept), (recording for _, recording in kept)
-        return replace(campaign, drops=tuple(drops), recordings=tuple(remaining))
+        return replace(campaign, drops=tuple(drop for drop in campaign.drops if drop.recording.name not in recordings))
 
     return Correction(description=excluded)
 

@@ -10,7 +10,7 @@ from scipy.fft import dct
 from scipy.stats import f as fisher
 
 from sprung.errors import Fault
-from sprung.estimation import FitResult, residual_records
+from sprung.estimation import FitResult
 from sprung.faults.residual_table import reference_noise, residual_table
 from sprung.preprocess import FreeDecay, rounding
 from sprung.vehicle import Sensor
@@ -52,7 +52,9 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
     The power of the slowest half periods of the residuals (by a cosine transform, in which white noise is spread evenly) over
     that of those between the body's modes and the wheels' follows Fisher's distribution in noise that has no drift.
     """
-    if not residual_table([decay.file for decay in decays], decays, optimum).is_explained(reference_noise(decays, optimum)):
+    if not residual_table([decay.file for decay in decays], decays, optimum).is_explained(
+        reference_noise(decays, optimum)
+    ):
         return ()
     slow, fast = slowness(decays, optimum)
     fast = np.maximum(fast, rounding(decays))
@@ -72,9 +74,8 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
 
 def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Real]:
     """Give the mean power, (m/s²)², of what is left: its slowest half periods, and faster ones; shape (channel,) each."""
-    point = optimum.point
     slow = fast = drops = np.zeros(len(decays[0].values))
-    for record in residual_records(point.place.fitted(point.weights), decays):
+    for record in optimum.residuals:
         power = np.nan_to_num(dct(record, norm="ortho")[:, 1 : _LAST + 1]) ** 2
         slow, fast = slow + power[:, :_SLOWEST].mean(axis=1), fast + power[:, _FIRST:].mean(axis=1)
         drops = drops + ~np.isnan(record[:, 0])

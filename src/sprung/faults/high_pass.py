@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FaultScore, FitResult, Likelihood, LikelihoodAt, identifiable_subspace, residual_records
 from sprung.errors import Fault
+from sprung.estimation import FaultScore, FitResult, LikelihoodAt, identifiable_subspace
 from sprung.preprocess import FreeDecay, by_corner
 from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import Sensor
@@ -158,18 +158,17 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
     if not open_:
         return None
     weights, likelihood = point.weights, place.likelihood
-    models = dict(zip(likelihood.records.loads, likelihood.models, strict=True))
-    fitted = place.fitted(weights)
-    left = list(residual_records(fitted, decays))
+    left = optimum.residuals
     across = np.zeros((len(optimum.names), len(open_)))
     scores, alone = np.zeros((len(decays), len(open_))), np.zeros((len(decays), len(open_), len(open_)))
     for i, channel in enumerate(open_):
         changed = [_changed(decay, change, channel) for decay, change in zip(decays, changes, strict=True)]
-        there = Likelihood.of(changed, models, likelihood.sensors).at(place.values)
+        there = likelihood.with_decays(changed).at(place.values)
         across[:, i] = there.evaluate(weights).gradient - point.evaluation.gradient
-        moved = residual_records(there.fitted(weights), changed)
-        for drop, (one, other, change) in enumerate(zip(left, moved, changes, strict=True)):
-            grown = np.nan_to_num(other - one)
+        moved = zip(changed, there.fitted(weights), strict=True)
+        for drop, (one, (decay, record), change) in enumerate(zip(left, moved, changes, strict=True)):
+            other = decay.values - record
+            grown = np.nan_to_num(other - other.mean(axis=1, keepdims=True) - one)
             alone[drop, i] = weights[open_] * np.einsum("ct,ct->c", grown[open_], change[open_])
             scores[drop, i] = -weights[channel] * np.nan_to_num(one[channel]) @ change[channel]
     system, own, free = problem.system(point)

@@ -19,7 +19,7 @@ from sprung.faults.campaign import (
 from sprung.faults.channel_deletion import ChannelDeletion
 from sprung.faults.consistency import SHARE, SIGNIFICANT
 from sprung.faults.correction import Correction, exclude_drops, mask_channel
-from sprung.faults.drop import DROP_HYPOTHESES, DropDeletion
+from sprung.faults.drop import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
 from sprung.faults.isolation import FaultIsolation
 from sprung.progress import Progress, Step, silent
@@ -144,9 +144,10 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
     for hypothesis in promising[:_MOST_STATEMENTS]:
         other, _ = hypothesis.confirm(isolation)
         gain = 0.0 if other is None else base.table.cost - other.table.cost
-        if other is not None and other.candidate.misfit <= _STATEMENT * base.misfit:
-            if gain > SIGNIFICANT * other.candidate.overdispersion:
-                confirmed.append(other)
+        if other is None or other.candidate.misfit > _STATEMENT * base.misfit:
+            continue
+        if gain > SIGNIFICANT * other.candidate.overdispersion:
+            confirmed.append(other)
     confirmed.sort(key=lambda hypothesis: hypothesis.score())
     alike = SIGNIFICANT * confirmed[0].candidate.overdispersion if confirmed else 0.0
     is_ambiguous = len(confirmed) > 1 and confirmed[1].score() - confirmed[0].score() < alike
@@ -165,7 +166,7 @@ def _of_parts(isolation: FaultIsolation, progress: Progress) -> tuple[list[Hypot
         parts.append((table.cost - deletion.limit.cost, deletion, correction))
     for drop in drops if len(drops) > 1 else ():
         correction = exclude_drops(isolation.recordings[drop])
-        without = DropDeletion(isolation, drop, isolation.step(correction, start))
+        without = DropDeletion(isolation, drop, isolation.step(correction, start), DROP_HYPOTHESES)
         parts.append((table.cost - without.limit.cost, without, correction))
     parts.sort(key=lambda part: part[0], reverse=True)
     largest = parts[0][0] if parts else 0.0

@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
-from sprung.estimation import NEAR, FitResult, Likelihood, fit_linear, overdispersion_of, residual_records
+from sprung.estimation import NEAR, FitResult, fit_linear, overdispersion_of
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection import choose_model
-from sprung.vehicle import LinearModel, Rows, Tracks
+from sprung.selection import choose_structure
+from sprung.vehicle import LinearModel, Tracks
 
 Real = NDArray[np.float64]
 
@@ -70,7 +70,7 @@ class CandidateFit:
     def drifting(self) -> NDArray[np.bool_]:
         """Of which channels the residual is a drift: means over half a second keep most of it; shape (channel,)."""
         kept = energy = np.zeros(len(self.campaign.sensors))
-        for record, decay in zip(residuals_of(self.fit, self.decays), self.decays, strict=True):
+        for record, decay in zip(self.fit.residuals, self.decays, strict=True):
             length = max(int(_DRIFT_SPAN * decay.rate), 1)
             count = decay.samples // length
             batches = np.nan_to_num(record[:, : count * length]).reshape(len(record), count, length)
@@ -82,19 +82,15 @@ class CandidateFit:
     @cached_property
     def overdispersion(self) -> float:
         """By how much the variances exceed those of white residuals of drops that agree."""
-        return overdispersion_of(self.fit, self.decays)
+        return overdispersion_of(self.fit)
 
     def residual_sums_of(self, decays: Sequence[FreeDecay]) -> Real:
         """Return the residual sums of squares of other decays, whatever their states; shape (decay, channel)."""
-        return self._likelihood_of(decays).misfit(self.fit.point.weights)[0]
+        return self.fit.residual_sums_of(decays)
 
     def states_of(self, decays: Sequence[FreeDecay]) -> Real:
         """Return {X, Ẋ} at the start of other decays, SI, shape (decay, state)."""
-        return self._likelihood_of(decays).states(self.fit.point.weights)
-
-    def _likelihood_of(self, decays: Sequence[FreeDecay]):  # type: ignore[no-untyped-def]
-        rows = Rows.of([sensor.row for sensor in self.campaign.sensors], self.fit.names)
-        return Likelihood.of(decays, self.models, rows).at(self.fit.values)
+        return self.fit.states_of(decays)
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,15 +116,22 @@ class FaultIsolation:
 
     @classmethod
     def of(
-        cls, campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResult | None, tracks: Tracks, extras: tuple[str, ...]
+        cls,
+        campaign: Campaign,
+        decays: Sequence[FreeDecay],
+        fit: FitResult | None,
+        tracks: Tracks,
+        extras: tuple[str, ...],
     ) -> FaultIsolation:
         """Take up a campaign, its decays and their fit; without a fit they are fitted."""
         recordings = tuple(decay.file for decay in decays)
-        structure = choose_model(campaign, tracks, extras)
+        structure = choose_structure(campaign, tracks, extras)
         if fit is None:
-            fit = fit_linear(decays, structure.models, campaign.sensors, structure.known, starts=_STARTS, enough=NEAR)
+            fit = fit_linear(
+                decays, structure.linear_models, campaign.sensors, structure.known, starts=_STARTS, enough=NEAR
+            )
         table, noise = residual_table(recordings, decays, fit), reference_noise(decays, fit)
-        base = CandidateFit(campaign, tuple(decays), structure.models, fit, table, noise)
+        base = CandidateFit(campaign, tuple(decays), structure.linear_models, fit, table, noise)
         return cls(base, recordings, tracks, extras)
 
     @property
@@ -172,10 +175,10 @@ class FaultIsolation:
     def _fit(self, correction: Correction, start: FitResult | None, enough: float) -> CandidateFit:
         campaign = correction.of_campaign(self.campaign)
         decays = correction.of_decays(campaign, self.decays)
-        structure = choose_model(campaign, self.tracks, self.extras)
+        structure = choose_structure(campaign, self.tracks, self.extras)
         fit = fit_linear(
             decays,
-            structure.models,
+            structure.linear_models,
             campaign.sensors,
             structure.known,
             start=None if start is None else start.parameters,
@@ -185,12 +188,7 @@ class FaultIsolation:
         untouched = correction.samples is None and not correction.corners
         noise = self.noise if untouched else reference_noise(decays, fit)
         table = residual_table(self.recordings, decays, fit)
-        return CandidateFit(campaign, decays, structure.models, fit, table, noise)
-
-
-def residuals_of(fit: FitResult, decays: Sequence[FreeDecay]) -> Sequence[Real]:
-    """Return the residuals of a fit, one record of shape (channel, time) for each decay."""
-    return list(residual_records(fit.point.place.fitted(fit.point.weights), decays))
+        return CandidateFit(campaign, decays, structure.linear_models, fit, table, noise)
 
 
 def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:

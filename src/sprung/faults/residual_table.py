@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.assessment import moments, sensor_noise
-from sprung.estimation import FitResult, residual_records
+from sprung.estimation import FitResult
 from sprung.preprocess import FreeDecay
 
 Real = NDArray[np.float64]
@@ -103,7 +103,7 @@ class ResidualTable:
 
 def residual_table(recordings: Sequence[str], decays: Sequence[FreeDecay], optimum: FitResult) -> ResidualTable:
     """Return the residuals of a fit; the rows are those of `recordings`, whether they were fitted or not."""
-    left = optimum.point.evaluation.residual
+    left = optimum.residual_sums
     residual, counts = np.zeros((len(recordings), left.shape[1])), np.zeros((len(recordings), left.shape[1]))
     for decay, of_decay in zip(decays, left, strict=True):
         row = recordings.index(decay.file)
@@ -119,11 +119,12 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
-    point = optimum.point
-    left = residual_records(point.place.fitted(point.weights), decays)
+    left = optimum.residuals
     noise = sensor_noise(decays, moments(left))
     few = noise.samples < _FEW
-    second_difference = np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
+    second_difference = (
+        np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
+    )
     level = np.sqrt(np.where(few, second_difference, noise.variance) + noise.added)
     level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)
     return ReferenceNoise(level, np.where(few, 1.0, noise.per_independent), np.maximum(noise.samples, _FEW))

@@ -16,10 +16,10 @@ from sprung.display import shown
 from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
 from sprung.modal.likelihood import Poles
-from sprung.modal.modes import Mode
 from sprung.modal.records import as_records
 from sprung.modal.refinement import climb
 from sprung.modal.uncertainty import bound_alone
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ _LEAST, _MOST = -0.1, 1.0
 
 @shown
 @dataclass(frozen=True, eq=False)
-class ModeTrace:
+class AmplitudeDependence:
     """One mode through the decays of one or several records; all arrays of shape (window,), the largest amplitude first.
 
     Attributes
@@ -75,7 +75,9 @@ class ModeTrace:
         return _trend(self.amplitude, self.damping_ratio, self.damping_ratio_std)
 
 
-def follow_modes(records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]) -> tuple[ModeTrace, ...]:
+def amplitude_dependence(
+    records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]
+) -> tuple[AmplitudeDependence, ...]:
     """Fit each mode anew in one window after the other of every record.
 
     In each window the pole of one mode is free, those of the others and all shapes are as identified; amplitudes of all modes
@@ -105,7 +107,7 @@ def follow_modes(records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode
             rows = [row for record in arrays for row in _windows(record, rate, poles, which)]
             table = np.array(sorted(rows, key=lambda row: -row[0])).reshape(-1, 5)
             if len(table) > 1:
-                found.append(ModeTrace(mode, *np.ascontiguousarray(table.T)))
+                found.append(AmplitudeDependence(mode, *np.ascontiguousarray(table.T)))
     return tuple(found)
 
 
@@ -120,7 +122,7 @@ def _windows(record: Real, rate: float, poles: Poles, which: int) -> list[tuple[
         stand = climb(decays, poles, only=which)
         lost = decays.numbers / max(decays.numbers - stand.parameters / decays.channels, 1.0)
         spread = bound_alone(stand.weighted(1 / (stand.variance * lost)), which)
-        own = Mode(complex(stand.poles.exponent[which] * rate), stand.poles.shapes[:, which], spread=spread)
+        own = Mode(complex(stand.poles.exponent[which] * rate), stand.poles.shapes[:, which], uncertainty=spread)
         frequency_std, ratio_std = own.frequency_std or 0.0, own.damping_ratio_std or 0.0
         aliased = own.damped_frequency > NEAR_NYQUIST * rate / 2
         if aliased or frequency_std * length / rate > _SURE or not _LEAST < own.damping_ratio < _MOST:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import Modes
+from sprung.modal.identified import ModeSet
 from sprung.modal.selection import Task
 from sprung.modal.subspace import recurring
 
@@ -18,7 +18,7 @@ _MORE = 2
 """Times the lags that the order asks for: the ones too many take up noise."""
 
 
-def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify modes as poles of a vector autoregressive moving-average process.
 
     A sum of decays satisfies X(k) = Σ Aᵢ X(k - i); white noise on it makes the right side a moving average of the same length.

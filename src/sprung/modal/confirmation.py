@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import InputError
-from sprung.modal.identified import Modes, Rejected
+from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.methods import identify_modes
-from sprung.modal.modes import Mode
-from sprung.modal.stabilisation import Diagram, stabilisation_diagram
+from sprung.modal.stabilisation import StabilisationDiagram, stabilisation_diagram
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
@@ -23,7 +23,9 @@ _LATER = 0.5
 """Time constants of its decay by which the records begin later for a mode to be found again."""
 
 
-def confirmed(found: Modes, records: Sequence[ArrayLike], rate: float, diagram: Diagram | None = None) -> Modes:
+def confirm_modes(
+    found: ModeSet, records: Sequence[ArrayLike], rate: float, diagram: StabilisationDiagram | None = None
+) -> ModeSet:
     """Keep the modes that the records confirm.
 
     A free decay holds the same modes wherever it begins, and a model of any order that is high enough shows them. What a
@@ -65,8 +67,8 @@ def confirmed(found: Modes, records: Sequence[ArrayLike], rate: float, diagram: 
             said = (
                 f"it is neither at most orders of the stabilisation diagram nor found again {skip / rate:.3g} s later"
             )
-            rejected.append(Rejected(mode.pole, said))
-    return Modes(tuple(kept), (*found.rejected, *rejected), found.method)
+            rejected.append(RejectedPole(mode.pole, said))
+    return ModeSet(tuple(kept), (*found.rejected, *rejected), found.method)
 
 
 def _found_again(records: Sequence[Real], rate: float, method: str) -> tuple[Mode, ...]:

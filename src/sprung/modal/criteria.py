@@ -9,7 +9,7 @@ NEAR_NYQUIST = 0.9
 """Part of half the sampling rate above which no mode is reported: there logger filters end, and noise and aliases alternate."""
 
 
-def complexity(shape: ArrayLike) -> float:
+def modal_phase_collinearity(shape: ArrayLike) -> float:
     """Give the modal phase collinearity of a shape: 1 where all channels move in phase or in opposition, 0 at the least.
 
     Parameters

@@ -10,7 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.spectrum import Spectrum
-from sprung.modal.sums import BLOCK, blocks, correlate, gram, waves
+from sprung.vibration import (
+    BLOCK_LENGTH,
+    correlate_with_exponentials,
+    exponential_gram,
+    exponentials,
+    split_into_blocks,
+)
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -32,7 +38,7 @@ class Decays:
     energy
         Sum of squares of each channel, shape (record, channel).
     blocked
-        The records cut into blocks for `correlate`, one after the other.
+        The records cut into blocks for `correlate_with_exponentials`, one after the other.
     """
 
     values: tuple[Real, ...]
@@ -50,7 +56,7 @@ class Decays:
             rate=rate,
             samples=np.array([record.shape[1] for record in records]),
             energy=np.array([np.einsum("ct,ct->c", record, record) for record in values]),
-            blocked=np.concatenate([blocks(record) for record in records]),
+            blocked=np.concatenate([split_into_blocks(record) for record in records]),
         )
 
     @cached_property
@@ -81,17 +87,17 @@ class Decays:
     def gram(self, exponent: Complex) -> Complex:
         """Give the inner products of (e^{λk}, k e^{λk}) with each other, λ per sample; shape (record, 2 pole, 2 pole)."""
         lengths, which = np.unique(self.samples, return_inverse=True)
-        return gram(exponent[None], lengths, np.zeros(len(lengths), dtype=np.int64))[which]
+        return exponential_gram(exponent[None], lengths, np.zeros(len(lengths), dtype=np.int64))[which]
 
     def correlate(self, exponent: Complex) -> Complex:
         """Give the inner products of (e^{λk}, k e^{λk}) with the records, shape (record, channel, 2 pole)."""
-        counts, group = -(-self.samples // BLOCK), np.zeros(self.count, dtype=np.int64)
-        products = correlate(self.blocked, counts, exponent[None], group)
+        counts, group = -(-self.samples // BLOCK_LENGTH), np.zeros(self.count, dtype=np.int64)
+        products = correlate_with_exponentials(self.blocked, counts, exponent[None], group)
         return products.reshape(*products.shape[:2], -1)
 
     def less(self, exponent: Complex, coefficients: Complex) -> tuple[Real, ...]:
         """Take a motion off the records: coefficients of e^{λk}, shape (record, channel, pole), conjugates included."""
-        motion = waves(exponent, int(self.samples.max()))
+        motion = exponentials(exponent, int(self.samples.max()))
         motion = np.ascontiguousarray(motion.conj()).view(float)
         left = []
         for values, own, count in zip(self.values, coefficients, self.samples, strict=True):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import hilbert
 
-from sprung.modal.identified import Modes, Rejected
+from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.residues import shapes_of
 from sprung.modal.selection import Task
 
@@ -34,7 +34,7 @@ _ALIKE = 0.2
 """Part of a frequency within which motions are taken for the same mode."""
 
 
-def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Take intrinsic motions of each channel for modes: phase and amplitude of their analytic signals against time.
 
     Not exact, not even without noise: sifting separates motions that are more than an octave apart and last for several
@@ -88,7 +88,7 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
     kept = [pole for pole, weight in zip(poles, weights, strict=True) if weight > 1e-3 * max(weights)]
     kept = kept[: len(kept) if order is None else max(order // 2, 1)]
     rejected = tuple(
-        Rejected(
+        RejectedPole(
             pole * rate / every,
             "its motion is too weak beside the others, or was not asked for",
         )
@@ -96,9 +96,9 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
         if pole not in kept
     )
     if not kept:
-        return Modes((), rejected, "emd")
+        return ModeSet((), rejected, "emd")
     modes = task.modes(shapes_of(task.thinned, np.array([pole / every for pole in kept], dtype=complex)))
-    return Modes(modes.modes, (*rejected, *modes.rejected), "emd")
+    return ModeSet(modes.modes, (*rejected, *modes.rejected), "emd")
 
 
 def _intrinsic(values: Real) -> Iterator[Real]:

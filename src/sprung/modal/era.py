@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import Modes
+from sprung.modal.identified import ModeSet
 from sprung.modal.selection import Task
 
 
-def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify the modes common to several free decays.
 
     The records of all drops, delayed by 0, 1, 2, ... lags, are stacked into block Hankel matrices side by side. The

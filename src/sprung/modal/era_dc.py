@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import Modes
+from sprung.modal.identified import ModeSet
 from sprung.modal.selection import Task
 from sprung.modal.subspace import realised
 
@@ -18,7 +18,7 @@ _OWN = 2
 """Block rows that are correlated with each other: the rest of the delays go into the correlations."""
 
 
-def realisation_by_correlations(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def realisation_by_correlations(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify the modes common to several free decays from the correlations of their block Hankel matrices.
 
     R(j) = H(j) H(0)ᵀ, with H(j) some block rows of all records delayed by j lags, is a decay itself, of the same poles. The

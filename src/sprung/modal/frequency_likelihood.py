@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.modal.decays import Decays
-from sprung.modal.identified import Modes
-from sprung.modal.modes import Mode, in_order
+from sprung.modal.identified import ModeSet
 from sprung.modal.refinement import climb
 from sprung.modal.selection import Task, refuse_without_decay
-from sprung.modal.sums import moments
 from sprung.modal.uncertainty import bounds
+from sprung.vibration import Mode, exponential_moments, sort_modes
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -24,7 +23,7 @@ _WIDER = 1.5
 """Times the highest frequency of the motion up to which lines are used."""
 
 
-def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify modes as those that make the lines of a band likeliest.
 
     The transform of each whole record, on the lines of the discrete Fourier transform up to a little above the motion, is
@@ -59,7 +58,9 @@ def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | 
     lost = lines.numbers / max(lines.numbers - stand.parameters / lines.channels, 1.0)
     spread = bounds(stand.weighted(1 / (stand.variance * lost)))
     found = zip(stand.poles.exponent * rate, stand.poles.shapes.T, spread, strict=True)
-    return Modes(in_order([Mode(complex(pole), shape, spread=own) for pole, shape, own in found]), (), "ml-frequency")
+    return ModeSet(
+        sort_modes([Mode(complex(pole), shape, uncertainty=own) for pole, shape, own in found]), (), "ml-frequency"
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +113,6 @@ class Lines(Decays):
         for angles, count in zip(self.angles, self.samples.tolist(), strict=True):
             apart = (exponent[:, None] - 1j * angles)[None]
             last = np.repeat(np.exp(exponent * count)[None, :, None], len(angles), axis=2)
-            both = moments(apart, np.zeros(1, dtype=np.int64), last, np.full((1, 1, 1), count), powers=2)
+            both = exponential_moments(apart, np.zeros(1, dtype=np.int64), last, np.full((1, 1, 1), count), powers=2)
             found.append(np.concatenate([part[0] for part in both]) / np.sqrt(count))
         return found

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.modal.modes import Mode
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Rejected:
+class RejectedPole:
     """A pole that was met and is none of the modes.
 
     Attributes
@@ -34,7 +34,7 @@ class Rejected:
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Modes(Sequence[Mode]):
+class ModeSet(Sequence[Mode]):
     """Modes common to several free decays, a sequence in the order of undamped natural frequency.
 
     Attributes
@@ -48,7 +48,7 @@ class Modes(Sequence[Mode]):
     """
 
     modes: tuple[Mode, ...]
-    rejected: tuple[Rejected, ...] = ()
+    rejected: tuple[RejectedPole, ...] = ()
     method: str = ""
 
     @overload

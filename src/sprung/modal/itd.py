@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.identified import Modes
+from sprung.modal.identified import ModeSet
 from sprung.modal.selection import Task
 from sprung.modal.subspace import recurring
 
@@ -26,7 +26,7 @@ class _States(NamedTuple):
     seen: Real
 
 
-def state_variables_in_rows(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def state_variables_in_rows(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify modes by the paper's recursion, eqs. (5) to (11), with a longer lag and as many block rows as the records allow.
 
     The state {X(k), X(k + 1)} of eq. (6) gets further delayed samples, half a period of the slowest motion in all, and its
@@ -54,7 +54,7 @@ def state_variables_in_rows(records: Sequence[ArrayLike], rate: float, order: in
     return task.modes(recurring(np.asarray(transition, dtype=float), states.seen, task.thinned))
 
 
-def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify modes by Ibrahim's time domain method with double least squares.
 
     The transition matrix is the mean of the two least squares solutions Φ̄Φᵀ(ΦΦᵀ)⁻¹ and Φ̄Φ̄ᵀ(ΦΦ̄ᵀ)⁻¹: white noise makes the

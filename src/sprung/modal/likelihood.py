@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
-from sprung.modal.modes import EQUAL
 from sprung.modal.spectrum import Spectrum
+from sprung.vibration import EQUAL_ENTRIES
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -55,7 +55,7 @@ class Poles:
     def of(cls, exponent: Complex, shapes: Complex) -> Poles:
         """Scale shapes to a largest entry of 1; those of real poles become real."""
         sizes = np.abs(shapes)
-        held = np.argmax(sizes >= (1 - EQUAL) * sizes.max(axis=0), axis=0)
+        held = np.argmax(sizes >= (1 - EQUAL_ENTRIES) * sizes.max(axis=0), axis=0)
         scaled = shapes / shapes[held, np.arange(len(held))]
         real = exponent.imag == 0
         return cls(exponent, np.where(real, scaled.real, scaled).astype(np.complex128), held)

@@ -10,20 +10,20 @@ from numpy.typing import ArrayLike
 
 from sprung.errors import Problems
 from sprung.modal.decays import Decays
-from sprung.modal.identified import Modes, Rejected
+from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.likelihood import Poles, Stand
 from sprung.modal.modelling import agreement, model_by_data, model_of_order
-from sprung.modal.modes import Mode, in_order
 from sprung.modal.records import as_records
 from sprung.modal.selection import refuse_without_decay
 from sprung.modal.subspace import Span
 from sprung.modal.uncertainty import bounds, spreads
+from sprung.vibration import Mode, sort_modes
 
 _GROWS = 2.0
 """Standard uncertainties by which a motion must grow for it to be none of a free decay."""
 
 
-def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify the modes common to several free decays, with their uncertainty.
 
     Every record is a sum of the same modes, y_d = Re Σ_k φ_k q_dk e^{λ_k t} + offset_d, with white noise of its own variance
@@ -76,10 +76,10 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
     for pole, shape, own in zip(stand.poles.exponent * rate, shapes, spread, strict=True):
         growth, unsure = float(pole.real), float(np.sqrt(own.pole[0, 0]))
         if growth > _GROWS * unsure:
-            rejected.append(Rejected(complex(pole), f"it grows, by {growth:.3g} ± {unsure:.2g} 1/s"))
+            rejected.append(RejectedPole(complex(pole), f"it grows, by {growth:.3g} ± {unsure:.2g} 1/s"))
         else:
-            found.append(Mode(complex(pole), shape, spread=own))
-    return Modes(in_order(found), tuple(rejected), "ml")
+            found.append(Mode(complex(pole), shape, uncertainty=own))
+    return ModeSet(sort_modes(found), tuple(rejected), "ml")
 
 
 def cramer_rao_bound(
@@ -101,10 +101,10 @@ def cramer_rao_bound(
     Returns
     -------
     tuple of Mode
-        The same, with the bound as their spread; amplitudes and offsets of every record are unknown.
+        The same, with the bound as their uncertainty; amplitudes and offsets of every record are unknown.
     """
     arrays = as_records(records, rate, "bound")
     exponent = np.array([mode.pole / rate for mode in modes], dtype=complex)
     poles = Poles.of(exponent, np.stack([mode.shape for mode in modes], axis=1))
     stand = Stand.at(Decays.of(arrays, rate), poles, 1 / np.asarray(noise, dtype=float) ** 2)
-    return tuple(replace(mode, spread=spread) for mode, spread in zip(modes, bounds(stand), strict=True))
+    return tuple(replace(mode, uncertainty=spread) for mode, spread in zip(modes, bounds(stand), strict=True))

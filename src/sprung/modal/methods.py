@@ -16,37 +16,37 @@ from sprung.modal.emd import empirical_modes
 from sprung.modal.era import eigensystem_realisation
 from sprung.modal.era_dc import realisation_by_correlations
 from sprung.modal.frequency_likelihood import likelihood_of_lines
-from sprung.modal.identified import Modes, Rejected
+from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.itd import ibrahim_time_domain, state_variables_in_rows
 from sprung.modal.likelihood import Poles, Stand
 from sprung.modal.maximum_likelihood import maximum_likelihood
-from sprung.modal.modes import Mode
 from sprung.modal.peak_picking import peak_picking
 from sprung.modal.polynomials import complex_frequency, rational_fractions
 from sprung.modal.records import as_records
 from sprung.modal.ssi import subspace_by_covariances, subspace_by_data
 from sprung.modal.svm import state_variable_method
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
-Method = Callable[[Sequence[ArrayLike], float, int | None], Modes]
+Method = Callable[[Sequence[ArrayLike], float, int | None], ModeSet]
 """Takes records of shape (channel, time), the sampling rate and the order, None to choose it; gives modes."""
 
 _SVM_STEP = 0.015
 """s between the states of the State Variable Method, where it is not taken as printed."""
 
 
-def _svm(records: Sequence[ArrayLike], rate: float, order: int | None) -> Modes:
+def _svm(records: Sequence[ArrayLike], rate: float, order: int | None) -> ModeSet:
     """Apply the State Variable Method with a longer lag to as many combinations of channels as half the order."""
     return _state_variables(records, rate, order, "svm", max(1, round(_SVM_STEP * rate)))
 
 
-def _svm_as_printed(records: Sequence[ArrayLike], rate: float, order: int | None) -> Modes:
+def _svm_as_printed(records: Sequence[ArrayLike], rate: float, order: int | None) -> ModeSet:
     """Apply it as it is printed, from sample to sample."""
     return _state_variables(records, rate, order, "svm-printed", 1)
 
 
-def _state_variables(records: Sequence[ArrayLike], rate: float, order: int | None, method: str, lag: int) -> Modes:
+def _state_variables(records: Sequence[ArrayLike], rate: float, order: int | None, method: str, lag: int) -> ModeSet:
     arrays = as_records(records, rate, method)
     channels = len(arrays[0]) if arrays else 0
     degrees = min(channels, 7) if order is None else (order + 1) // 2
@@ -64,12 +64,12 @@ def _state_variables(records: Sequence[ArrayLike], rate: float, order: int | Non
     decaying, rejected = [], []
     for mode in found:
         if mode.pole.real >= 0:
-            rejected.append(Rejected(mode.pole, "it grows"))
+            rejected.append(RejectedPole(mode.pole, "it grows"))
         elif mode.pole.imag > fastest:
-            rejected.append(Rejected(mode.pole, "it changes its sign from sample to sample"))
+            rejected.append(RejectedPole(mode.pole, "it changes its sign from sample to sample"))
         else:
             decaying.append(Mode(mode.pole, patterns @ mode.shape))
-    return Modes(tuple(decaying), tuple(rejected), method)
+    return ModeSet(tuple(decaying), tuple(rejected), method)
 
 
 METHODS: Mapping[str, Method] = MappingProxyType(
@@ -93,7 +93,7 @@ METHODS: Mapping[str, Method] = MappingProxyType(
 )
 """The methods, by the name that `identify_modes` takes; the first is the one it takes unless told otherwise."""
 
-DEFAULT = next(iter(METHODS))
+DEFAULT_METHOD = next(iter(METHODS))
 """The method that is taken unless another is named."""
 
 APPROXIMATE = frozenset({"peaks", "emd"})
@@ -115,7 +115,9 @@ _SMALL = 0.05
 """Part of a channel's energy up to which a motion that is too slow for the records is left out instead of refused."""
 
 
-def identify_modes(records: Sequence[ArrayLike], rate: float, method: str = DEFAULT, order: int | None = None) -> Modes:
+def identify_modes(
+    records: Sequence[ArrayLike], rate: float, method: str = DEFAULT_METHOD, order: int | None = None
+) -> ModeSet:
     """Identify the modes common to several free decays of one load; no vehicle model is needed.
 
     Parameters
@@ -163,20 +165,20 @@ def identify_modes(records: Sequence[ArrayLike], rate: float, method: str = DEFA
     found = METHODS[method](arrays, rate, order)
     below, fast = _below_nyquist(found.modes, rate)
     kept, slow = _split(below, arrays, rate, refusing=method not in _CREDULOUS)
-    return Modes(kept, (*found.rejected, *fast, *slow), method)
+    return ModeSet(kept, (*found.rejected, *fast, *slow), method)
 
 
-def _below_nyquist(modes: tuple[Mode, ...], rate: float) -> tuple[tuple[Mode, ...], tuple[Rejected, ...]]:
+def _below_nyquist(modes: tuple[Mode, ...], rate: float) -> tuple[tuple[Mode, ...], tuple[RejectedPole, ...]]:
     """Leave out what changes its sign from sample to sample, or nearly so: noise, aliases and the edge of a filter do that."""
     limit = NEAR_NYQUIST * rate / 2
     fast = [mode for mode in modes if mode.damped_frequency > limit]
     said = f"its frequency is above {limit:.4g} Hz, {NEAR_NYQUIST:.0%} of half the sampling rate"
-    return tuple(mode for mode in modes if mode not in fast), tuple(Rejected(mode.pole, said) for mode in fast)
+    return tuple(mode for mode in modes if mode not in fast), tuple(RejectedPole(mode.pole, said) for mode in fast)
 
 
 def _split(
     modes: tuple[Mode, ...], records: Sequence[Real], rate: float, refusing: bool
-) -> tuple[tuple[Mode, ...], tuple[Rejected, ...]]:
+) -> tuple[tuple[Mode, ...], tuple[RejectedPole, ...]]:
     """Leave out modes that are too slow for the records; refuse the records where these are most of them."""
     seconds = max(record.shape[1] for record in records) / rate
     slow = [mode for mode in modes if not _is_told(mode, seconds)]
@@ -194,7 +196,7 @@ def _split(
         if refusing and (share > _SMALL or len(slow) == len(modes)):
             problems.add("records", *_too_short(mode, seconds), "Record longer, or leave that motion out.")
     problems.raise_if_any()
-    rejected = tuple(Rejected(mode.pole, " for ".join(_too_short(mode, seconds)[::-1])) for mode in slow)
+    rejected = tuple(RejectedPole(mode.pole, " for ".join(_too_short(mode, seconds)[::-1])) for mode in slow)
     return tuple(mode for mode in modes if mode not in slow), rejected
 
 

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
-from sprung.modal.identified import Rejected
+from sprung.modal.identified import RejectedPole
 from sprung.modal.likelihood import LEAST_NOISE, Poles, Stand, scales
-from sprung.modal.modes import UNRESOLVED
 from sprung.modal.refinement import climb
 from sprung.modal.selection import FIRST_POLES, MOST_POLES
 from sprung.modal.subspace import Span
 from sprung.modal.turning import alternatives
 from sprung.modal.uncertainty import spreads
+from sprung.vibration import UNRESOLVED_FROM
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -53,7 +53,7 @@ class Model:
     """
 
     stand: Stand
-    rejected: tuple[Rejected, ...] = ()
+    rejected: tuple[RejectedPole, ...] = ()
 
 
 def model_of_order(decays: Decays, span: Span, order: int) -> Model:
@@ -61,7 +61,7 @@ def model_of_order(decays: Decays, span: Span, order: int) -> Model:
     poles = span.poles(order)
     while poles.count and len(poles.both(poles.exponent)) > order:
         poles = poles.without(poles.count - 1)
-    rejected: list[Rejected] = []
+    rejected: list[RejectedPole] = []
     return Model(_pruned(climb(decays, poles), rejected), tuple(rejected))
 
 
@@ -87,7 +87,7 @@ def model_by_data(decays: Decays, span: Span, most: int = MOST_POLES) -> Model:
     first = max(FIRST_POLES, 2 * decays.channels)
     order = min(max(span.standing_out, 2), first, most, span.most)
     stand = climb(decays, span.poles(order))
-    rejected: list[Rejected] = []
+    rejected: list[RejectedPole] = []
     inflation = _inflation(stand)
     if inflation.max() > _COLOURED:
         # No number of modes leaves white noise, and a large one may have lost its way: all smaller ones are tried.
@@ -162,7 +162,7 @@ def _inflation(stand: Stand) -> Real:
     return colour(stand) + agreement(stand) - 1
 
 
-def _grown(stand: Stand, most: int, rejected: list[Rejected]) -> Stand:
+def _grown(stand: Stand, most: int, rejected: list[RejectedPole]) -> Stand:
     begun = stand
     while len(stand.poles.both(stand.poles.exponent)) < most:
         if not stand.left_spectrum.standing_out.any() or _is_rounding(stand.left, stand.decays):
@@ -181,7 +181,7 @@ def _grown(stand: Stand, most: int, rejected: list[Rejected]) -> Stand:
             cost *= _DEARER
         if gain < cost:
             said = f"adding it gains {gain:.3g} in twice the log-likelihood, its parameters cost {cost:.3g}"
-            rejected.extend(Rejected(complex(pole) * stand.decays.rate, said) for pole in more.exponent)
+            rejected.extend(RejectedPole(complex(pole) * stand.decays.rate, said) for pole in more.exponent)
             break
         stand = larger
     return stand if stand is begun else climb(stand.decays, stand.poles)
@@ -223,13 +223,13 @@ def _strongest(stand: Stand) -> Poles:
     return Poles(poles.exponent[order], poles.shapes[:, order], poles.held[order])
 
 
-def _pruned(stand: Stand, rejected: list[Rejected]) -> Stand:
+def _pruned(stand: Stand, rejected: list[RejectedPole]) -> Stand:
     """Take away modes that are not worth their parameters, those first that the records do not determine."""
     asked: set[complex] = set()
     while stand.poles.count > 1:
         exponents = stand.poles.exponent.tolist()
         weak = [
-            float(np.trace(spread.pole)) > (UNRESOLVED * abs(pole) * stand.decays.rate) ** 2
+            float(np.trace(spread.pole)) > (UNRESOLVED_FROM * abs(pole) * stand.decays.rate) ** 2
             for pole, spread in zip(exponents, spreads(stand, 1.0), strict=True)
         ]
         losses = [stand.without(i).cost for i in range(len(exponents))]
@@ -246,7 +246,7 @@ def _pruned(stand: Stand, rejected: list[Rejected]) -> Stand:
                 gain, cost = _gain(small, stand)
             if gain < cost:
                 said = f"it gains {gain:.3g} in twice the log-likelihood, its parameters cost {cost:.3g}"
-                rejected.append(Rejected(exponents[i] * stand.decays.rate, said))
+                rejected.append(RejectedPole(exponents[i] * stand.decays.rate, said))
                 stand = climb(stand.decays, small.poles)
                 break
             asked.add(exponents[i])

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.identified import Modes, Rejected
+from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.residues import shapes_of
 from sprung.modal.selection import Task
 from sprung.modal.spectrum import Spectrum
@@ -21,7 +21,7 @@ _PROMINENT = 1.3
 """Times the lowest power between a peak and a higher one that it must have."""
 
 
-def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Take the peaks of the summed spectra for modes, and the width at half their power for their damping.
 
     Not exact, not even without noise: a peak of an acceleration lies beside the damped frequency once damping is high, and
@@ -56,14 +56,14 @@ def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = 
     for top in _tops(power, 4 * noise)[: task.order if order is None else max(order // 2, 1)]:
         low, high = _half_power(power, top)
         if low is None or high is None:
-            rejected.append(Rejected(2j * np.pi * top * step, "no width at half power: a neighbour covers it"))
+            rejected.append(RejectedPole(2j * np.pi * top * step, "no width at half power: a neighbour covers it"))
             continue
         ratio = min((high - low) / (2 * top), 0.99)
         poles.append(2 * np.pi * top * step * complex(-ratio / np.sqrt(1 - ratio**2), 1.0))
     if not poles:
-        return Modes((), tuple(rejected), "peaks")
+        return ModeSet((), tuple(rejected), "peaks")
     found = task.modes(shapes_of(task.thinned, np.array([pole / rate for pole in poles], dtype=complex)))
-    return Modes(found.modes, (*rejected, *found.rejected), "peaks")
+    return ModeSet(found.modes, (*rejected, *found.rejected), "peaks")
 
 
 def _tops(power: Real, least: float) -> list[int]:

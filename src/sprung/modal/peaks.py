@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.modes import Mode
+from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ _NEAR, _WIDTHS, _LINES = 0.25, 3.0, 2.0
 ratio, or so many lines of the transform."""
 
 
-def fft_frequencies(records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]) -> tuple[float | None, ...]:
+def find_spectral_peaks(records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]) -> tuple[float | None, ...]:
     """Find each mode's peak in the Fourier transform of what moves as it does.
 
     The records are projected on the real part of the mode's shape, as the paper transforms vertical, pitch and roll

@@ -13,7 +13,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.identified import Modes
+from sprung.modal.identified import ModeSet
 from sprung.modal.residues import shapes_of
 from sprung.modal.selection import Task
 from sprung.modal.subspace import recurring
@@ -38,7 +38,7 @@ _MORE = 3
 """Times the lags that the order asks for: the ones too many take up noise."""
 
 
-def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify modes by the poly-reference least-squares complex frequency method (PolyMAX).
 
     A left matrix fraction A(z) Y(z) = B(z), with matrices over the channels in A and a polynomial for each record in B, is
@@ -85,7 +85,7 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
     return task.modes(recurring(companion, seen, thinned))
 
 
-def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify modes by rational fraction polynomials with one denominator for all channels and records.
 
     Over s = (z - 1)/(z + 1), the imaginary axis of which is the unit circle of z, each transform is B(s)/D(s) with real
@@ -127,7 +127,7 @@ def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | N
     usable = (np.abs(z) > 1e-12) & ~((z.imag == 0) & (z.real < 0)) & (z.imag >= 0) & (np.abs(z) < 1)
     exponent = np.log(z[usable].astype(complex)) / (thinned.step * thinned.every)
     if not exponent.size:
-        return Modes((), (), "rfp")
+        return ModeSet((), (), "rfp")
     return task.modes(shapes_of(task.thinned, exponent))
 
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.likelihood import Poles
-from sprung.modal.sums import waves
 from sprung.modal.thinning import Thinned
+from sprung.vibration import exponentials
 
 Complex = NDArray[np.complex128]
 
@@ -34,7 +34,7 @@ def shapes_of(thinned: Thinned, exponent: Complex) -> Poles:
     every = np.concatenate([exponent, exponent[exponent.imag != 0].conj()]) * thinned.every
     contributions, spreads, squares, freedom = [], [], 0.0, 0
     for record in thinned.records:
-        motion = waves(every, record.shape[1])
+        motion = exponentials(every, record.shape[1])
         motion = motion - motion.mean(axis=0)
         sizes = np.linalg.norm(motion, axis=0)
         inverse = np.linalg.pinv(motion / sizes, rcond=1e-14) / sizes[:, None]

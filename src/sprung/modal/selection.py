@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import Problems
 from sprung.modal.decays import Decays
-from sprung.modal.identified import Modes, Rejected
+from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.likelihood import Poles, Stand
-from sprung.modal.modes import modes_from
 from sprung.modal.records import as_records
 from sprung.modal.subspace import Span
 from sprung.modal.thinning import Thinned
+from sprung.vibration import make_modes
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -104,10 +104,10 @@ class Task:
             )
         problems.raise_if_any()
 
-    def modes(self, poles: Poles) -> Modes:
+    def modes(self, poles: Poles) -> ModeSet:
         """Keep of poles as many as wanted, those that explain most of the records, and give the reasons for the others."""
         if not poles.count:
-            return Modes((), (), self.method)
+            return ModeSet((), (), self.method)
         weights = 1 / np.maximum(self.decays.energy.sum(axis=0), 1e-300)
         shares = Stand.at(self.decays, poles, weights).shares.max(axis=0)
         rate, room = self.decays.rate, self.order
@@ -119,11 +119,11 @@ class Task:
                 room -= size
             else:
                 said = f"{self.order} poles explain more: of no channel is it more than {100 * shares[j]:.2g} %"
-                rejected.append(Rejected(complex(poles.exponent[j]) * rate, said))
+                rejected.append(RejectedPole(complex(poles.exponent[j]) * rate, said))
         both = np.concatenate([poles.exponent[kept], poles.exponent[kept].conj()]) * rate
         shapes = np.concatenate([poles.shapes[:, kept], poles.shapes[:, kept].conj()], axis=1)
         once = np.concatenate([np.ones(len(kept), dtype=np.bool_), poles.exponent[kept].imag != 0])
-        return Modes(modes_from(both[once], shapes[:, once]), tuple(rejected), self.method)
+        return ModeSet(make_modes(both[once], shapes[:, once]), tuple(rejected), self.method)
 
 
 def refuse_without_decay(poles: Poles, method: str) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import Modes
+from sprung.modal.identified import ModeSet
 from sprung.modal.selection import Task
 from sprung.modal.subspace import realised
 from sprung.modal.thinning import triangle
@@ -16,7 +16,7 @@ _ROWS = 300
 """Rows of past and future together at the most."""
 
 
-def subspace_by_covariances(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def subspace_by_covariances(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify the modes common to several free decays from the covariances of later samples with earlier ones.
 
     All covariances are summed over the same samples, whatever their lag. The factor 1/(N - k) that makes those of stationary
@@ -48,7 +48,7 @@ def subspace_by_covariances(records: Sequence[ArrayLike], rate: float, order: in
     return task.modes(realised(left[:, : task.order], task.thinned))
 
 
-def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> Modes:
+def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
     """Identify the modes common to several free decays from the projection of later samples on earlier ones.
 
     Parameters

@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
-from sprung.modal.criteria import complexity
+from sprung.modal.criteria import modal_phase_collinearity
 from sprung.modal.decays import Decays
-from sprung.modal.identified import Rejected
-from sprung.modal.modes import similarity
+from sprung.modal.identified import RejectedPole
 from sprung.modal.records import as_records
 from sprung.modal.subspace import Span
+from sprung.vibration import modal_assurance_criterion
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -28,7 +28,7 @@ _LEAST_ORDERS = 4
 
 @shown
 @dataclass(frozen=True)
-class Criteria:
+class StabilityCriteria:
     """By how much a pole may change from one order to the next, and how long it must stay.
 
     Attributes
@@ -100,7 +100,7 @@ class Cluster:
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Diagram:
+class StabilisationDiagram:
     """Poles over order.
 
     Attributes
@@ -120,13 +120,13 @@ class Diagram:
     orders: tuple[int, ...]
     poles: tuple[DiagramPole, ...]
     chosen: tuple[Cluster, ...]
-    rejected: tuple[Rejected, ...]
-    criteria: Criteria
+    rejected: tuple[RejectedPole, ...]
+    criteria: StabilityCriteria
 
 
 def stabilisation_diagram(
-    records: Sequence[ArrayLike], rate: float, highest: int = HIGHEST_ORDER, criteria: Criteria | None = None
-) -> Diagram:
+    records: Sequence[ArrayLike], rate: float, highest: int = HIGHEST_ORDER, criteria: StabilityCriteria | None = None
+) -> StabilisationDiagram:
     """Realise models of all even orders, and see which poles stay.
 
     Parameters
@@ -151,7 +151,7 @@ def stabilisation_diagram(
     """
     arrays = as_records(records, rate, "diagram")
     span = Span.of(arrays, Decays.of(arrays, rate).spectrum)
-    wanted = criteria or Criteria()
+    wanted = criteria or StabilityCriteria()
     orders = tuple(range(2, min(highest, span.most) + 1, 2))
     chains: list[list[DiagramPole]] = []
     points: list[DiagramPole] = []
@@ -173,9 +173,9 @@ def stabilisation_diagram(
         if reason is None:
             chosen.append(cluster)
         else:
-            rejected.append(Rejected(cluster.pole, reason))
+            rejected.append(RejectedPole(cluster.pole, reason))
     chosen.sort(key=lambda one: abs(one.pole))
-    return Diagram(orders, tuple(points), tuple(chosen), tuple(rejected), wanted)
+    return StabilisationDiagram(orders, tuple(points), tuple(chosen), tuple(rejected), wanted)
 
 
 def _poles(span: Span, order: int, rate: float) -> list[DiagramPole]:
@@ -197,19 +197,23 @@ def _poles(span: Span, order: int, rate: float) -> list[DiagramPole]:
         ratio = float(np.linalg.norm(there)) / max(float(np.linalg.norm(foretold)), 1e-300)
         shape = poles.shapes[:, j]
         coherence = along * min(ratio, 1 / max(ratio, 1e-300))
-        found.append(DiagramPole(order, complex(poles.exponent[j]) * rate, shape, False, coherence, complexity(shape)))
+        found.append(
+            DiagramPole(
+                order, complex(poles.exponent[j]) * rate, shape, False, coherence, modal_phase_collinearity(shape)
+            )
+        )
     return found
 
 
 def _linked(
-    point: DiagramPole, before: list[tuple[DiagramPole, list[DiagramPole]]], criteria: Criteria
+    point: DiagramPole, before: list[tuple[DiagramPole, list[DiagramPole]]], criteria: StabilityCriteria
 ) -> tuple[DiagramPole, list[DiagramPole] | None]:
     """Find the pole of the order before that this one is, and the chain that one belongs to."""
     best, chain = np.inf, None
     for other, own in before:
         frequency = abs(abs(point.pole) / abs(other.pole) - 1)
         ratios = [-one.pole.real / abs(one.pole) for one in (point, other)]
-        alike = float(similarity(point.shape[:, None], other.shape[:, None])[0, 0])
+        alike = float(modal_assurance_criterion(point.shape[:, None], other.shape[:, None])[0, 0])
         near = frequency <= criteria.frequency and abs(ratios[0] - ratios[1]) <= criteria.damping * abs(ratios[1])
         # A chain goes on with one pole of each order only.
         if near and alike >= criteria.similarity and frequency < best and own[-1] is other:
@@ -218,7 +222,9 @@ def _linked(
     return DiagramPole(point.order, point.pole, point.shape, stable, point.coherence, point.collinearity), chain
 
 
-def _cluster(chain: list[DiagramPole], orders: Sequence[int], criteria: Criteria) -> tuple[Cluster, str | None]:
+def _cluster(
+    chain: list[DiagramPole], orders: Sequence[int], criteria: StabilityCriteria
+) -> tuple[Cluster, str | None]:
     poles = np.array([one.pole for one in chain])
     middle = complex(np.median(poles.real), np.median(poles.imag))
     scatter = float(np.sqrt(np.mean(np.abs(poles - middle) ** 2)) / abs(middle))

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
 from sprung.errors import Problems
-from sprung.modal.modes import Mode, modes_from
 from sprung.modal.records import as_records
+from sprung.vibration import Mode, make_modes
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -19,7 +19,7 @@ Complex = NDArray[np.complex128]
 
 @shown
 @dataclass(frozen=True, eq=False)
-class StateVariables:
+class StateVariableFit:
     """What the State Variable Method finds.
 
     Attributes
@@ -40,7 +40,7 @@ class StateVariables:
     @property
     def modes(self) -> tuple[Mode, ...]:
         """One mode for each conjugate pair and each real pole."""
-        return modes_from(self.poles, self.shapes)
+        return make_modes(self.poles, self.shapes)
 
     @property
     def state_matrix(self) -> Real:
@@ -74,7 +74,7 @@ def state_matrix(poles: ArrayLike, shapes: ArrayLike) -> Real:
     return A
 
 
-def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 1) -> StateVariables:
+def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 1) -> StateVariableFit:
     """Identify a freely vibrating system with as many degrees of freedom as there are channels.
 
     Φ̄ = A₁ Φ, eq. (8), is solved for all records at once by orthogonal factorisation, not by the inverse of ΦΦᵀ of
@@ -133,4 +133,4 @@ def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 
     transition = np.asarray(np.linalg.lstsq(before.T, after.T, rcond=None)[0].T, dtype=float)
     z, vectors = np.linalg.eig(transition)
     poles = np.log(np.where(z == 0, np.finfo(float).tiny, z).astype(complex)) * rate / lag
-    return StateVariables(transition, poles, size * vectors[:channels])
+    return StateVariableFit(transition, poles, size * vectors[:channels])

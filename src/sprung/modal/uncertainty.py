@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.likelihood import Stand, inverse_information
-from sprung.modal.modes import Spread
+from sprung.vibration import ModeUncertainty
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -18,7 +18,7 @@ _SIGNIFICANT = 3.0
 """Standard errors by which an excess must be real before it counts."""
 
 
-def spreads(stand: Stand, disagreement: float) -> tuple[Spread, ...]:
+def spreads(stand: Stand, disagreement: float) -> tuple[ModeUncertainty, ...]:
     """Give the covariances of all modes: the inverse of the Fisher information, enlarged where the residuals are not white.
 
     Parameters
@@ -39,7 +39,7 @@ def spreads(stand: Stand, disagreement: float) -> tuple[Spread, ...]:
     return bounds(stand, _colour_of_modes(stand) + disagreement - 1, lost)
 
 
-def bounds(stand: Stand, excess: Real | None = None, lost: float = 1.0) -> tuple[Spread, ...]:
+def bounds(stand: Stand, excess: Real | None = None, lost: float = 1.0) -> tuple[ModeUncertainty, ...]:
     """Give the Cramér-Rao bound of all modes: at true poles, shapes and noise, what no unbiased estimate can better.
 
     Parameters
@@ -66,11 +66,13 @@ def bounds(stand: Stand, excess: Real | None = None, lost: float = 1.0) -> tuple
         own, across = covariance[every, j, every, j].real, covariance[every, j, every, other]
         parts = _parts(own, across if other != j else own) * (factors[j] * lost)
         entries = np.sqrt(np.maximum(parts[:-1, [0, 1], [0, 1]], 0.0))
-        found.append(Spread(parts[-1] * stand.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j])))
+        found.append(
+            ModeUncertainty(parts[-1] * stand.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j]))
+        )
     return tuple(found)
 
 
-def bound_alone(stand: Stand, which: int) -> Spread:
+def bound_alone(stand: Stand, which: int) -> ModeUncertainty:
     """Give the bound of one mode's pole, everything but amplitudes and offsets being known.
 
     Parameters
@@ -83,7 +85,7 @@ def bound_alone(stand: Stand, which: int) -> Spread:
     free = stand.pole_of(which)
     covariance = inverse_information(stand.information[np.ix_(free, free)])
     pole = _parts(covariance[:1, 0].real, covariance[:1, 1])[0] * stand.decays.rate**2
-    return Spread(pole, np.zeros(stand.decays.channels, dtype=np.complex128))
+    return ModeUncertainty(pole, np.zeros(stand.decays.channels, dtype=np.complex128))
 
 
 def _parts(own: Real, across: Complex) -> Real:

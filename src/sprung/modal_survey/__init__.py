@@ -1,11 +1,11 @@
 """Modes of campaigns, recordings and arrays, without a vehicle model."""
 
-from sprung.modal_survey.identified import FoundMode, LoadModes
+from sprung.modal_survey.identified import IdentifiedMode, LoadModes
 from sprung.modal_survey.modes import ModesByLoad, modes
 from sprung.modal_survey.recordings import is_recordings
 
 __all__ = [
-    "FoundMode",
+    "IdentifiedMode",
     "LoadModes",
     "ModesByLoad",
     "is_recordings",

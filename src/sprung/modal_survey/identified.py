@@ -13,30 +13,28 @@ from sprung.display import shown
 from sprung.estimation import UNNAMED, ModeEstimate
 from sprung.modal import (
     APPROXIMATE,
-    Diagram,
-    Mode,
-    Modes,
-    ModeTrace,
-    complexity,
-    confirmed,
-    fft_frequencies,
-    follow_modes,
+    AmplitudeDependence,
+    ModeSet,
+    StabilisationDiagram,
+    amplitude_dependence,
+    confirm_modes,
+    find_spectral_peaks,
     identify_modes,
-    name_by_sensors,
-    paper_name,
+    modal_phase_collinearity,
     stabilisation_diagram,
 )
 from sprung.modal_survey.table import found_modes_table
 from sprung.progress import Progress, Step, silent
 from sprung.tables import Table, escaped
 from sprung.vehicle import Sensor
+from sprung.vibration import Mode, name_modes_at_sensors, paper_name
 
 Real = NDArray[np.float64]
 
 
 @shown
 @dataclass(frozen=True)
-class FoundMode(ModeEstimate):
+class IdentifiedMode(ModeEstimate):
     """One mode found in the records, without a vehicle model.
 
     Attributes
@@ -74,7 +72,7 @@ class FoundMode(ModeEstimate):
 
 @shown
 @dataclass(frozen=True, eq=False)
-class LoadModes(Sequence[FoundMode]):
+class LoadModes(Sequence[IdentifiedMode]):
     """The modes of one load, a sequence in the order of undamped natural frequency.
 
     Attributes
@@ -95,19 +93,19 @@ class LoadModes(Sequence[FoundMode]):
         Poles over the order of a model, where it was asked for.
     """
 
-    modes: tuple[FoundMode, ...]
+    modes: tuple[IdentifiedMode, ...]
     method: str
     channels: tuple[str, ...]
     drops: tuple[str, ...]
     rejected: tuple[tuple[complex, str], ...] = ()
     unresolved: tuple[str, ...] = ()
-    diagram: Diagram | None = None
+    diagram: StabilisationDiagram | None = None
 
     @overload
-    def __getitem__(self, index: int) -> FoundMode: ...
+    def __getitem__(self, index: int) -> IdentifiedMode: ...
     @overload
-    def __getitem__(self, index: slice) -> tuple[FoundMode, ...]: ...
-    def __getitem__(self, index: int | slice) -> FoundMode | tuple[FoundMode, ...]:
+    def __getitem__(self, index: slice) -> tuple[IdentifiedMode, ...]: ...
+    def __getitem__(self, index: int | slice) -> IdentifiedMode | tuple[IdentifiedMode, ...]:
         """Give one mode, or several."""
         return self.modes[index]
 
@@ -115,7 +113,7 @@ class LoadModes(Sequence[FoundMode]):
         """Count the modes."""
         return len(self.modes)
 
-    def __iter__(self) -> Iterator[FoundMode]:
+    def __iter__(self) -> Iterator[IdentifiedMode]:
         """Go through the modes."""
         return iter(self.modes)
 
@@ -187,14 +185,16 @@ def modal_analysis(
     drawn = stabilisation_diagram(records, rate) if diagram else None
     # Of recordings alone nothing else is known by which an invented mode would stand out.
     if not sensors and order is None and method not in APPROXIMATE:
-        found = confirmed(found, records, rate, drawn)
+        found = confirm_modes(found, records, rate, drawn)
     names = (
-        _names(found, name_by_sensors(found, sensors, a)) if sensors else [f"mode {i + 1}" for i in range(len(found))]
+        _names(found, name_modes_at_sensors(found, sensors, a))
+        if sensors
+        else [f"mode {i + 1}" for i in range(len(found))]
     )
-    peaks = fft_frequencies(records, rate, found)
+    peaks = find_spectral_peaks(records, rate, found)
     if amplitude:
         progress(Step(f"following the modes{of_load} through the decays"))
-    traces = {id(trace.mode): trace for trace in follow_modes(records, rate, found)} if amplitude else {}
+    traces = {id(trace.mode): trace for trace in amplitude_dependence(records, rate, found)} if amplitude else {}
     estimates = tuple(
         _followed(_estimate(mode, name, peak), traces.get(id(mode)))
         for mode, name, peak in zip(found, names, peaks, strict=True)
@@ -212,7 +212,7 @@ def modal_analysis(
     )
 
 
-def _diagram_document(diagram: Diagram) -> dict[str, Any]:
+def _diagram_document(diagram: StabilisationDiagram) -> dict[str, Any]:
     return {
         "criteria": asdict(diagram.criteria),
         "orders": list(diagram.orders),
@@ -234,7 +234,7 @@ def _diagram_document(diagram: Diagram) -> dict[str, Any]:
     }
 
 
-def _names(found: Modes, named: Sequence[Mode]) -> list[str]:
+def _names(found: ModeSet, named: Sequence[Mode]) -> list[str]:
     """Bring names into the order of the modes they were given to."""
     left = list(named)
     names = []
@@ -244,7 +244,7 @@ def _names(found: Modes, named: Sequence[Mode]) -> list[str]:
     return names
 
 
-def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: int) -> tuple[str, ...]:
+def _unresolved(modes: Sequence[IdentifiedMode], sensors: Sequence[Sensor], drops: int) -> tuple[str, ...]:
     """Say what these records cannot tell apart."""
     said = []
     unsure = [mode for mode in modes if mode.status == "unresolved"]
@@ -262,10 +262,10 @@ def _unresolved(modes: Sequence[FoundMode], sensors: Sequence[Sensor], drops: in
     return tuple(said)
 
 
-def _estimate(mode: Mode, name: str, peak: float | None) -> FoundMode:
+def _estimate(mode: Mode, name: str, peak: float | None) -> IdentifiedMode:
     told = mode.resolved
-    spread = mode.spread
-    return FoundMode(
+    spread = mode.uncertainty
+    return IdentifiedMode(
         name=name,
         paper_name=paper_name(name),
         pole=(mode.pole.real, mode.pole.imag),
@@ -279,12 +279,12 @@ def _estimate(mode: Mode, name: str, peak: float | None) -> FoundMode:
         fft_difference=None if peak is None else 100 * (peak / mode.damped_frequency - 1),
         shape=_pairs(mode.shape),
         shape_std=_pairs(spread.shape) if spread is not None and told else None,
-        collinearity=float(complexity(mode.shape)),
+        collinearity=float(modal_phase_collinearity(mode.shape)),
         status="resolved" if told else "unresolved",
     )
 
 
-def _followed(mode: FoundMode, trace: ModeTrace | None) -> FoundMode:
+def _followed(mode: IdentifiedMode, trace: AmplitudeDependence | None) -> IdentifiedMode:
     if trace is None:
         return mode
     columns = trace.amplitude, trace.frequency, trace.frequency_std, trace.damping_ratio, trace.damping_ratio_std

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Campaign, CampaignSource, campaign_from
 from sprung.display import shown
 from sprung.errors import Problems
-from sprung.modal import DEFAULT
+from sprung.modal import DEFAULT_METHOD
 from sprung.modal_survey.identified import LoadModes, modal_analysis
 from sprung.modal_survey.recordings import RECORDINGS, is_recordings, modes_of_arrays, modes_of_recordings
 from sprung.preprocess import FreeDecay, prepare
@@ -51,7 +51,7 @@ class ModesByLoad(NamedValues[LoadModes]):
 
 def modes(
     source: CampaignSource | Real | Sequence[Real],
-    method: str = DEFAULT,
+    method: str = DEFAULT_METHOD,
     order: int | None = None,
     *,
     rate: float | None = None,

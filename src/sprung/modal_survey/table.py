@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from sprung.tables import Table, with_std
 
 if TYPE_CHECKING:
-    from sprung.modal_survey.identified import FoundMode
+    from sprung.modal_survey.identified import IdentifiedMode
 
 
-def found_modes_table(load: str, method: str, drops: int, modes: Sequence[FoundMode]) -> Table:
+def found_modes_table(load: str, method: str, drops: int, modes: Sequence[IdentifiedMode]) -> Table:
     """Show modes that were found without a vehicle model.
 
     Parameters
@@ -32,7 +32,7 @@ def found_modes_table(load: str, method: str, drops: int, modes: Sequence[FoundM
     return Table(title, headers, tuple(map(_found, modes)), frozenset(headers[1:]), ("MPC", "f_d Hz"))
 
 
-def _found(mode: FoundMode) -> tuple[str, ...]:
+def _found(mode: IdentifiedMode) -> tuple[str, ...]:
     if mode.status == "unresolved":
         return (mode.name, f"~{mode.frequency:.2g}", "-", "-", "-", "-", "-")
     return (

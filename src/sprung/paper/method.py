@@ -82,13 +82,12 @@ def bump_campaign(
         )
         for i, wheels in enumerate(bumps)
     ]
-    drops, recordings = [], []
+    drops = []
     for i, run in enumerate(runs):
-        for drop, recording in zip(run.drops, run.recordings, strict=True):
-            name = f"{i}_{recording.name}"
-            drops.append(replace(drop, file=name))
-            recordings.append(replace(recording, name=name))
-    return replace(runs[0], drops=tuple(drops), recordings=tuple(recordings))
+        for drop in run.drops:
+            name = f"{i}_{drop.recording.name}"
+            drops.append(replace(drop, file=name, recording=replace(drop.recording, name=name)))
+    return replace(runs[0], drops=tuple(drops))
 
 
 def drop_campaign(vehicle: Vehicle, load: Load) -> Campaign:
@@ -109,9 +108,9 @@ def drop_campaign(vehicle: Vehicle, load: Load) -> Campaign:
     for drop in campaign.drops:
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         fall = drop_from_blocks(vehicle, campaign.load(drop.load), drop.wheels, height)
-        drops.append(replace(drop, start=REST + fall.decay_start))
-    recordings = tuple(replace(r, values=r.values - STANDARD_GRAVITY) for r in campaign.recordings)
-    return replace(campaign, drops=tuple(drops), recordings=recordings)
+        recording = replace(drop.recording, values=drop.recording.values - STANDARD_GRAVITY)
+        drops.append(replace(drop, start=REST + fall.decay_start, recording=recording))
+    return replace(campaign, drops=tuple(drops))
 
 
 def state_matrices(campaign: Campaign, a: float) -> dict[str, Real]:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sprung.display import shown
-from sprung.modal import Mode, modes_of, paper_name
 from sprung.paper.printed import K_ID_FRONT_RIGHT_WHEEL, TABLE_2, TABLE_3
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Added, Load
+from sprung.vibration import Mode, compute_modes, paper_name
 
 BUS_LOAD = Load(name="loaded", added=Added(mass=470, I_yy=1057.5, I_xx=339.6))
 """The load of the paper's experiment, section 4.1: on the body alone."""
@@ -155,7 +155,7 @@ def _equations() -> Iterator[Misprint]:
 def _transition() -> Misprint:
     """Eq. (7) holds for {X, Ẋ}; the state of eq. (6) is {X(k), X(k+1)}."""
     step = 0.01
-    pole = modes_of(TABLE_1_CAR.matrices())[0].pole
+    pole = compute_modes(TABLE_1_CAR.matrices())[0].pole
     z = np.exp(pole * step)
     return Misprint(
         "eqs. (6), (7) and (11)",
@@ -254,7 +254,7 @@ def _experiment() -> Iterator[Misprint]:
 
 
 def _table_3() -> Iterator[Misprint]:
-    modes = {paper_name(mode.name): mode for mode in modes_of(SCHOOL_BUS.matrices())}
+    modes = {paper_name(mode.name): mode for mode in compute_modes(SCHOOL_BUS.matrices())}
     for name, damped in table_3_misfits().items():
         row, model = TABLE_3[name], modes[name]
         natural = row.damped_frequency / np.sqrt(1 - row.damping_ratio**2)

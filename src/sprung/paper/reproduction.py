@@ -11,13 +11,13 @@ import numpy as np
 from sprung.analysis import identify
 from sprung.campaign import Campaign
 from sprung.display import shown
-from sprung.modal import modes_of, paper_name
 from sprung.paper.method import FIVE_BUMPS, bump_campaign, drop_campaign, identify_as_the_paper, state_matrices
 from sprung.paper.misprints import BUS_LOAD, Misprint, find_misprints
 from sprung.paper.printed import TABLE_2, TABLE_3
 from sprung.paper.structured import structured_least_squares
 from sprung.progress import Progress, Step, silent
 from sprung.vehicle import PARAMETERS, SCHOOL_BUS, TABLE_1_CAR, Added, Load
+from sprung.vibration import compute_modes, paper_name
 
 JointFit = Callable[[Campaign], Mapping[str, float]]
 """Takes a campaign, gives the value of each parameter by name."""
@@ -242,7 +242,7 @@ def table_3() -> tuple[ModeRow, ...]:
     -------
     tuple of ModeRow
     """
-    modes = {paper_name(mode.name): mode for mode in modes_of(SCHOOL_BUS.matrices())}
+    modes = {paper_name(mode.name): mode for mode in compute_modes(SCHOOL_BUS.matrices())}
     return tuple(
         ModeRow(
             str(modes[name].name),

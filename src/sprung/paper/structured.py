@@ -19,8 +19,8 @@ from sprung.vehicle import (
     LinearModel,
     Load,
     Tracks,
+    evaluate_quantity,
     parameter_names,
-    quantity,
     seven_degrees_of_freedom,
 )
 
@@ -205,7 +205,7 @@ def _scaled(shape: Real, names: Sequence[str], states: Sequence[_State], known: 
     scales = np.array([PARAMETERS[name].scales for name in names])
     for name, value in known.items():
         if _gives_scale(name):
-            return np.where(scales, shape * value / quantity(name, names, shape)[0], shape)
+            return np.where(scales, shape * value / evaluate_quantity(name, names, shape)[0], shape)
     candidates = [np.where(scales, shape * factor, shape) for factor in np.geomspace(1e1, 1e6, 101)]
     return min(candidates, key=lambda values: sum(float(np.sum(one.residual(values) ** 2)) for one in states))
 
@@ -224,7 +224,7 @@ def _gauss_newton(
         return np.concatenate([state.residual(at) for state in states])
 
     def side_conditions(at: Real) -> tuple[Real, Real]:
-        pairs = [(value, *quantity(name, names, at)) for name, value in known.items()]
+        pairs = [(value, *evaluate_quantity(name, names, at)) for name, value in known.items()]
         misses = np.array([now - value for value, now, _ in pairs])
         return misses, np.array([gradient for *_, gradient in pairs]).reshape(len(pairs), len(names))
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sprung.planning.bound import Bound
 from sprung.planning.subject import PlannedDrop, PlannedTest
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, quantity
+from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -145,7 +145,7 @@ def _weighings(test: PlannedTest) -> Iterator[Alternative]:
     std = SCALES * subject.vehicle.total_mass
 
     def weighed(*names: str) -> dict[str, KnownValue]:
-        values = {name: quantity(name, subject.names, subject.values)[0] for name in names}
+        values = {name: evaluate_quantity(name, subject.names, subject.values)[0] for name in names}
         return {name: KnownValue(value, std) for name, value in values.items() if name not in subject.known}
 
     axles = weighed("front_axle_mass", "rear_axle_mass")

@@ -114,6 +114,7 @@ class Bound:
             residual=np.zeros((0, len(subject.noise))),
             inflation=subject.inflation,
             fitted=(),
+            residuals=(),
             contradictions={},
             loglikelihood=0.0,
             iterations=0,

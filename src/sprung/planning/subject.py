@@ -174,7 +174,7 @@ class Subject:
             name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
             for load, name in names.items()
         }
-        likelihood = Likelihood.of(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
+        likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
         weights = self.rate / sampling / self.noise**2
         told = likelihood.at(self.values).evaluate(weights).information
         seen = self.slopes[:, None] * self.free

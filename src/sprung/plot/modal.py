@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
-from sprung.modal import Diagram, stabilisation_diagram
+from sprung.modal import StabilisationDiagram, stabilisation_diagram
 from sprung.modal_survey import LoadModes
 from sprung.plot.drawing import chosen, drawn, single
 from sprung.report import (
@@ -51,7 +51,10 @@ def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | N
 
 
 def stabilisation(
-    of: LoadModes | Mapping[str, LoadModes] | Diagram | Result, load: str | None = None, *, axes: Axes | None = None
+    of: LoadModes | Mapping[str, LoadModes] | StabilisationDiagram | Result,
+    load: str | None = None,
+    *,
+    axes: Axes | None = None,
 ) -> Axes:
     """Draw a stabilisation diagram: natural frequencies of models of growing order, and where they stay.
 
@@ -140,9 +143,11 @@ def _decays(result: Result, load: str | None) -> LoadDecays:
     return by_load[chosen(load or next(iter(by_load)), list(by_load), "load")]
 
 
-def _diagram(of: LoadModes | Mapping[str, LoadModes] | Diagram | Result, load: str | None) -> tuple[str, Diagram]:
+def _diagram(
+    of: LoadModes | Mapping[str, LoadModes] | StabilisationDiagram | Result, load: str | None
+) -> tuple[str, StabilisationDiagram]:
     match of:
-        case Diagram():
+        case StabilisationDiagram():
             return load or "", of
         case Result():
             decays = _decays(of, load)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Recording
+from sprung.campaign import DropTest, Recording
 from sprung.preprocess.release import StaticBaseline, no_rest
 from sprung.vehicle import Wheel
 
@@ -68,6 +68,8 @@ class DropObservation:
 
     Attributes
     ----------
+    drop
+        As it is stated, with its recording as it was read.
     recording
         The whole of it, in SI, put right; channels that clip within the decay are still in it.
     release
@@ -82,6 +84,7 @@ class DropObservation:
         Those that were dropped: as stated, or as far as the release contradicts that, as it shows.
     """
 
+    drop: DropTest
     recording: Recording
     release: int | None = None
     rest: StaticBaseline = field(default_factory=lambda: no_rest(0))

@@ -25,9 +25,12 @@ def leave_out(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fau
     -------
     Prepared
     """
-    named = {one.name: (drop, one) for drop, one in zip(campaign.drops, campaign.recordings, strict=True)}
+    drops = {drop.recording.name: drop for drop in campaign.drops}
     gone = [decay for decay in prepared.decays if decay.file in left_out]
     return prepared._replace(
         decays=tuple(decay for decay in prepared.decays if decay.file not in left_out),
-        left_out=(*prepared.left_out, *((*named[one.file], (*one.faults, left_out[one.file])) for one in gone)),
+        left_out=(
+            *prepared.left_out,
+            *((drops[decay.file], (*decay.faults, left_out[decay.file])) for decay in gone),
+        ),
     )

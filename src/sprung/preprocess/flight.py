@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sprung.campaign import Drop
 from sprung.preprocess.decay import FreeDecay
 from sprung.preprocess.events import DropObservation
 from sprung.vehicle import Wheel
@@ -42,15 +41,15 @@ class Flight(NamedTuple):
     since: float
 
 
-def flights(decays: Sequence[FreeDecay], drops: Sequence[Drop], seen: Sequence[DropObservation]) -> list[Flight | None]:
+def flights(decays: Sequence[FreeDecay], seen: Sequence[DropObservation]) -> list[Flight | None]:
     """Give drops from just after their releases on.
 
     Parameters
     ----------
     decays
         Their decays, as they are used.
-    drops, seen
-        The drops of the campaign, and what the recording of each shows.
+    seen
+        What the recording of every drop of the campaign shows.
 
     Returns
     -------
@@ -58,12 +57,12 @@ def flights(decays: Sequence[FreeDecay], drops: Sequence[Drop], seen: Sequence[D
         For each decay; None where the fall cannot be used: no release was found, somebody said from when on the drop is to be
         used, several loggers recorded it, or samples of the fall were clipped or mended.
     """
-    by_file = {one.recording.name: (drop, one) for drop, one in zip(drops, seen, strict=True)}
-    return [_flight(decay, *by_file[decay.file]) for decay in decays]
+    by_file = {observation.recording.name: observation for observation in seen}
+    return [_flight(decay, by_file[decay.file]) for decay in decays]
 
 
-def _flight(decay: FreeDecay, drop: Drop, seen: DropObservation) -> Flight | None:
-    recording, release = seen.recording, seen.release
+def _flight(decay: FreeDecay, seen: DropObservation) -> Flight | None:
+    drop, recording, release = seen.drop, seen.recording, seen.release
     if release is None or drop.start is not None or decay.clocks or recording.rate != decay.rate:
         return None
     first = release + math.ceil(_CLEAR * decay.rate)

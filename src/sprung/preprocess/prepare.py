@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Campaign, Drop, Recording, drop_names
+from sprung.campaign import Campaign, Drop, DropTest, Recording, drop_names
 from sprung.errors import Fault
 from sprung.preprocess.alignment import align, lively
 from sprung.preprocess.clipping import clipped_samples, with_full_scale
@@ -63,13 +63,13 @@ class Prepared(NamedTuple):
     decays
         One for each drop that can be used, in the campaign's order.
     left_out
-        For the other drops their names and why.
+        For the other drops why.
     seen
         For every drop of the campaign, in its order, what its recording shows.
     """
 
     decays: tuple[FreeDecay, ...]
-    left_out: tuple[tuple[Drop, Recording, tuple[Fault, ...]], ...]
+    left_out: tuple[tuple[DropTest, tuple[Fault, ...]], ...]
     seen: tuple[DropObservation, ...] = ()
 
 
@@ -87,6 +87,7 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     -------
     Prepared
     """
+    stated = campaign.drops
     smooth = [
         without_spikes(one) for one in counted(progress, "looking for spikes in the recordings", campaign.recordings)
     ]
@@ -114,29 +115,29 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     for i, drop in enumerate(drops):
         if not drop.wheels:
             drops[i] = replace(drop, wheels=as_seen(drop, fell[i]))
-    campaign = replace(campaign, recordings=tuple(recordings), drops=tuple(drops))
+    campaign = replace(campaign, drops=tuple(drops)).with_recordings(recordings)
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
     names = drop_names(campaign.drops)
     counted_names = counted(progress, "finding the decays", names)
-    of_drops = zip(campaign.drops, counted_names, campaign.recordings, releases, clipped, strict=True)
-    for drop, name, recording, release, over in of_drops:
-        decay = _decay(campaign, drop, name, recording, release, suspension, over)
+    for drop, name, release, over in zip(campaign.drops, counted_names, releases, clipped, strict=True):
+        decay = _decay(campaign, drop, name, release, suspension, over)
         if isinstance(decay, FreeDecay):
             decays.append(decay)
         else:
-            left_out.append((drop, recording, tuple(dict.fromkeys((*recording.faults, decay)))))
+            left_out.append((drop, tuple(dict.fromkeys((*drop.recording.faults, decay)))))
     seen = [
         DropObservation(
-            recording=recording,
+            drop=as_stated,
+            recording=drop.recording,
             release=None if release is None else release.sample,
-            rest=no_rest(len(recording.channels)) if release is None else release.rest,
+            rest=no_rest(len(sensors)) if release is None else release.rest,
             marks=(*marked("clipped", over), *marked("spike", off)),
             fell=told,
             wheels=drop.wheels,
         )
-        for drop, recording, release, over, off, told in zip(
-            campaign.drops, campaign.recordings, releases, clipped, spiked, fell, strict=True
+        for as_stated, drop, release, over, off, told in zip(
+            stated, campaign.drops, releases, clipped, spiked, fell, strict=True
         )
     ]
     return Prepared(tuple(decays), tuple(left_out), tuple(seen))
@@ -190,8 +191,9 @@ def _release(recording: Recording) -> Release | None:
 def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[Wheel, float]:
     """Pool what all releases say about the corners; a wheel that never fell is taken to be like its neighbour."""
     jumps: defaultdict[Wheel, list[float]] = defaultdict(list)
-    for drop, recording, release in zip(campaign.drops, campaign.recordings, releases, strict=True):
+    for drop, release in zip(campaign.drops, releases, strict=True):
         if release is not None:
+            recording = drop.recording
             found = suspension_jump(recording.values, recording.rate, release, campaign.sensors, drop.wheels)
             for station, jump in found.items():
                 if np.isfinite(jump):
@@ -203,13 +205,13 @@ def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[W
 
 def _decay(
     campaign: Campaign,
-    drop: Drop,
+    drop: DropTest,
     name: str,
-    recording: Recording,
     release: Release | None,
     suspension: dict[Wheel, float],
     clipped: NDArray[np.bool_],
 ) -> FreeDecay | Fault:
+    recording = drop.recording
     where = recording.name
     if not recording.usable.any():
         for fault in recording.faults:

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.modal import leading_entry
 from sprung.report.picture import Real
 from sprung.results import Result
+from sprung.vibration import largest_entry
 
 _DECK, _ROOF, _HUB = 0.3, 0.62, 0.13
 """Heights of the wire car, parts of its wheelbase: nothing in a result tells a vehicle's outline."""
@@ -79,7 +79,7 @@ class WireCar:
         shape = np.array([complex(*part) for part in motion])
         moved: NDArray[np.complex128] = self.rows[:, : len(shape)] @ shape
         # In the phase in which what moves most is furthest up.
-        largest = moved[leading_entry(moved)]
+        largest = moved[largest_entry(moved)]
         return moved * (_SWING * self._wheelbase / largest) if largest else moved
 
     @property

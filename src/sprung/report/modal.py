@@ -10,7 +10,7 @@ from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderR
 from rich.text import Text
 
 from sprung.errors import Fault
-from sprung.modal import Diagram
+from sprung.modal import StabilisationDiagram
 from sprung.modal_survey import LoadModes
 from sprung.report.layout import figures, hanging, laid_out, table
 from sprung.report.terminal import fault_list
@@ -24,7 +24,7 @@ _MARGIN = 5
 class Chart:
     """A stabilisation diagram as wide as the terminal."""
 
-    diagram: Diagram
+    diagram: StabilisationDiagram
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Render it for a terminal: frequency to the right, on a logarithmic scale, the order upwards."""

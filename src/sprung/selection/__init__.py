@@ -1,22 +1,23 @@
 """Selection of the model: the table of model terms and the stepwise search."""
 
-from sprung.selection.forced_terms import nonlinear, tilted, with_forces
-from sprung.selection.linear_terms import carried, linear, wanting
+from sprung.selection.forced_terms import fit_forced_terms, select_gravity_leakage, select_nonlinear_terms
+from sprung.selection.linear_terms import fit_requested_terms, fit_term, select_linear_terms, select_roll_axis_height
 from sprung.selection.search import ModelSearch, SelectionStep
-from sprung.selection.structure import ModelStructure, choose_model
-from sprung.selection.terms import ENGINE, fit_from
+from sprung.selection.structure import ModelStructure, choose_structure
+from sprung.selection.terms import ENGINE, fit_structure
 
 __all__ = [
     "ENGINE",
     "ModelSearch",
     "ModelStructure",
     "SelectionStep",
-    "carried",
-    "choose_model",
-    "fit_from",
-    "linear",
-    "nonlinear",
-    "tilted",
-    "wanting",
-    "with_forces",
+    "choose_structure",
+    "fit_forced_terms",
+    "fit_requested_terms",
+    "fit_structure",
+    "fit_term",
+    "select_gravity_leakage",
+    "select_linear_terms",
+    "select_nonlinear_terms",
+    "select_roll_axis_height",
 ]

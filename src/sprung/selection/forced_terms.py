@@ -12,7 +12,7 @@ import numpy as np
 
 from sprung.estimation import NEAR, score_nonlinear_terms, score_stepped_terms, wald_test
 from sprung.progress import Step
-from sprung.selection.linear_terms import trying
+from sprung.selection.linear_terms import fit_term
 from sprung.selection.search import ERRS, ModelSearch
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import (
@@ -21,14 +21,14 @@ from sprung.selection.terms import (
     brought,
     carried_over,
     decided,
-    fit_from,
+    fit_structure,
     neutral,
     neutral_start,
     places_of_stops,
     thinned,
     without,
 )
-from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, separate_names
+from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, separate_track_names
 
 STOPS = "bump-stop"
 
@@ -45,19 +45,19 @@ _MORE = 2
 """How many times further extras are looked for where the first ones have been found."""
 
 
-def with_forces(way: ModelSearch, wanted: ModelStructure) -> ModelSearch:
+def fit_forced_terms(way: ModelSearch, wanted: ModelStructure) -> ModelSearch:
     """Fit the model that is wanted, whatever it gains."""
-    return tilted(way.fitting(way.choice.having(wanted.extras)))
+    return select_gravity_leakage(way.refit(way.structure.with_terms(wanted.terms)))
 
 
-def tilted(way: ModelSearch) -> ModelSearch:
+def select_gravity_leakage(way: ModelSearch) -> ModelSearch:
     """Let the sensors feel less of gravity where they turn with the body, if the records say that they do."""
-    other = way.fitting(replace(way.choice, tilting=True))
-    gain = 2 * (other.optimum.loglikelihood - way.optimum.loglikelihood) / other.inflation
+    other = way.refit(replace(way.structure, gravity_leakage=True))
+    gain = 2 * (other.fit.loglikelihood - way.fit.loglikelihood) / other.inflation
     return other if gain > way.each else way
 
 
-def nonlinear(way: ModelSearch, plain: ModelStructure) -> ModelSearch:
+def select_nonlinear_terms(way: ModelSearch, plain: ModelStructure) -> ModelSearch:
     """Fit the extras with laws of their own that promise something together, and leave out what is not missed.
 
     Parameters
@@ -68,21 +68,27 @@ def nonlinear(way: ModelSearch, plain: ModelStructure) -> ModelSearch:
         The model without anything that the records have asked for: whatever a linear vehicle took up of a nonlinear
         one's motion is nothing to start from.
     """
-    nonlinear = [extra for extra in way.choice.free if extra not in LINEAR_EXTRAS]
+    nonlinear = [extra for extra in way.structure.open_terms if extra not in LINEAR_EXTRAS]
     if not nonlinear or any(decay.clocks for decay in way.decays):
         return way
     way.progress(Step(f"scoring {', '.join(nonlinear)}"))
     start, hopeful = _hopeful(way, nonlinear)
     if not hopeful:
         return start
-    plain, path, best = replace(plain, met=start.choice.met, mounted=start.choice.mounted), start.path, start
+    plain, path, best = (
+        replace(plain, stop_gap=start.structure.stop_gap, engine_mounting=start.structure.engine_mounting),
+        start.steps,
+        start,
+    )
     for base in _bases(start, plain):
-        found = _found(replace(base, path=path), hopeful)
-        path = found.path
+        found = _found(replace(base, steps=path), hopeful)
+        path = found.steps
         best = found if found.worth(way) > best.worth(way) else best
-        if best.choice.nonlinear and not best.errs:
+        if best.structure.is_nonlinear and not best.errs:
             break
-    return tilted(replace(best, path=path)) if best.choice.nonlinear else replace(way, path=path)
+    return (
+        select_gravity_leakage(replace(best, steps=path)) if best.structure.is_nonlinear else replace(way, steps=path)
+    )
 
 
 def _hopeful(way: ModelSearch, among: Sequence[str]) -> tuple[ModelSearch, list[str]]:
@@ -98,33 +104,33 @@ def _bases(way: ModelSearch, plain: ModelStructure) -> Iterator[ModelSearch]:
     """Give linear vehicles beside which there may be forces, the simplest first."""
     simplest = _parted(way, plain)
     yield simplest
-    if plain.names != way.choice.names:
+    if plain.names != way.structure.names:
         yield way
-    if any(one.extra == ENGINE and one.fitted and one.gain > one.asked and not one.taken for one in way.path):
-        yield trying(simplest, ENGINE)
+    if any(one.extra == ENGINE and one.fitted and one.gain > one.asked and not one.taken for one in way.steps):
+        yield fit_term(simplest, ENGINE)
 
 
 def _parted(way: ModelSearch, choice: ModelStructure) -> ModelSearch:
     """Go on from another linear model."""
-    return way if choice.names == way.choice.names else way.fitting(choice)
+    return way if choice.names == way.structure.names else way.refit(choice)
 
 
 def _found(way: ModelSearch, hopeful: Sequence[str]) -> ModelSearch:
     """Fit what promises something, the first alone, and look for more until nothing does."""
     found = _together(way, hopeful[:1])
-    if not found.choice.nonlinear and len(hopeful) > 1:
+    if not found.structure.is_nonlinear and len(hopeful) > 1:
         found = _together(way, hopeful)
     for _ in range(_MORE):
-        if not found.choice.nonlinear:
+        if not found.structure.is_nonlinear:
             break
         if found.inflation > ERRS and not found.errs:
             break  # what is left is small and no noise: anything would seem to explain some of it
-        refused = {one.extra for one in found.path[len(way.path) :] if one.fitted and not one.taken}
+        refused = {one.extra for one in found.steps[len(way.steps) :] if one.fitted and not one.taken}
         tried = [extra for extra in found.open_among([SEPARATE, *EXTRAS]) if extra not in refused]
         promised = _prospects(found, tried) if tried else {}
         more = [extra for extra in tried if promised[extra] / found.inflation > way.asked(extra)]
         larger = _together(found, more) if more else found
-        if larger.choice.names == found.choice.names:
+        if larger.structure.names == found.structure.names:
             break
         found = larger
     return found
@@ -133,45 +139,45 @@ def _found(way: ModelSearch, hopeful: Sequence[str]) -> ModelSearch:
 def _together(way: ModelSearch, hopeful: Sequence[str]) -> ModelSearch:
     """Fit extras together, and leave out again what is not missed, the least missed first."""
     larger = way.larger(hopeful)
-    begun = fit_from(larger, way.decays, way.optimum, NEAR, way.progress, begun=True, most=_FIRST)
+    begun = fit_structure(larger, way.decays, way.fit, NEAR, way.progress, begun=True, most=_FIRST)
     promising = not way.explains_little(begun, _STILL_AT_FIRST)
     if promising and not begun.converged:
-        begun = fit_from(larger, way.decays, begun, NEAR, way.progress, begun=True)
+        begun = fit_structure(larger, way.decays, begun, NEAR, way.progress, begun=True)
     if not promising or way.explains_little(begun, _STILL):
         return way.noted(dict.fromkeys(hopeful, 0.0), True, False)
-    tried = replace(way, optimum=begun).fitting(larger)
-    gain, inflation = 2 * (tried.optimum.loglikelihood - way.optimum.loglikelihood) / tried.inflation, tried.inflation
-    if not tried.optimum.converged or gain < sum(map(way.asked, hopeful)):
+    tried = replace(way, fit=begun).refit(larger)
+    gain, inflation = 2 * (tried.fit.loglikelihood - way.fit.loglikelihood) / tried.inflation, tried.inflation
+    if not tried.fit.converged or gain < sum(map(way.asked, hopeful)):
         return way.noted(dict.fromkeys(hopeful, gain), True, False)
     way = tried
     for _ in range(len(EXTRAS)):
         lost = {
-            extra: wald_test(way.optimum, neutral(extra, way.choice.tracks)) / inflation
-            for extra in decided(way.choice)
+            extra: wald_test(way.fit, neutral(extra, way.structure.tracks)) / inflation
+            for extra in decided(way.structure)
         }
         vain = [extra for extra in lost if way.against(extra, inflation)]
         lost |= dict.fromkeys(vain, 0.0)
         least = min(lost, key=lambda extra: lost[extra] / way.asked(extra), default=None)
         if least is None or lost[least] > way.asked(least):
             break
-        way = way.noted({least: lost[least]}, True, False).fitting(without(way.choice, least))
-    return way.noted({extra: lost[extra] for extra in decided(way.choice)}, True, True)
+        way = way.noted({least: lost[least]}, True, False).refit(without(way.structure, least))
+    return way.noted({extra: lost[extra] for extra in decided(way.structure)}, True, True)
 
 
 def _scores(way: ModelSearch, extras: Sequence[str]) -> dict[str, float]:
     """Score extras with laws of their own from where a linear fit is."""
     larger = way.larger(extras)
-    start = neutral_start(larger, way.optimum.parameters)
+    start = neutral_start(larger, way.fit.parameters)
     candidates = {extra: brought(extra, larger.tracks) for extra in extras}
-    return score_nonlinear_terms(way.optimum, way.decays, larger.stepped, start, candidates)
+    return score_nonlinear_terms(way.fit, larger.nonlinear_models, start, candidates)
 
 
 def _scored(way: ModelSearch, extras: Sequence[str]) -> tuple[ModelSearch, dict[str, float]]:
     """Score extras, stops where they would explain most; and go on with stops there."""
-    places = places_of_stops(way.choice, way.optimum, way.decays) if STOPS in extras else []
-    first, *others = [replace(way, choice=replace(way.choice, met=met)) for met in places] or [way]
+    places = places_of_stops(way.structure, way.fit, way.decays) if STOPS in extras else []
+    first, *others = [replace(way, structure=replace(way.structure, stop_gap=met)) for met in places] or [way]
     promised = _scores(first, extras)
-    if promised.get(STOPS, 0.0) < way.asked(STOPS) * way.optimum.disagreement:
+    if promised.get(STOPS, 0.0) < way.asked(STOPS) * way.fit.disagreement:
         return first, promised
     scores = [promised[STOPS], *(_scores(way, [STOPS])[STOPS] for way in others)]
     best = int(np.argmax(scores))
@@ -181,19 +187,19 @@ def _scored(way: ModelSearch, extras: Sequence[str]) -> tuple[ModelSearch, dict[
 def _prospects(way: ModelSearch, extras: Sequence[str]) -> dict[str, float]:
     """Score any extras from where a fit with forces is."""
     largest = way.larger(extras)
-    names, own = largest.names, way.optimum.parameters
-    parted = largest.tracks != way.choice.tracks
+    names, own = largest.names, way.fit.parameters
+    parted = largest.tracks != way.structure.tracks
     decays, share = thinned(way.decays)
     found = score_stepped_terms(
         decays,
-        largest.stepped,
-        way.choice.campaign.sensors,
+        largest.nonlinear_models,
+        way.structure.campaign.sensors,
         largest.known,
         values=neutral_start(largest, own),
-        states=carried_over(way.optimum.states, way.optimum.names, names),
-        together=[separate_names(name) if parted else (name,) for name in own],
+        states=carried_over(way.fit.states, way.fit.names, names),
+        together=[separate_track_names(name) if parted else (name,) for name in own],
         candidates={extra: [(name,) for name in brought(extra, largest.tracks)] for extra in extras},
-        tilting=way.choice.tilting,
+        tilting=way.structure.gravity_leakage,
     )
     return {extra: gain / share for extra, gain in found.items()}
 

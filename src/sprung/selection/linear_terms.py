@@ -23,15 +23,15 @@ _UNLIKELY = 0.25
 """Part of the gain that is asked of a larger model below which it is not even fitted."""
 
 
-def carried(way: ModelSearch) -> ModelSearch:
+def select_roll_axis_height(way: ModelSearch) -> ModelSearch:
     """Let the records decide at which of two heights the body is carried, where they may."""
-    if not way.choice.heights.undecided:
+    if not way.structure.heights.undecided:
         return way
-    other = way.fitting(replace(way.choice, carried_at="roll axis"))
-    return other if other.optimum.loglikelihood > way.optimum.loglikelihood else way
+    other = way.refit(replace(way.structure, carried_at="roll axis"))
+    return other if other.fit.loglikelihood > way.fit.loglikelihood else way
 
 
-def linear(way: ModelSearch, among: Sequence[str] = (SEPARATE, *LINEAR_EXTRAS)) -> ModelSearch:
+def select_linear_terms(way: ModelSearch, among: Sequence[str] = (SEPARATE, *LINEAR_EXTRAS)) -> ModelSearch:
     """Try the extras that matrices carry, or some of them, the most promising first, until none gains what is asked."""
     refused: set[str] = set()
     while True:
@@ -45,41 +45,41 @@ def linear(way: ModelSearch, among: Sequence[str] = (SEPARATE, *LINEAR_EXTRAS)) 
         extra = max(hopeful, key=promised.__getitem__)
         refused |= (promised.keys() - set(hopeful)) | {extra}
         tried = _fitted(way, found[extra][1], extra)
-        gain = 2 * (tried.optimum.loglikelihood - way.optimum.loglikelihood) / tried.optimum.disagreement
-        against = tried.against(extra, tried.inflation) if tried.optimum.converged else "the fit with it did not settle"
+        gain = 2 * (tried.fit.loglikelihood - way.fit.loglikelihood) / tried.fit.disagreement
+        against = tried.against(extra, tried.inflation) if tried.fit.converged else "the fit with it did not settle"
         enough = gain > way.asked(extra)
         larger = tried.noted({extra: gain}, True, True)
         if enough and not against and extra in _WHOLLY and tried.errs:
-            larger = linear(larger, [one for one in among if one not in _WHOLLY])
+            larger = select_linear_terms(larger, [one for one in among if one not in _WHOLLY])
             against = "it does not explain the whole misfit" if larger.errs else ""
         if enough and not against:
             way = larger
             refused.clear()
         else:
             way = way.noted({extra: gain}, True, False, against if enough else "")
-            way = replace(way, choice=replace(way.choice, mounted=tried.choice.mounted))
+            way = replace(way, structure=replace(way.structure, engine_mounting=tried.structure.engine_mounting))
 
 
-def wanting(way: ModelSearch, extras: Sequence[str]) -> ModelSearch:
+def fit_requested_terms(way: ModelSearch, extras: Sequence[str]) -> ModelSearch:
     """Fit linear extras that are wanted, whatever they gain."""
     for extra in extras:
-        way = trying(way, extra)
+        way = fit_term(way, extra)
     return way
 
 
 def _promised(way: ModelSearch, extra: str) -> tuple[float, ModelStructure]:
     """Give what a linear extra would gain, and the model that has it, begun where it would gain most."""
-    sensors, own = way.choice.campaign.sensors, way.optimum.parameters
+    sensors, own = way.structure.campaign.sensors, way.fit.parameters
     larger = way.larger([extra])
     gains = [
-        (score_linear_term(way.decays, one.models, sensors, one.known, neutral_start(one, own)), one)
+        (score_linear_term(way.decays, one.linear_models, sensors, one.known, neutral_start(one, own)), one)
         for one in variants(extra, larger, own)
     ]
     gain, best = max(gains, key=lambda each: each[0], default=(0.0, larger))
-    return gain / way.optimum.disagreement, best
+    return gain / way.fit.disagreement, best
 
 
-def trying(way: ModelSearch, extra: str) -> ModelSearch:
+def fit_term(way: ModelSearch, extra: str) -> ModelSearch:
     """Fit a linear extra, begun where it promises most."""
     return _fitted(way, _promised(way, extra)[1], extra)
 
@@ -87,10 +87,10 @@ def trying(way: ModelSearch, extra: str) -> ModelSearch:
 def _fitted(way: ModelSearch, larger: ModelStructure, extra: str) -> ModelSearch:
     """Fit a model with one more extra; with an engine, without which all may be wrong, from nothing as well."""
     way.progress(Step(f"fitting with {extra}"))
-    begins = extra != ENGINE or has_masses(larger, way.optimum.parameters)
-    ends = [way.fitting(larger)] if begins else []
+    begins = extra != ENGINE or has_masses(larger, way.fit.parameters)
+    ends = [way.refit(larger)] if begins else []
     if extra == ENGINE:
         sensors, known = larger.campaign.sensors, larger.known
-        anew = fit_linear(way.decays, larger.models, sensors, known, enough=NEAR, progress=way.progress)
-        ends.append(replace(way, choice=larger, optimum=anew.after(way.optimum)))
-    return max(ends, key=lambda end: (end.optimum.converged, end.optimum.loglikelihood))
+        anew = fit_linear(way.decays, larger.linear_models, sensors, known, enough=NEAR, progress=way.progress)
+        ends.append(replace(way, structure=larger, fit=anew.after(way.fit)))
+    return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))

@@ -14,7 +14,7 @@ from sprung.estimation import NEAR, FitResult, overdispersion_of
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import SEPARATE, brought, decided, fit_from, possible, size_of
+from sprung.selection.terms import SEPARATE, brought, decided, fit_structure, possible, size_of
 
 Real = NDArray[np.float64]
 
@@ -69,25 +69,25 @@ class ModelSearch:
 
     Attributes
     ----------
-    choice, summit
+    structure, fit
         The model, and where its fit ended.
     decays
         What is fitted.
-    path
+    steps
         What was tried.
     progress
         Called with each step that begins.
     """
 
-    choice: ModelStructure
-    optimum: FitResult
+    structure: ModelStructure
+    fit: FitResult
     decays: Sequence[FreeDecay]
-    path: tuple[SelectionStep, ...] = ()
+    steps: tuple[SelectionStep, ...] = ()
     progress: Progress = silent
 
     def asked(self, extra: str) -> float:
         """Give what is asked of an extra."""
-        return len(brought(extra, self.choice.tracks)) * self.each
+        return len(brought(extra, self.structure.tracks)) * self.each
 
     @property
     def each(self) -> float:
@@ -96,34 +96,34 @@ class ModelSearch:
 
     def open_among(self, among: Sequence[str]) -> list[str]:
         """Give what may be tried and is not in the model."""
-        tracks = [SEPARATE] if self.choice.open and self.choice.tracks == "shared" else []
-        free = [extra for extra in self.choice.free if extra not in self.choice.extras]
+        tracks = [SEPARATE] if self.structure.tracks_open and self.structure.tracks == "shared" else []
+        free = [extra for extra in self.structure.open_terms if extra not in self.structure.terms]
         return [extra for extra in (*tracks, *free) if extra in among]
 
     def larger(self, extras: Sequence[str]) -> ModelStructure:
         """Give the model with more extras."""
         added = tuple(extra for extra in extras if extra != SEPARATE)
-        return self.choice.having((*self.choice.extras, *added), "separate" if SEPARATE in extras else None)
+        return self.structure.with_terms((*self.structure.terms, *added), "separate" if SEPARATE in extras else None)
 
     def noted(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> ModelSearch:
         """Give the same with attempts noted, by extra and gain."""
         notes = [SelectionStep(extra, gain, self.asked(extra), fitted, taken, against) for extra, gain in gains.items()]
-        return replace(self, path=(*self.path, *notes))
+        return replace(self, steps=(*self.steps, *notes))
 
-    def fitting(self, choice: ModelStructure) -> ModelSearch:
+    def refit(self, choice: ModelStructure) -> ModelSearch:
         """Fit another model from here."""
-        return replace(self, choice=choice, optimum=fit_from(choice, self.decays, self.optimum, NEAR, self.progress))
+        return replace(self, structure=choice, fit=fit_structure(choice, self.decays, self.fit, NEAR, self.progress))
 
     @cached_property
     def inflation(self) -> float:
         """By how much the records tell less than white residuals of drops that agree would."""
-        return overdispersion_of(self.optimum, self.decays)
+        return overdispersion_of(self.fit)
 
     @cached_property
     def _rest(self) -> Real:
         """Variance of each channel while the vehicle stood on its blocks, (m/s²)²; 0 where nobody knows; shape (channel,)."""
         rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
-        variances = [np.nan_to_num(noise.var(axis=1)) for noise in rests] or [np.zeros_like(self.optimum.noise)]
+        variances = [np.nan_to_num(noise.var(axis=1)) for noise in rests] or [np.zeros_like(self.fit.noise)]
         rest: Real = np.mean(variances, axis=0)
         return rest
 
@@ -131,34 +131,34 @@ class ModelSearch:
     def errs(self) -> bool:
         """Whether the model leaves much beside the sensors' noise."""
         known = self._rest > 0
-        return bool(known.any()) and float(np.mean(self.optimum.noise[known] ** 2 / self._rest[known])) > 1 + _MUCH
+        return bool(known.any()) and float(np.mean(self.fit.noise[known] ** 2 / self._rest[known])) > 1 + _MUCH
 
     def worth(self, than: ModelSearch) -> float:
         """Give what it gains over another way, in twice the log-likelihood, beyond what is asked of its parameters."""
-        gain = 2 * (self.optimum.loglikelihood - than.optimum.loglikelihood) / self.inflation
-        return gain - (len(self.choice.names) - len(than.choice.names)) * self.each
+        gain = 2 * (self.fit.loglikelihood - than.fit.loglikelihood) / self.inflation
+        return gain - (len(self.structure.names) - len(than.structure.names)) * self.each
 
     def against(self, extra: str, inflation: float) -> str:
         """Say what speaks against an extra, whatever it gains; nothing where nothing does."""
-        if not possible(extra, self.optimum):
+        if not possible(extra, self.fit):
             return "the estimate is negative, which is not physical"
-        if inflation > ERRS and size_of(extra, self.optimum.parameters) < _MATTERS:
+        if inflation > ERRS and size_of(extra, self.fit.parameters) < _MATTERS:
             return "it is too small to be told from other errors of the model"
         return ""
 
     def explains_little(self, begun: FitResult, part: float) -> bool:
         """Say whether more than a part of what the linear vehicle leaves is left still: then something else is the matter."""
-        before, after = (np.maximum(one.noise**2 - self._rest, 0.0) for one in (self.optimum, begun))
+        before, after = (np.maximum(one.noise**2 - self._rest, 0.0) for one in (self.fit, begun))
         much = before > self._rest
         return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
     @property
-    def why(self) -> str:
+    def reason(self) -> str:
         """What decided on the model, in words."""
-        choice = self.choice
-        if not (choice.open or choice.free):
+        choice = self.structure
+        if not (choice.tracks_open or choice.open_terms):
             return f"half-distances {choice.tracks}, as the campaign says or what is known implies"
-        last = {one.extra: one for one in self.path}
+        last = {one.extra: one for one in self.steps}
         taken = ", ".join(one.text for one in last.values() if one.taken and one.extra in decided(choice))
         refused = ", ".join(one.text for one in last.values() if one.extra not in decided(choice))
         said = (

@@ -18,10 +18,10 @@ from sprung.vehicle import (
     LinearModel,
     NonlinearModel,
     Tracks,
-    brought_by,
-    ground_forces,
+    ground_contact_elements,
     nonlinear_elements,
     parameter_names,
+    parameters_of_term,
     seven_degrees_of_freedom,
 )
 
@@ -39,22 +39,22 @@ class ModelStructure:
         Of which loads.
     tracks
         Whether springs and dampers of an axle share their half-distance.
-    extras
+    terms
         What it carries beyond the paper's seven degrees of freedom.
     known
         Everything known beforehand about its parameters, the wheelbase included.
-    open
+    tracks_open
         Whether neither the user nor what is known says anything about the tracks, so that the records are to decide.
-    free
+    open_terms
         The extras about which the records are to decide.
-    tilting
+    gravity_leakage
         Whether the sensors tilt with the body, so that they feel the less of gravity the further it turns: an effect of the
         second order that only the model with forces beside it can show.
-    airborne
+    unilateral_tyres
         Whether wheels may be off the ground, so that the ground is a force beside the others.
-    met
+    stop_gap
         Compression at which stops are thought to be met before a fit says so, m.
-    mounted
+    engine_mounting
         How an engine is thought to be mounted before a fit says so.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
@@ -62,14 +62,14 @@ class ModelStructure:
 
     campaign: Campaign
     tracks: Tracks
-    extras: tuple[str, ...]
+    terms: tuple[str, ...]
     known: Mapping[str, KnownValue]
-    open: bool
-    free: tuple[str, ...]
-    tilting: bool = False
-    airborne: bool = False
-    met: float = 1.0
-    mounted: Mounting = USUAL_MOUNTING
+    tracks_open: bool
+    open_terms: tuple[str, ...]
+    gravity_leakage: bool = False
+    unilateral_tyres: bool = False
+    stop_gap: float = 1.0
+    engine_mounting: Mounting = USUAL_MOUNTING
     carried_at: CarriedAt = "wheels"
 
     @property
@@ -82,49 +82,51 @@ class ModelStructure:
         """The parameters: the vehicle's, and the masses of loads that are known with an uncertainty."""
         used = {drop.load for drop in self.campaign.drops}
         masses = [name for load in self.campaign.loads if load.name in used for name in load.uncertain_masses]
-        return (*parameter_names(self.tracks, self.extras), *masses)
+        return (*parameter_names(self.tracks, self.terms), *masses)
 
     @cached_property
-    def models(self) -> Mapping[str, LinearModel]:
+    def linear_models(self) -> Mapping[str, LinearModel]:
         """Equations of motion by load name, without the forces that no matrix carries."""
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
+        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         return {
             load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
             for load in self.campaign.loads
         }
 
     @cached_property
-    def stepped(self) -> Mapping[str, NonlinearModel]:
+    def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with the forces that no matrix carries."""
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights)
-        forces = nonlinear_elements(self.tracks, self.extras) + (ground_forces(self.extras) if self.airborne else ())
+        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
+        forces = nonlinear_elements(self.tracks, self.terms) + (
+            ground_contact_elements(self.terms) if self.unilateral_tyres else ()
+        )
         return {
             load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
             for load in self.campaign.loads
         }
 
     @property
-    def nonlinear(self) -> bool:
+    def is_nonlinear(self) -> bool:
         """Whether it has such forces."""
-        return any(extra not in LINEAR_EXTRAS for extra in self.extras)
+        return any(extra not in LINEAR_EXTRAS for extra in self.terms)
 
     @property
-    def followed(self) -> bool:
+    def is_time_stepped(self) -> bool:
         """Whether its motion has to be followed step by step."""
-        return self.nonlinear or self.airborne
+        return self.is_nonlinear or self.unilateral_tyres
 
     @property
-    def linear_extras(self) -> tuple[str, ...]:
+    def linear_terms(self) -> tuple[str, ...]:
         """Those of its extras that matrices carry."""
-        return tuple(extra for extra in self.extras if extra in LINEAR_EXTRAS)
+        return tuple(extra for extra in self.terms if extra in LINEAR_EXTRAS)
 
-    def having(self, extras: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
+    def with_terms(self, terms: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
         """Give the same with other extras, and other tracks."""
-        ordered = tuple(extra for extra in EXTRAS if extra in extras)
-        return replace(self, tracks=tracks or self.tracks, extras=ordered)
+        ordered = tuple(extra for extra in EXTRAS if extra in terms)
+        return replace(self, tracks=tracks or self.tracks, terms=ordered)
 
 
-def choose_model(
+def choose_structure(
     campaign: Campaign, tracks: Tracks | None = None, extras: tuple[str, ...] | None = None
 ) -> ModelStructure:
     """Choose the model for a campaign, as far as nobody has to look into the records for it.
@@ -169,7 +171,7 @@ def choose_model(
         )
     names = parameter_names(chosen, chosen_extras) if not problems else ()
     for extra in EXTRAS:
-        brought = brought_by(extra, chosen)
+        brought = parameters_of_term(extra, chosen)
         for name in (one for one in brought if one in campaign.known and names and one not in names):
             problems.add(
                 f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",

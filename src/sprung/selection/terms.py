@@ -18,10 +18,10 @@ from sprung.vehicle import (
     PARAMETERS,
     Rows,
     Tracks,
-    brought_by,
     coordinates,
     nonlinear_elements,
-    separated,
+    parameters_of_term,
+    with_separate_tracks,
 )
 
 Real = NDArray[np.float64]
@@ -63,7 +63,7 @@ _LONG_ENOUGH = 3.0
 """s of each decay that tell it."""
 
 
-def fit_from(
+def fit_structure(
     choice: ModelStructure,
     decays: Sequence[FreeDecay],
     before: FitResult,
@@ -97,12 +97,12 @@ def fit_from(
     states = carried_over(before.states if states is None else states, before.names, choice.names)
     sensors, known = choice.campaign.sensors, choice.known
     start = start_of(choice, before.parameters)
-    if not choice.followed:
-        found = fit_linear(decays, choice.models, sensors, known, start=start, enough=enough)
+    if not choice.is_time_stepped:
+        found = fit_linear(decays, choice.linear_models, sensors, known, start=start, enough=enough)
     else:
         found = fit_nonlinear(
             decays,
-            choice.stepped,
+            choice.nonlinear_models,
             sensors,
             known,
             start=start,
@@ -111,7 +111,7 @@ def fit_from(
             near=states.shape[1] > 2 * len(coordinates(choice.names)),
             begun=begun,
             most=most,
-            tilting=choice.tilting,
+            tilting=choice.gravity_leakage,
             progress=progress,
         )
     return found.after(before)
@@ -119,15 +119,15 @@ def fit_from(
 
 def decided(choice: ModelStructure) -> list[str]:
     """Give what the records brought into the model."""
-    tracks = [SEPARATE] if choice.open and choice.tracks == "separate" else []
-    return [*tracks, *(extra for extra in choice.extras if extra in choice.free)]
+    tracks = [SEPARATE] if choice.tracks_open and choice.tracks == "separate" else []
+    return [*tracks, *(extra for extra in choice.terms if extra in choice.open_terms)]
 
 
 def without(choice: ModelStructure, extra: str) -> ModelStructure:
     """Give a model without an extra."""
     if extra == SEPARATE:
-        return choice.having(choice.extras, "shared")
-    return choice.having(tuple(one for one in choice.extras if one != extra))
+        return choice.with_terms(choice.terms, "shared")
+    return choice.with_terms(tuple(one for one in choice.terms if one != extra))
 
 
 def size_of(extra: str, p: Mapping[str, float]) -> float:
@@ -157,21 +157,21 @@ def possible(extra: str, optimum: FitResult) -> bool:
 
 def brought(extra: str, tracks: Tracks) -> tuple[str, ...]:
     """Name the parameters that move on their own in the larger model only."""
-    return ("t_f1", "t_r1") if extra == SEPARATE else brought_by(extra, tracks)
+    return ("t_f1", "t_r1") if extra == SEPARATE else parameters_of_term(extra, tracks)
 
 
 def neutral(extra: str, tracks: Tracks) -> list[tuple[str, str | float]]:
     """Give what each parameter would have to be for the extra not to be there: a value, or another parameter."""
     if extra == SEPARATE:
         return [("t_f1", "t_f2"), ("t_r1", "t_r2")]
-    return [(name, NEUTRAL[name]) for name in brought_by(extra, tracks) if name in NEUTRAL]
+    return [(name, NEUTRAL[name]) for name in parameters_of_term(extra, tracks) if name in NEUTRAL]
 
 
 def places_of_stops(choice: ModelStructure, optimum: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Give compressions, m, at which stops may be met, from how far a fitted vehicle moves."""
     rows = Rows.of([force.row for force in nonlinear_elements(choice.tracks, ("bump-stop",))], choice.names)
-    G, point = rows.at(optimum.values), optimum.point
-    motions = (point.place.motion(point.weights, i, 0, decay.samples) for i, decay in enumerate(decays))
+    G = rows.at(optimum.values)
+    motions = (optimum.motion(i, 0, decay.samples) for i, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
     return [part * largest for part in _MET] if largest > 0 else []
 
@@ -181,29 +181,29 @@ def variants(extra: str, choice: ModelStructure, own: Mapping[str, float]) -> li
     if extra != ENGINE:
         return [choice]
     mountings = mountings_of(own["a"] + own["b"])
-    return [one for one in (replace(choice, mounted=each) for each in mountings) if has_masses(one, own)]
+    return [one for one in (replace(choice, engine_mounting=each) for each in mountings) if has_masses(one, own)]
 
 
 def has_masses(choice: ModelStructure, own: Mapping[str, float]) -> bool:
     """Say whether a fit begins with a vehicle of which every part has mass."""
     start = np.array(list(start_of(choice, own).values()))
-    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in choice.models.values())
+    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in choice.linear_models.values())
 
 
 def neutral_start(choice: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
     """Give the same vehicle by the names of a larger model; an engine is next to none, as without any it would be nowhere."""
     together = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
     stiff = {f"s_{axle}": _STIFFER * own[f"k_s{axle}"] for axle in "fr"}
-    stops = dict.fromkeys(("x_bf", "x_br"), choice.met)
-    engine = choice.mounted.engine(_SPECK * own["m_s"])
-    known = {**NEUTRAL, **stiff, **stops, **engine, **separated(own), **together, **own}
+    stops = dict.fromkeys(("x_bf", "x_br"), choice.stop_gap)
+    engine = choice.engine_mounting.engine(_SPECK * own["m_s"])
+    known = {**NEUTRAL, **stiff, **stops, **engine, **with_separate_tracks(own), **together, **own}
     return {name: known[name] for name in choice.names}
 
 
 def start_of(choice: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
     """Give where to start a model from: friction and engines that are not there yet start with some."""
     slid = {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"}
-    begun = {**slid, **choice.mounted.engine(USUAL_ENGINE * own["m_s"]), **own}
+    begun = {**slid, **choice.engine_mounting.engine(USUAL_ENGINE * own["m_s"]), **own}
     return {name: begun.get(name, value) for name, value in neutral_start(choice, own).items()}
 
 

@@ -12,7 +12,7 @@ from sprung.errors import Problems
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, Wheel, half_sine_bump, tyre_rates
+from sprung.vehicle import Load, Sensor, Vehicle, Wheel, drive_over_half_sine_bump, tyre_rates
 
 
 def half_sine_bumps(
@@ -75,7 +75,7 @@ def half_sine_bumps(
     drops, accelerations = [], []
     for load in setup.loads:
         matrices = vehicle.matrices(load)
-        motion, _ = half_sine_bump(matrices, tyre_rates(vehicle), wheels, height, passage, 1 / rate, samples)
+        motion, _ = drive_over_half_sine_bump(matrices, tyre_rates(vehicle), wheels, height, passage, 1 / rate, samples)
         drops.append(Drop(load=load.name, wheels=wheels, start=before / rate + passage))
         accelerations.append(np.hstack([np.zeros((len(motion.acceleration), before)), motion.acceleration]))
     return setup.campaign(name_files(drops, "bump"), accelerations, "half-sine bump", np.random.default_rng(seed))

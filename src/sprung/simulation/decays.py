@@ -13,7 +13,7 @@ from sprung.errors import Problems
 from sprung.simulation.records import name_files
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, coordinates, decays_with_forces, free_decay, nonlinear_elements
+from sprung.vehicle import Load, Sensor, Vehicle, coordinates, free_decay, nonlinear_elements, simulate_nonlinear_decays
 
 
 def free_decays(
@@ -84,7 +84,7 @@ def free_decays(
     drops = [Drop(load=load.name, start=0.0) for load, _ in begun]
     if nonlinear_elements(vehicle.tracks, vehicle.extras):
         loads_of, states_of = [load for load, _ in begun], np.array([state for _, state in begun])
-        motions = decays_with_forces(vehicle, loads_of, states_of, 1 / rate, samples)
+        motions = simulate_nonlinear_decays(vehicle, loads_of, states_of, 1 / rate, samples)
     else:
         motions = [free_decay(vehicle.matrices(load), state, 1 / rate, samples) for load, state in begun]
     accelerations = [motion.acceleration for motion in motions]

@@ -15,7 +15,15 @@ from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
 from sprung.simulation.setup import Setup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Block, Load, Sensor, Vehicle, drop_from_blocks, drops_with_forces, nonlinear_elements
+from sprung.vehicle import (
+    BlockSupport,
+    Load,
+    Sensor,
+    Vehicle,
+    drop_from_blocks,
+    nonlinear_elements,
+    simulate_nonlinear_drops,
+)
 
 DEFAULT_HEIGHT = 0.05
 """Height of the blocks where a drop does not say, m."""
@@ -130,8 +138,8 @@ def simulate(
     problems.raise_if_any()
     if nonlinear_elements(vehicle.tracks, vehicle.extras):
         progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
-        blocks = [Block(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
-        motions = drops_with_forces(vehicle, blocks, 1 / rate, after, first, gravity)
+        blocks = [BlockSupport(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
+        motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, after, first, gravity)
         accelerations = [motion.acceleration for motion in motions]
     accelerations = [np.hstack([np.zeros((len(one), before)), one]) for one in accelerations]
     campaign = setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))

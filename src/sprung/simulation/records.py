@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from sprung.campaign import Drop
 from sprung.errors import Problems
-from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel, problems_of_record, record_of
+from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel, parse_record, problems_of_record
 
 Record = TypeVar("Record")
 
@@ -68,7 +68,7 @@ def records(
 def record(model: type[Record], where: str, given: Record | Mapping[str, Any], problems: Problems) -> Record | None:
     """Make a record from a mapping; None, and what is wrong added to the problems, if that cannot be."""
     try:
-        return given if isinstance(given, model) else record_of(model, cast("Mapping[str, Any]", given))
+        return given if isinstance(given, model) else parse_record(model, cast("Mapping[str, Any]", given))
     except ValidationError as error:
         for problem in problems_of_record(model, error, f"simulate: {where}"):
             problems.add(problem.where, problem.found, problem.expected, problem.do)

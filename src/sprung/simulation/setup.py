@@ -150,22 +150,23 @@ class Setup:
         sensors, rate = self.sensing.sensors, self.sensing.rate
         parameters = self.vehicle.parameters
         S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
-        recordings = [
-            Recording(
-                name=name,
-                channels=tuple(sensor.channel for sensor in sensors),
-                values=self.sensing.readings(S @ acceleration, random),
-                start=0.0,
-                rate=rate,
-                history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
+        recorded = [
+            drop.with_recording(
+                Recording(
+                    name=name,
+                    channels=tuple(sensor.channel for sensor in sensors),
+                    values=self.sensing.readings(S @ acceleration, random),
+                    start=0.0,
+                    rate=rate,
+                    history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
+                )
             )
             for drop, name, acceleration in zip(drops, recording_names(drops), accelerations, strict=True)
         ]
         return Campaign(
             name=self.vehicle.name,
             sensors=sensors,
-            drops=tuple(drops),
-            recordings=tuple(recordings),
+            drops=tuple(recorded),
             loads=self.loads,
             wheelbase=self.known["wheelbase"],
             cg_height=self.vehicle.cg_height,

@@ -18,7 +18,7 @@ from sprung.campaign import Campaign, CampaignSource, Drop, Given, ModelChoice, 
 from sprung.errors import InputError, Problems
 from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
 from sprung.progress import Progress, Step, silent
-from sprung.selection import choose_model
+from sprung.selection import choose_structure
 from sprung.simulation import DEFAULT_HEIGHT, Setup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
@@ -124,7 +124,6 @@ def plan(
         name=vehicle.name,
         sensors=setup.sensing.sensors,
         drops=(),
-        recordings=(),
         loads=setup.loads,
         wheelbase=setup.known["wheelbase"],
         cg_height=vehicle.cg_height,
@@ -134,14 +133,12 @@ def plan(
         model=setup.model,
     )
     own = vehicle.extras
-    choice = choose_model(
+    choice = choose_structure(
         statement,
         setup.model.tracks or ("separate" if vehicle.tracks == "separate" else None),
         own if setup.model.extras is None else None,
     )
-    subject = Subject(
-        vehicle, choice.tracks, choice.extras, choice.known, setup.sensing.sensors, levels, rate, duration
-    )
+    subject = Subject(vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration)
     loaded = {load.name: load for load in setup.loads}
     planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
     return draw_up(PlannedTest(subject, planned), wanted)

@@ -1,42 +1,42 @@
 """The only room that knows the equations of motion: parameters, elements, matrices, loads, sensors, exact response."""
 
 from sprung.vehicle.characteristics import CHARACTERISTICS, WHEEL_LOADS, Characteristic, characteristic, wheel_loads
-from sprung.vehicle.derived import DERIVED, quantity
-from sprung.vehicle.drop import Event, Fall, LinearSegment, drop_from_blocks
+from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
+from sprung.vehicle.derived import DERIVED, evaluate_quantity
+from sprung.vehicle.drop import ContactEvent, DropMotion, LinearSegment, drop_from_blocks
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
     Element,
-    Force,
-    Law,
+    LinearLaw,
+    NonlinearElement,
     Tracks,
-    ground_forces,
+    ground_contact_elements,
     half_distances,
     nonlinear_elements,
     seven_degrees_of_freedom,
 )
-from sprung.vehicle.examples import SCHOOL_BUS, TABLE_1_CAR
+from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.ground import static_wheel_loads, tyre_rates
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.laws import ElementInput
+from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
-from sprung.vehicle.model import LAWS, LinearModel, Matrices, Rows
-from sprung.vehicle.nonlinear import Forces, NonlinearModel
-from sprung.vehicle.nonlinear_simulation import Block, decays_with_forces, drops_with_forces
+from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows
+from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
+from sprung.vehicle.nonlinear_simulation import BlockSupport, simulate_nonlinear_decays, simulate_nonlinear_drops
+from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
     EXTRA_PARAMETERS,
     LOAD_MASS,
     NEUTRAL,
     PARAMETERS,
     Parameter,
-    brought_by,
     parameter_names,
-    separate_names,
-    separated,
+    parameters_of_term,
+    separate_track_names,
+    with_separate_tracks,
 )
-from sprung.vehicle.record import UNKNOWN_KEY, problems_of_record, record, record_of
-from sprung.vehicle.response import Motion, affine_response, free_decay, half_sine_bump
-from sprung.vehicle.rows import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
+from sprung.vehicle.response import Motion, affine_response, drive_over_half_sine_bump, free_decay
 from sprung.vehicle.sensor import Sensor
 from sprung.vehicle.stepping import Sensitivities, Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
@@ -48,9 +48,9 @@ __all__ = [
     "EMPTY",
     "EXTRAS",
     "EXTRA_PARAMETERS",
-    "LAWS",
     "LEVEL",
     "LINEAR_EXTRAS",
+    "LINEAR_LAWS",
     "LOAD_MASS",
     "NEUTRAL",
     "PARAMETERS",
@@ -61,24 +61,24 @@ __all__ = [
     "WHEELS_AT",
     "WHEEL_LOADS",
     "Added",
-    "Block",
+    "BlockSupport",
     "CarriedAt",
     "Characteristic",
+    "ContactEvent",
+    "DropMotion",
     "Element",
     "ElementInput",
-    "Event",
-    "Fall",
     "Finite",
-    "Force",
-    "Forces",
     "Heights",
     "Item",
-    "Law",
+    "LinearLaw",
     "LinearModel",
     "LinearSegment",
     "Load",
     "Matrices",
     "Motion",
+    "NonlinearElement",
+    "NonlinearForces",
     "NonlinearModel",
     "NotNegative",
     "Parameter",
@@ -93,26 +93,26 @@ __all__ = [
     "Vehicle",
     "Wheel",
     "affine_response",
-    "brought_by",
     "characteristic",
+    "checked_record",
     "coordinates",
-    "decays_with_forces",
+    "drive_over_half_sine_bump",
     "drop_from_blocks",
-    "drops_with_forces",
+    "evaluate_quantity",
     "free_decay",
-    "ground_forces",
+    "ground_contact_elements",
     "half_distances",
-    "half_sine_bump",
     "nonlinear_elements",
     "parameter_names",
+    "parameters_of_term",
+    "parse_record",
     "problems_of_record",
-    "quantity",
-    "record",
-    "record_of",
-    "separate_names",
-    "separated",
+    "separate_track_names",
     "seven_degrees_of_freedom",
+    "simulate_nonlinear_decays",
+    "simulate_nonlinear_drops",
     "static_wheel_loads",
     "tyre_rates",
     "wheel_loads",
+    "with_separate_tracks",
 ]

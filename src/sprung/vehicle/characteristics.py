@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.derived import DERIVED, quantity
+from sprung.vehicle.derived import DERIVED, evaluate_quantity
+from sprung.vehicle.kinematics import HEAVE, WHEELS_AT
 from sprung.vehicle.model import LinearModel
-from sprung.vehicle.rows import HEAVE, WHEELS_AT
 
 Real = NDArray[np.float64]
 Values = Mapping[str, complex]
@@ -163,7 +163,7 @@ def characteristic(name: str, names: Sequence[str], values: Real) -> tuple[float
         By each parameter, SI, shape (parameter,); exact to rounding.
     """
     if name in DERIVED:
-        return quantity(name, names, values)
+        return evaluate_quantity(name, names, values)
     function = CHARACTERISTICS[name].value
     told = dict(zip(names, values.tolist(), strict=True))
     # f(p + ih) = f(p) + ih f'(p) + O(h²): the derivative is read off the imaginary part, without any cancellation.

@@ -41,7 +41,9 @@ DERIVED: Mapping[str, Callable[[Mapping[str, float]], tuple[float, Gradient]]] =
 """Derived quantities by the name a campaign gives them: value and gradient from the parameters; the vehicle empty."""
 
 
-def quantity(name: str, names: Sequence[str], values: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
+def evaluate_quantity(
+    name: str, names: Sequence[str], values: NDArray[np.float64]
+) -> tuple[float, NDArray[np.float64]]:
     """Give a parameter or derived quantity and its gradient.
 
     Parameters

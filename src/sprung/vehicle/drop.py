@@ -19,12 +19,12 @@ from scipy.linalg import expm
 from sprung.display import shown
 from sprung.errors import Problems, SprungError, did_you_mean
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.crossing import first_fall
 from sprung.vehicle.ground import Ground
+from sprung.vehicle.kinematics import WHEELS, Wheel
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.response import Motion, affine_response
-from sprung.vehicle.rows import WHEELS, Wheel
 from sprung.vehicle.vehicle import Vehicle
+from sprung.vehicle.zero_crossing import find_first_zero
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ _CHANGES: dict[Phase, tuple[tuple[Literal["force", "compression"], float, Phase]
 """How each phase ends: this, times the sign, is positive during it and falls to zero; the phase that follows."""
 
 
-class Event(NamedTuple):
+class ContactEvent(NamedTuple):
     """A wheel leaves the ground or comes back to it."""
 
     time: float
@@ -70,7 +70,7 @@ class LinearSegment(NamedTuple):
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Fall:
+class DropMotion:
     """The motion after one release, exact at any time.
 
     Attributes
@@ -84,7 +84,7 @@ class Fall:
     """
 
     pieces: tuple[LinearSegment, ...]
-    events: tuple[Event, ...]
+    events: tuple[ContactEvent, ...]
     until: float
 
     @property
@@ -166,7 +166,7 @@ def drop_from_blocks(
     *,
     duration: float = 60.0,
     gravity: float = STANDARD_GRAVITY,
-) -> Fall:
+) -> DropMotion:
     """Release a vehicle that rests on blocks, and follow it exactly through every lift-off and landing.
 
     Parameters
@@ -209,7 +209,9 @@ def drop_from_blocks(
     at_rest = _resting(ground, vehicle, load, wheels, height)
     Y = np.concatenate([at_rest, np.zeros_like(at_rest), [1.0]])
     phases: list[Phase] = ["contact" if value >= 0 else "air" for value in ground.compression @ Y]
-    events = [Event(0.0, wheel, "lift-off") for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"]
+    events = [
+        ContactEvent(0.0, wheel, "lift-off") for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"
+    ]
     # A tenth of the fastest time constant: within it a response has one extremum at most.
     step = 0.1 / float(np.abs(np.linalg.eigvals(ground.matrices.state)).max())
 
@@ -220,10 +222,10 @@ def drop_from_blocks(
         pieces.append(LinearSegment(time, Y, ground.generator(contact)))
         change = _next_change(ground, pieces[-1], phases, step, duration)
         if isinstance(change, float):
-            return Fall(tuple(pieces), tuple(events), change)
+            return DropMotion(tuple(pieces), tuple(events), change)
         time, Y, station, phases[station] = change
         if contact[station] != (phases[station] == "contact"):
-            events.append(Event(time, WHEELS[station], "lift-off" if contact[station] else "landing"))
+            events.append(ContactEvent(time, WHEELS[station], "lift-off" if contact[station] else "landing"))
     raise SprungError(
         f"the drop of {vehicle.name} was given up after {len(events)} lift-offs and landings within {time:g} s of the "
         "release; is the vehicle damped?"
@@ -245,7 +247,7 @@ def _next_change(
     while time < duration:
         if all(phase == "contact" for phase in phases) and ground.keeps_contact(Y):
             return math.inf
-        fall = first_fall(watch, piece.generator, Y, step, _WINDOW)
+        fall = find_first_zero(watch, piece.generator, Y, step, _WINDOW)
         if isinstance(fall, tuple):
             station, _, after = changes[fall[1]]
             time += fall[0]

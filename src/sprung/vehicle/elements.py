@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 from sprung.display import shown
-from sprung.vehicle import rows
+from sprung.vehicle import kinematics
+from sprung.vehicle.force_laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
-from sprung.vehicle.laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
-from sprung.vehicle.rows import Row, Wheel
+from sprung.vehicle.kinematics import Row, Wheel
 
-Law = Literal["mass", "damper", "spring"]
+LinearLaw = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 """Whether springs and dampers of an axle share their half-distance."""
 
@@ -45,7 +45,7 @@ class Element:
         By which the coefficient is multiplied, dimensionless.
     """
 
-    law: Law
+    law: LinearLaw
     coefficient: str | float
     row: Row
     factor: float = 1.0
@@ -53,7 +53,7 @@ class Element:
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Force:
+class NonlinearElement:
     """An element with a law of its own.
 
     Attributes
@@ -74,7 +74,7 @@ class Force:
     weightless: bool = False
 
 
-def half_distances(tracks: Tracks) -> dict[tuple[str, Law], str]:
+def half_distances(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
     """Name the half-distance of each axle's springs and dampers.
 
     Parameters
@@ -91,7 +91,7 @@ def half_distances(tracks: Tracks) -> dict[tuple[str, Law], str]:
     return _by_place("t", tracks)
 
 
-def inboard_shares(tracks: Tracks) -> dict[tuple[str, Law], str]:
+def inboard_shares(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
     """Name where each axle's springs and dampers stand on a rigid axle, as parts of its wheels' half-distance.
 
     Parameters
@@ -107,7 +107,7 @@ def inboard_shares(tracks: Tracks) -> dict[tuple[str, Law], str]:
     return _by_place("n", tracks)
 
 
-def _by_place(letter: str, tracks: Tracks) -> dict[tuple[str, Law], str]:
+def _by_place(letter: str, tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
     suffix = {"spring": "2", "damper": "1"} if tracks == "separate" else {"spring": "", "damper": ""}
     return {(axle, law): f"{letter}_{axle}{suffix[law]}" for axle in "fr" for law in ("spring", "damper")}
 
@@ -133,7 +133,7 @@ def seven_degrees_of_freedom(
     return (*_elements(_Places(tracks, extras), extras), *_of_heights(heights))
 
 
-def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[Force, ...]:
+def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
     """List the forces that no matrix carries.
 
     Parameters
@@ -150,7 +150,7 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
     return tuple(_forces(_Places(tracks, extras), extras))
 
 
-def ground_forces(extras: Collection[str] = ()) -> tuple[Force, ...]:
+def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
     """List what the ground takes off the tyres' forces where they would pull.
 
     Parameters
@@ -164,8 +164,10 @@ def ground_forces(extras: Collection[str] = ()) -> tuple[Force, ...]:
     """
     damping = "tyre-damping" in extras
     return tuple(
-        Force(GROUND, (f"k_t{station[0]}", f"c_t{station[0]}")[: 1 + damping], rows.wheel(station), weightless=True)
-        for station in rows.WHEELS
+        NonlinearElement(
+            GROUND, (f"k_t{station[0]}", f"c_t{station[0]}")[: 1 + damping], kinematics.wheel(station), weightless=True
+        )
+        for station in kinematics.WHEELS
     )
 
 
@@ -176,67 +178,67 @@ class _Places:
         self._half_distance = half_distances(tracks)
         self._share = inboard_shares(tracks) if "rigid-axle" in extras else {}
 
-    def travel(self, station: Wheel, law: Law) -> Row:
+    def travel(self, station: Wheel, law: LinearLaw) -> Row:
         """Give what a spring or a damper feels."""
         at = station[0], law
-        return rows.travel(station, self._half_distance[at], self._share.get(at))
+        return kinematics.travel(station, self._half_distance[at], self._share.get(at))
 
 
-def _forces(places: _Places, extras: Collection[str]) -> Iterator[Force]:
-    for station in rows.WHEELS:
+def _forces(places: _Places, extras: Collection[str]) -> Iterator[NonlinearElement]:
+    for station in kinematics.WHEELS:
         axle = station[0]
         at_spring = places.travel(station, "spring")
         if "friction" in extras:
-            yield Force(FRICTION, (f"F_{axle}", f"s_{axle}"), at_spring)
+            yield NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), at_spring)
         if "rebound" in extras:
-            yield Force(REBOUND, (f"r_{axle}", f"c_s{axle}"), places.travel(station, "damper"))
+            yield NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), places.travel(station, "damper"))
         if "progressive" in extras:
-            yield Force(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), at_spring)
+            yield NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), at_spring)
         if "bump-stop" in extras:
-            yield Force(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), at_spring)
+            yield NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), at_spring)
 
 
 def _elements(places: _Places, extras: Collection[str]) -> Iterator[Element]:
     uneven = "asymmetry" in extras
-    yield Element("mass", "m_s", rows.bounce(uneven))
-    yield Element("mass", "I_yy", rows.pitch())
-    yield Element("mass", "I_xx", rows.roll())
-    for station in rows.WHEELS:
-        axle, side = station[0], rows.side(station)
-        rates: list[tuple[Law, str, Row]] = [
+    yield Element("mass", "m_s", kinematics.bounce(uneven))
+    yield Element("mass", "I_yy", kinematics.pitch())
+    yield Element("mass", "I_xx", kinematics.roll())
+    for station in kinematics.WHEELS:
+        axle, side = station[0], kinematics.side(station)
+        rates: list[tuple[LinearLaw, str, Row]] = [
             ("spring", f"k_s{axle}", places.travel(station, "spring")),
             ("damper", f"c_s{axle}", places.travel(station, "damper")),
-            ("spring", f"k_t{axle}", rows.wheel(station)),
+            ("spring", f"k_t{axle}", kinematics.wheel(station)),
         ]
-        yield Element("mass", f"m_u{axle}", rows.wheel(station))
+        yield Element("mass", f"m_u{axle}", kinematics.wheel(station))
         for law, rate, row in rates:
             yield Element(law, rate, row)
             if uneven:
                 yield Element(law, f"d_{rate.replace('_', '')}", row, side)
         if "tyre-damping" in extras:
-            yield Element("damper", f"c_t{axle}", rows.wheel(station))
+            yield Element("damper", f"c_t{axle}", kinematics.wheel(station))
     if "gravity" in extras:
-        yield Element("spring", "w_h", rows.roll(), -1.0)
-        yield Element("spring", "w_h", rows.pitch(), -1.0)
+        yield Element("spring", "w_h", kinematics.roll(), -1.0)
+        yield Element("spring", "w_h", kinematics.pitch(), -1.0)
     if "engine" in extras:
         # It is part of the body's mass and inertia, and leaves it where it moves by itself.
-        yield Element("mass", "m_e", rows.engine_bay(), -1.0)
-        yield Element("mass", "m_e", rows.engine())
-        yield Element("spring", "k_e", rows.engine_bay() - rows.engine())
-        yield Element("damper", "c_e", rows.engine_bay() - rows.engine())
-    for left, right in rows.AXLES:
+        yield Element("mass", "m_e", kinematics.engine_bay(), -1.0)
+        yield Element("mass", "m_e", kinematics.engine())
+        yield Element("spring", "k_e", kinematics.engine_bay() - kinematics.engine())
+        yield Element("damper", "c_e", kinematics.engine_bay() - kinematics.engine())
+    for left, right in kinematics.AXLES:
         axle = left[0]
         if "anti-roll" in extras:
             yield Element("spring", f"k_a{axle}", places.travel(left, "spring") - places.travel(right, "spring"))
         if "rigid-axle" in extras:
-            yield Element("mass", f"m_x{axle}", rows.wheel(left) - rows.wheel(right), 0.5)
+            yield Element("mass", f"m_x{axle}", kinematics.wheel(left) - kinematics.wheel(right), 0.5)
 
 
 def _of_heights(heights: Heights) -> Iterator[Element]:
     if not heights.known:
         return
-    yield Element("mass", "m_s", rows.roll(), heights.cg_arm**2)
-    for row, arm in zip((rows.roll(), rows.pitch()), heights.wheel_arms, strict=True):
+    yield Element("mass", "m_s", kinematics.roll(), heights.cg_arm**2)
+    for row, arm in zip((kinematics.roll(), kinematics.pitch()), heights.wheel_arms, strict=True):
         yield Element("spring", "m_s", row, -heights.tipping())
         for axle in "fr":
             yield Element("mass", f"m_u{axle}", row, 2.0 * arm**2)

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle.kinematics import WHEELS, WHEELS_AT, Wheel
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import Matrices
-from sprung.vehicle.rows import WHEELS, WHEELS_AT, Wheel
 from sprung.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]

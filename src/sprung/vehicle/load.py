@@ -9,12 +9,12 @@ from pydantic import Field, model_validator
 
 from sprung.errors import InputError, Problem
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import rows
+from sprung.vehicle import kinematics
+from sprung.vehicle.checked_record import checked_record
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
+from sprung.vehicle.kinematics import Wheel
 from sprung.vehicle.parameters import LOAD_MASS
-from sprung.vehicle.record import record
-from sprung.vehicle.rows import Wheel
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 """One above 0."""
@@ -42,7 +42,7 @@ def _with_std(given: Any) -> Any:
     return plain
 
 
-@record
+@checked_record
 class Item:
     """One piece of a load: a mass at a place."""
 
@@ -80,18 +80,20 @@ class Item:
         """
         mass = self.mass if mass is None else mass
         if self.on is not None:
-            yield Element("mass", mass, rows.wheel(self.on))
+            yield Element("mass", mass, kinematics.wheel(self.on))
         elif self.position is not None:
             x, y, z = self.position
-            yield Element("mass", mass, rows.body_point(x, y))
-            for row, own, arm in zip((rows.roll(), rows.pitch()), self.inertia, heights.item_arms(z), strict=True):
+            yield Element("mass", mass, kinematics.body_point(x, y))
+            for row, own, arm in zip(
+                (kinematics.roll(), kinematics.pitch()), self.inertia, heights.item_arms(z), strict=True
+            ):
                 yield Element("mass", own, row)
                 yield Element("mass", mass, row, arm**2)
                 if heights.known:
                     yield Element("spring", mass, row, -heights.tipping(z))
 
 
-@record
+@checked_record
 class Added:
     """A load of which only totals are known, taken as centred on the body's centre of gravity (the paper's bus)."""
 
@@ -127,16 +129,16 @@ class Added:
         mass
             Name of the parameter that is its mass on the body, or kg; its own unless given.
         """
-        yield Element("mass", self.mass if mass is None else mass, rows.bounce())
-        yield Element("mass", self.I_yy, rows.pitch())
-        yield Element("mass", self.I_xx, rows.roll())
-        yield Element("mass", self.m_uf, rows.wheel("fl"))
-        yield Element("mass", self.m_uf, rows.wheel("fr"))
-        yield Element("mass", self.m_ur, rows.wheel("rl"))
-        yield Element("mass", self.m_ur, rows.wheel("rr"))
+        yield Element("mass", self.mass if mass is None else mass, kinematics.bounce())
+        yield Element("mass", self.I_yy, kinematics.pitch())
+        yield Element("mass", self.I_xx, kinematics.roll())
+        yield Element("mass", self.m_uf, kinematics.wheel("fl"))
+        yield Element("mass", self.m_uf, kinematics.wheel("fr"))
+        yield Element("mass", self.m_ur, kinematics.wheel("rl"))
+        yield Element("mass", self.m_ur, kinematics.wheel("rr"))
 
 
-@record
+@checked_record
 class Load:
     """A known load: a list of items, or totals. The load named ``empty`` has neither and always exists."""
 

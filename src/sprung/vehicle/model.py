@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
-from sprung.vehicle.elements import Element, Law
-from sprung.vehicle.rows import HEAVE, Row, coordinates
+from sprung.vehicle.elements import Element, LinearLaw
+from sprung.vehicle.kinematics import HEAVE, Row, coordinates
 
 Array = NDArray[np.float64]
 
-LAWS: tuple[Law, ...] = ("mass", "damper", "spring")
+LINEAR_LAWS: tuple[LinearLaw, ...] = ("mass", "damper", "spring")
 """What adds to M, to C and to K."""
 
 
@@ -140,7 +140,7 @@ class LinearModel:
         index = {name: i for i, name in enumerate(names, start=1)}
         terms: dict[tuple[int, ...], Array] = {}
         rows = Rows.of([element.row for element in elements], names).affine
-        size_of_each = (len(LAWS), rows.shape[1], rows.shape[1])
+        size_of_each = (len(LINEAR_LAWS), rows.shape[1], rows.shape[1])
         for element, row in zip(elements, rows, strict=True):
             named = isinstance(element.coefficient, str)
             kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
@@ -148,7 +148,7 @@ class LinearModel:
             factors = np.flatnonzero(row.any(axis=0))
             parts = size * row.T[factors]
             squares = parts[:, None, :, None] * row.T[factors][None, :, None, :]
-            law = LAWS.index(element.law)
+            law = LINEAR_LAWS.index(element.law)
             for one, of_one in zip(factors.tolist(), squares, strict=True):
                 for two, square in zip(factors.tolist(), of_one, strict=True):
                     key = tuple(sorted((kappa, one, two)))

@@ -16,18 +16,18 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.elements import Element, Force
+from sprung.vehicle.elements import Element, NonlinearElement
+from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw, Sensitivity
 from sprung.vehicle.heights import LEVEL, Heights
-from sprung.vehicle.laws import ElementForce, ElementInput, ForceLaw, Sensitivity
+from sprung.vehicle.kinematics import coordinates
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices, Rows
-from sprung.vehicle.rows import coordinates
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-class Forces(NamedTuple):
+class NonlinearForces(NamedTuple):
     """Forces over one list of parameters, whose values are SI, shape (parameter,); those of one law beside each other.
 
     Attributes
@@ -49,7 +49,7 @@ class Forces(NamedTuple):
     weightless: Array
 
     @classmethod
-    def of(cls, forces: Sequence[Force], names: Sequence[str]) -> Forces:
+    def of(cls, forces: Sequence[NonlinearElement], names: Sequence[str]) -> NonlinearForces:
         """Compile forces over a list of parameter names."""
         kinds = list({force.law.name: force.law for force in forces}.values())
         ordered = [force for law in kinds for force in forces if force.law.name == law.name]
@@ -124,14 +124,14 @@ class NonlinearModel:
 
     linear: LinearModel
     load: LinearModel
-    forces: Forces
+    forces: NonlinearForces
     gravity: float = STANDARD_GRAVITY
 
     @classmethod
     def of(
         cls,
         elements: Sequence[Element],
-        forces: Sequence[Force],
+        forces: Sequence[NonlinearElement],
         names: Sequence[str],
         load: Load = EMPTY,
         heights: Heights = LEVEL,
@@ -140,7 +140,7 @@ class NonlinearModel:
         """Compile a vehicle with its heights and a load, elements and forces beside them, over a list of parameter names."""
         added = load.elements(heights, names)
         linear = LinearModel.of([*elements, *added], names)
-        return cls(linear, LinearModel.of(added, names), Forces.of(forces, names), gravity)
+        return cls(linear, LinearModel.of(added, names), NonlinearForces.of(forces, names), gravity)
 
     @property
     def names(self) -> tuple[str, ...]:

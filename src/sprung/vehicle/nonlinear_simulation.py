@@ -14,13 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.elements import Force, ground_forces, nonlinear_elements, seven_degrees_of_freedom
+from sprung.vehicle.elements import (
+    NonlinearElement,
+    ground_contact_elements,
+    nonlinear_elements,
+    seven_degrees_of_freedom,
+)
+from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.ground import Ground
-from sprung.vehicle.laws import ElementInput
+from sprung.vehicle.kinematics import WHEELS, WHEELS_AT, Wheel
 from sprung.vehicle.load import Load
 from sprung.vehicle.nonlinear import NonlinearModel
 from sprung.vehicle.response import Motion
-from sprung.vehicle.rows import WHEELS, WHEELS_AT, Wheel
 from sprung.vehicle.stepping import Stepper
 from sprung.vehicle.vehicle import Vehicle
 
@@ -33,7 +38,7 @@ _SETTLING = 60
 """Newton steps to find how a vehicle rests on its blocks."""
 
 
-class Block(NamedTuple):
+class BlockSupport(NamedTuple):
     """How a vehicle rests before it is dropped.
 
     Attributes
@@ -51,9 +56,9 @@ class Block(NamedTuple):
     height: float
 
 
-def drops_with_forces(
+def simulate_nonlinear_drops(
     vehicle: Vehicle,
-    blocks: Sequence[Block],
+    blocks: Sequence[BlockSupport],
     step: float,
     samples: int,
     start: float = 0.0,
@@ -82,7 +87,7 @@ def drops_with_forces(
         Displacement from where the vehicle rests with its load, velocity and acceleration, each (coordinate, samples).
     """
     names, values = tuple(vehicle.parameters), np.array(list(vehicle.parameters.values()))
-    on_ground = ground_forces(vehicle.extras)
+    on_ground = ground_contact_elements(vehicle.extras)
     loads = list({block.load.name: block.load for block in blocks}.values())
     models = [_model(vehicle, names, on_ground, load, gravity) for load in loads]
     kind = np.array([[load.name for load in loads].index(block.load.name) for block in blocks])
@@ -94,7 +99,7 @@ def drops_with_forces(
     return _sampled(models, kind, values, begin, step, samples, start)
 
 
-def decays_with_forces(
+def simulate_nonlinear_decays(
     vehicle: Vehicle, loads: Sequence[Load], states: Array, step: float, samples: int
 ) -> list[Motion]:
     """Let a vehicle vibrate from given states, tyres always on the ground.
@@ -127,14 +132,14 @@ def decays_with_forces(
 
 
 def _model(
-    vehicle: Vehicle, names: tuple[str, ...], more: Sequence[Force], load: Load, gravity: float
+    vehicle: Vehicle, names: tuple[str, ...], more: Sequence[NonlinearElement], load: Load, gravity: float
 ) -> NonlinearModel:
     elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights)
     forces = [*nonlinear_elements(vehicle.tracks, vehicle.extras), *more]
     return NonlinearModel.of(elements, forces, names, load, vehicle.heights, gravity)
 
 
-def _heights(block: Block) -> Array:
+def _heights(block: BlockSupport) -> Array:
     return np.array([block.height if station in block.wheels else 0.0 for station in WHEELS])
 
 

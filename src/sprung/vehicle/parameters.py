@@ -131,7 +131,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "asymmetry": ("y_s", "d_ksf", "d_ksr", "d_ktf", "d_ktr", "d_csf", "d_csr"),
     "rigid-axle": ("n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2", "m_xf", "m_xr"),
 }
-"""The parameters that each extra may bring; which of them, where places of springs and dampers differ, says `brought_by`."""
+"""The parameters that each extra may bring; see `parameters_of_term`."""
 
 _INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e"})
 """Parameters of extras that do not matter where the extra does nothing."""
@@ -164,11 +164,11 @@ def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> 
     places = {*half_distances(tracks).values()}
     absent = {name for one in ("shared", "separate") for name in half_distances(one).values()} - places
     for extra, names in EXTRA_PARAMETERS.items():
-        absent.update(set(names) - set(brought_by(extra, tracks) if extra in extras else ()))
+        absent.update(set(names) - set(parameters_of_term(extra, tracks) if extra in extras else ()))
     return tuple(name for name in PARAMETERS if name not in absent)
 
 
-def brought_by(extra: str, tracks: Tracks) -> tuple[str, ...]:
+def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
     """Name the parameters that an extra brings to a model.
 
     Parameters
@@ -187,7 +187,7 @@ def brought_by(extra: str, tracks: Tracks) -> tuple[str, ...]:
     return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
 
 
-def separate_names(name: str) -> tuple[str, ...]:
+def separate_track_names(name: str) -> tuple[str, ...]:
     """Give what a parameter is called where springs and dampers of an axle have half-distances of their own.
 
     Parameters
@@ -202,7 +202,7 @@ def separate_names(name: str) -> tuple[str, ...]:
 
     Examples
     --------
-    >>> separate_names("t_f"), separate_names("k_sf")
+    >>> separate_track_names("t_f"), separate_track_names("k_sf")
     (('t_f1', 't_f2'), ('k_sf',))
     """
     places = [
@@ -214,7 +214,7 @@ def separate_names(name: str) -> tuple[str, ...]:
     return tuple(sorted(own for shared, own in places if shared == name)) or (name,)
 
 
-def separated(parameters: Mapping[str, float]) -> dict[str, float]:
+def with_separate_tracks(parameters: Mapping[str, float]) -> dict[str, float]:
     """Give the same vehicle with half-distances of springs and dampers each by their own names.
 
     Parameters
@@ -227,4 +227,4 @@ def separated(parameters: Mapping[str, float]) -> dict[str, float]:
     dict
         Values by name, SI.
     """
-    return {own: value for name, value in parameters.items() for own in separate_names(name)}
+    return {own: value for name, value in parameters.items() for own in separate_track_names(name)}

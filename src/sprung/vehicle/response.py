@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import expm
 
+from sprung.vehicle.kinematics import WHEELS, Wheel
 from sprung.vehicle.model import Matrices
-from sprung.vehicle.rows import WHEELS, Wheel
 
 Array = NDArray[np.float64]
 
@@ -97,7 +97,7 @@ def free_decay(matrices: Matrices, state: ArrayLike, step: float, samples: int) 
     return Motion(states[:n], states[n:], (A @ states)[n:])
 
 
-def half_sine_bump(
+def drive_over_half_sine_bump(
     matrices: Matrices,
     tyre_rates: dict[Wheel, tuple[float, float]],
     wheels: tuple[Wheel, ...],

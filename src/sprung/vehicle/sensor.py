@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from sprung.errors import InputError, Problem
-from sprung.vehicle import rows
+from sprung.vehicle import kinematics
+from sprung.vehicle.checked_record import checked_record
+from sprung.vehicle.kinematics import Row
 from sprung.vehicle.load import Finite, Positive
-from sprung.vehicle.record import record
-from sprung.vehicle.rows import Row
 
 
-@record
+@checked_record
 class Sensor:
     """One accelerometer, as a campaign file describes it."""
 
@@ -48,8 +48,8 @@ class Sensor:
             If its place is not known.
         """
         if self.on is not None and self.on != "body":
-            return rows.wheel(self.on)
+            return kinematics.wheel(self.on)
         if self.on is None or self.position is None:
             found, expected = ("no position", "[x, y, z], m") if self.on else ("no wheel station", "fl, fr, rl or rr")
             raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "Write where the sensor sits.")])
-        return rows.body_point(self.position[0], self.position[1])
+        return kinematics.body_point(self.position[0], self.position[1])

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.laws import ElementForce, ElementInput
-from sprung.vehicle.nonlinear import Forces, NonlinearModel, Step
+from sprung.vehicle.force_laws import ElementForce, ElementInput
+from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel, Step
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -79,7 +79,7 @@ class Stepper:
         Which of them each drop takes, shape (drop,).
     """
 
-    forces: Forces
+    forces: NonlinearForces
     values: Array
     offsets: Array
     by_offset: Array

@@ -13,7 +13,7 @@ from sprung.vehicle.elements import Tracks, seven_degrees_of_freedom
 from sprung.vehicle.heights import Heights
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices
-from sprung.vehicle.parameters import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, brought_by, parameter_names
+from sprung.vehicle.parameters import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, parameter_names, parameters_of_term
 
 
 @shown
@@ -272,7 +272,11 @@ class Vehicle:
         return tuple(
             extra
             for extra in EXTRA_PARAMETERS
-            if any(getattr(self, name) != NEUTRAL[name] for name in brought_by(extra, self.tracks) if name in NEUTRAL)
+            if any(
+                getattr(self, name) != NEUTRAL[name]
+                for name in parameters_of_term(extra, self.tracks)
+                if name in NEUTRAL
+            )
         )
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -44,8 +44,8 @@ def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         yield Hypothesis(fault, "corrected", relabel_loads(moved), candidate.table, candidate)
 
 
-def _most_likely_loads(isolation: FaultIsolation, candidate: CandidateFit, loads: list[str]) -> Mapping[str, str]:
+def _most_likely_loads(isolation: FaultIsolation, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:
     """Return for each drop the load with which this vehicle explains it best."""
-    decays, weights = isolation.decays, candidate.fit.point.weights
+    decays, weights = isolation.decays, candidate.fit.weights
     costs = [candidate.residual_sums_of([replace(decay, load=load) for decay in decays]) @ weights for load in loads]
     return {decay.file: loads[int(best)] for decay, best in zip(decays, np.argmin(costs, axis=0), strict=True)}

@@ -10,7 +10,7 @@ from sprung.errors import Fault
 from sprung.faults.correction import Correction
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolation import CandidateFit, FaultIsolation
-from sprung.uncertainty import Known
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS
 
 _LOAD_INCLUDED = 0.02
@@ -35,7 +35,7 @@ def known_quantities(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         yield replace(hypothesis, fault=_contradicted(name, stated, hypothesis.candidate))
 
 
-def _stating(isolation: FaultIsolation, fault: Fault, known: Mapping[str, Known]) -> Hypothesis:
+def _stating(isolation: FaultIsolation, fault: Fault, known: Mapping[str, KnownValue]) -> Hypothesis:
     def described(campaign: Campaign) -> Campaign:
         return replace(campaign, known=known)
 
@@ -44,7 +44,7 @@ def _stating(isolation: FaultIsolation, fault: Fault, known: Mapping[str, Known]
     return Hypothesis(fault, "corrected", correction, candidate.table, candidate)
 
 
-def _contradicted(name: str, stated: Known, candidate: CandidateFit) -> Fault:
+def _contradicted(name: str, stated: KnownValue, candidate: CandidateFit) -> Fault:
     parameters = candidate.fit.parameters
     estimate = DERIVED[name](parameters)[0] if name in DERIVED else parameters[name]
     unit = PARAMETERS[name].unit if name in PARAMETERS else "kg"

@@ -38,7 +38,9 @@ def load_position(isolation: FaultIsolation) -> Iterator[Hypothesis]:
     if abs(distance) < _NEGLIGIBLE:
         return
     size, direction = f"{100 * abs(distance):.0f} cm", _DIRECTIONS[first.axis][distance > 0]
-    what = f"item {first.item + 1} lies {size} further {direction} than is stated, as the fit shows; nothing was changed"
+    what = (
+        f"item {first.item + 1} lies {size} further {direction} than is stated, as the fit shows; nothing was changed"
+    )
     fault = Fault("load-position", f"load '{first.where}'", what, "Measure the place and the mass of the load again.")
     yield Hypothesis(fault, "named", Correction(), candidate.table, candidate, 1)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.errors import Fault
-from sprung.faults.isolation import FaultIsolation, residuals_of
+from sprung.faults.isolation import FaultIsolation
 
 _SHARE = 0.7
 """Share of the residual of the body's channels in the shape of a twist, from which it is one."""
@@ -43,7 +43,7 @@ def twist(isolation: FaultIsolation) -> Fault | None:
     if not explained[wheels].all() or explained[participating].any():
         return None
     excess = -np.diag(isolation.noise.level[body] ** 2 * base.table.counts[:, body].sum(axis=0))
-    for record in residuals_of(base.fit, isolation.decays):
+    for record in base.fit.residuals:
         residual = np.nan_to_num(record[body])
         excess += residual @ residual.T
     share = float(shape @ excess @ shape) / max(float(np.trace(excess)), np.finfo(float).tiny)

@@ -11,7 +11,7 @@ from sprung.errors import Fault
 from sprung.estimation import NEAR, fit_linear
 from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis
-from sprung.uncertainty import Known
+from sprung.uncertainty import KnownValue
 
 _AXLES = {"f": "front", "r": "rear"}
 
@@ -28,7 +28,7 @@ def brake(deletion: DropDeletion) -> Iterator[Hypothesis]:
 def residual_with_free(deletion: DropDeletion, free: Sequence[str]) -> NDArray[np.float64]:
     """Return the residuals of the drop alone where some parameters may differ, (m/s²)², shape (channel,)."""
     values, sensors = deletion.candidate.fit.parameters, deletion.isolation.campaign.sensors
-    known = {name: Known(value) for name, value in values.items() if name not in free}
+    known = {name: KnownValue(value) for name, value in values.items() if name not in free}
     fit = fit_linear([deletion.decay], deletion.candidate.models, sensors, known, start=values, enough=NEAR)
-    residual: NDArray[np.float64] = fit.point.evaluation.residual[0]
+    residual: NDArray[np.float64] = fit.residual_sums[0]
     return residual

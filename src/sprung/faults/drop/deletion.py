@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,9 @@ from sprung.preprocess import FreeDecay
 
 Real = NDArray[np.float64]
 
+DropKind = Callable[["DropDeletion"], Iterator[Hypothesis]]
+"""Yields hypotheses about a drop that is left out."""
+
 
 @dataclass(frozen=True, eq=False)
 class DropDeletion:
@@ -29,11 +33,14 @@ class DropDeletion:
         Index of the drop among the isolation's recordings.
     candidate
         The fit without it.
+    kinds
+        What yields hypotheses about it.
     """
 
     isolation: FaultIsolation
     drop: int
     candidate: CandidateFit
+    kinds: Sequence[DropKind] = ()
 
     @property
     def decay(self) -> FreeDecay:
@@ -48,7 +55,8 @@ class DropDeletion:
     @property
     def counts(self) -> Real:
         """Samples of the drop by channel; shape (channel,)."""
-        return self.isolation.base.table.counts[self.drop]
+        counts: Real = self.isolation.base.table.counts[self.drop]
+        return counts
 
     @property
     def limit(self) -> ResidualTable:
@@ -56,6 +64,11 @@ class DropDeletion:
         table = self.candidate.table
         variance = table.residual.sum(axis=0) / np.maximum(table.counts.sum(axis=0), 1)
         return self.table(variance * self.counts)
+
+    def hypotheses(self) -> Iterator[Hypothesis]:
+        """Yield what may be wrong with the drop, each with the residuals that it predicts."""
+        for kind in self.kinds:
+            yield from kind(self)
 
     def table(self, residual: Real, counts: Real | None = None) -> ResidualTable:
         """Return the residuals of all drops, given those of this one; both of shape (channel,)."""

@@ -17,8 +17,11 @@ def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCaus
     """Exchange left and right, and front and rear, of the drops' wheels, of the wheels' sensors and of all sensors."""
     for one, two, other in (("left", "right", SIDES), ("front", "rear", ENDS)):
         drops = tuple(replace(drop, wheels=tuple(other[wheel] for wheel in drop.wheels)) for drop in campaign.drops)
-        pairs = zip(campaign.recordings, campaign.drops, drops, strict=True)
-        names = tuple(each.name for each, was, now in pairs if set(was.wheels) != set(now.wheels))
+        names = tuple(
+            drop.recording.name
+            for drop, exchanged in zip(campaign.drops, drops, strict=True)
+            if set(drop.wheels) != set(exchanged.wheels)
+        )
         if len(names) >= _SEVERAL:
             what = (
                 f"the {one} and the {two} wheels are exchanged in all of these drops: both the body and the wheels' sensors "

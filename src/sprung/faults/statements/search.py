@@ -99,7 +99,7 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
     explaining = []
     for hypotheses in _HYPOTHESES:
         for one in hypotheses(campaign, wheelbase):
-            again = prepared if one.changed.recordings is campaign.recordings else prepare(one.changed)
+            again = prepared if one.changed.recordings == campaign.recordings else prepare(one.changed)
             if _consistent(one.changed, again, wheelbase):
                 explaining.append(one)
     if len(explaining) < 2:

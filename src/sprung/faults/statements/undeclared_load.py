@@ -26,8 +26,8 @@ def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]
     usable = {decay.file for decay in prepared.decays}
     body = [i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body"]
     rows = [
-        (drop.load, seen.wheels, seen.recording.name, seen)
-        for drop, seen in zip(campaign.drops, prepared.seen, strict=True)
+        (seen.drop.load, seen.wheels, seen.recording.name, seen)
+        for seen in prepared.seen
         if seen.release is not None and seen.recording.name in usable
     ]
     spoilt: dict[str, Fault] = {}

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from sprung.modal import Diagram
+from sprung.modal import StabilisationDiagram
 from sprung.report.axis import Axis
 from sprung.report.picture import Panel, Picture, Points, Rule, labelled_together
 
 
-def stability_picture(load: str, diagram: Diagram) -> Picture:
+def stability_picture(load: str, diagram: StabilisationDiagram) -> Picture:
     """Show a stabilisation diagram.
 
     Parameters

@@ -15,14 +15,16 @@ Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-BLOCK = 128
+BLOCK_LENGTH = 128
 """Samples in a block: a usual record has a dozen of them, so that both tables are small."""
 
 _FLAT = 0.05
 """Below this change of the exponent over the record the closed forms cancel, and the few sums are added up directly."""
 
 
-def moments(exponent: Complex, group: Index, last: Complex, samples: Index, powers: int = 3) -> list[Complex]:
+def exponential_moments(
+    exponent: Complex, group: Index, last: Complex, samples: Index, powers: int = 3
+) -> list[Complex]:
     """Sum powers of k times exponentials over the samples k = 0 ... N - 1.
 
     Parameters
@@ -66,7 +68,7 @@ def moments(exponent: Complex, group: Index, last: Complex, samples: Index, powe
     return found[:powers]
 
 
-def gram(exponent: Complex, samples: Index, group: Index | None = None, secular: bool = True) -> Complex:
+def exponential_gram(exponent: Complex, samples: Index, group: Index | None = None, secular: bool = True) -> Complex:
     """Give the inner products of e^{λk} and k e^{λk} with each other, all of them centred over the record.
 
     Centred, because every channel of every record has an offset of its own.
@@ -92,8 +94,8 @@ def gram(exponent: Complex, samples: Index, group: Index | None = None, secular:
     of_record = np.arange(len(exponent)) if group is None else group
     count = samples[:, None]
     last = np.exp(exponent[of_record] * count)
-    mean = moments(exponent, of_record, last, count, powers)
-    pair = moments(
+    mean = exponential_moments(exponent, of_record, last, count, powers)
+    pair = exponential_moments(
         exponent.conj()[:, :, None] + exponent[:, None, :],
         of_record,
         last.conj()[:, :, None] * last[:, None, :],
@@ -112,7 +114,7 @@ def gram(exponent: Complex, samples: Index, group: Index | None = None, secular:
     return whole
 
 
-def blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
+def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
     """Centre a record and cut it into blocks, the last one filled with zeros.
 
     Parameters
@@ -128,24 +130,26 @@ def blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
         In the unit of the values, shape (block, channel, BLOCK).
     """
     channels, samples = values.shape
-    count, rest = divmod(samples, BLOCK)
-    cut = np.zeros((count + (rest > 0), channels, BLOCK))
+    count, rest = divmod(samples, BLOCK_LENGTH)
+    cut = np.zeros((count + (rest > 0), channels, BLOCK_LENGTH))
     chosen = np.ones(channels, dtype=bool) if usable is None else usable
     mean = np.where(chosen, values.mean(axis=1), 0.0)[:, None]
-    whole = values[:, : count * BLOCK].reshape(channels, count, BLOCK)
+    whole = values[:, : count * BLOCK_LENGTH].reshape(channels, count, BLOCK_LENGTH)
     np.subtract(whole.swapaxes(0, 1), mean, out=cut[:count], where=chosen[:, None])
     if rest:
-        np.subtract(values[:, count * BLOCK :], mean, out=cut[count, :, :rest], where=chosen[:, None])
+        np.subtract(values[:, count * BLOCK_LENGTH :], mean, out=cut[count, :, :rest], where=chosen[:, None])
     return cut
 
 
-def correlate(blocked: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True) -> Complex:
+def correlate_with_exponentials(
+    blocked: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
+) -> Complex:
     """Give the inner products of records with exponentials.
 
     Parameters
     ----------
     blocked
-        Records cut by `blocks`, one after the other, those of one group beside each other, of any one
+        Records cut by `split_into_blocks`, one after the other, those of one group beside each other, of any one
         unit, shape (block, channel, BLOCK).
     counts
         How many blocks each record has, shape (record,).
@@ -164,23 +168,23 @@ def correlate(blocked: Real, counts: Index, exponent: Complex, group: Index, sec
     """
     ends = np.cumsum(counts)
     of_block = np.concatenate([np.arange(count) for count in counts])
-    inside = np.arange(BLOCK)[:, None]
+    inside = np.arange(BLOCK_LENGTH)[:, None]
     flat = []
     for number, poles in enumerate(exponent):
-        fine = waves(poles.conj())
+        fine = exponentials(poles.conj())
         table = np.concatenate([fine, inside * fine], axis=1) if secular else fine
         own = ends[group == number]
         begin = own[0] - counts[np.searchsorted(group, number)]
-        flat.append(blocked[begin : own[-1]].reshape(-1, BLOCK) @ table.view(float))
+        flat.append(blocked[begin : own[-1]].reshape(-1, BLOCK_LENGTH) @ table.view(float))
     products = np.concatenate(flat).view(complex).reshape(*blocked.shape[:2], -1, exponent.shape[1])
-    coarse = np.exp(exponent.conj()[:, None] * (BLOCK * np.arange(counts.max())[:, None]))
+    coarse = np.exp(exponent.conj()[:, None] * (BLOCK_LENGTH * np.arange(counts.max())[:, None]))
     products *= coarse[np.repeat(group, counts), of_block][:, None, None]
     if secular:
-        products[:, :, 1] += (BLOCK * of_block)[:, None, None] * products[:, :, 0]
+        products[:, :, 1] += (BLOCK_LENGTH * of_block)[:, None, None] * products[:, :, 0]
     return np.add.reduceat(products, np.concatenate([[0], ends[:-1]]), axis=0)
 
 
-def waves(exponent: Complex, samples: int = BLOCK) -> Complex:
+def exponentials(exponent: Complex, samples: int = BLOCK_LENGTH) -> Complex:
     """Give e^{λk}, as products of a few exponentials.
 
     Parameters

@@ -22,7 +22,7 @@ _CHECKED = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(Field,))
-def record(model: type[Record]) -> type[Record]:
+def checked_record(model: type[Record]) -> type[Record]:
     """Make a class a frozen dataclass that checks its values; the text below each field describes it.
 
     Parameters
@@ -56,13 +56,13 @@ def record(model: type[Record]) -> type[Record]:
     return shown(cast("type[Record]", made))
 
 
-def record_of(model: type[Record], keys: Mapping[str, Any]) -> Record:
+def parse_record(model: type[Record], keys: Mapping[str, Any]) -> Record:
     """Return the record that a mapping of its keys describes, the tables in it records too.
 
     Parameters
     ----------
     model
-        Made by `record`.
+        Made by `checked_record`.
     keys
         As a campaign file holds them.
 

@@ -7,9 +7,18 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.linalg import eigh
 
-from sprung.modal import MODE_NAMES, Mode, in_coordinates, modes_from, modes_of, name_by_sensors, name_modes, similarity
 from sprung.simulation import default_sensors
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Matrices, Rows, Vehicle
+from sprung.vibration import (
+    MODE_NAMES,
+    Mode,
+    compute_modes,
+    expand_to_coordinates,
+    make_modes,
+    modal_assurance_criterion,
+    name_modes,
+    name_modes_at_sensors,
+)
 from strategies import vehicles
 
 
@@ -25,7 +34,7 @@ def test_rounding_does_not_choose_the_sign_of_a_shape() -> None:
     """Left and right wheels move equally far in opposition; which of them rounding makes the larger differs by processor."""
     for left in (1 - 1e-14, 1 + 1e-14):
         shape = np.array([0.2, left, -1.0])[:, None]
-        [mode] = modes_from([complex(-1, 5)], shape)
+        [mode] = make_modes([complex(-1, 5)], shape)
         assert mode.shape == pytest.approx([0.2, 1.0, -1.0])
 
 
@@ -45,21 +54,21 @@ def test_the_bus_has_the_frequencies_of_tables_3_to_5() -> None:
         ("front axle hop", 14.096),
         ("front axle tramp", 14.181),
     ]
-    modes = modes_of(SCHOOL_BUS.matrices())
+    modes = compute_modes(SCHOOL_BUS.matrices())
     assert [mode.name for mode in modes] == [name for name, _ in expected]
     assert_allclose([mode.frequency for mode in modes], [frequency for _, frequency in expected], atol=6e-4)
 
 
 def test_table_3_prints_the_damping_ratios_of_the_bus() -> None:
     # Table 3, column ζ, where it agrees with Tables 4 and 5 to all its digits.
-    ratio = {mode.name: mode.damping_ratio for mode in modes_of(SCHOOL_BUS.matrices())}
+    ratio = {mode.name: mode.damping_ratio for mode in compute_modes(SCHOOL_BUS.matrices())}
     printed = {"body roll": 0.1297, "rear axle tramp": 0.0984, "front axle hop": 0.1835, "front axle tramp": 0.1736}
     assert {name: round(ratio[name], 4) for name in printed} == printed
 
 
 def test_the_ends_of_the_body_move_together_in_bounce_and_apart_in_pitch() -> None:
     for vehicle in (SCHOOL_BUS, TABLE_1_CAR):
-        shape = {mode.name: mode.shape.real for mode in modes_of(vehicle.matrices())}
+        shape = {mode.name: mode.shape.real for mode in compute_modes(vehicle.matrices())}
         ends = {name: (z - vehicle.a * theta) * (z + vehicle.b * theta) for name, (z, theta, *_) in shape.items()}
         assert ends["body bounce"] > 0 > ends["body pitch"]
 
@@ -76,16 +85,16 @@ def test_wheels_of_like_axles_are_named_all_together() -> None:
         "wheel roll": [1, -1, 1, -1],
         "wheel warp": [1, -1, -1, 1],
     }
-    shapes = {mode.name: mode.shape[3:, None] for mode in modes_of(car.matrices())}
+    shapes = {mode.name: mode.shape[3:, None] for mode in compute_modes(car.matrices())}
     for name, pattern in patterns.items():
-        assert similarity(shapes[name], np.array(pattern)[:, None])[0, 0] == pytest.approx(1.0, abs=1e-3)
+        assert modal_assurance_criterion(shapes[name], np.array(pattern)[:, None])[0, 0] == pytest.approx(1.0, abs=1e-3)
 
 
 @given(vehicles)
 @settings(max_examples=30, deadline=None)
 def test_poles_solve_the_equation_of_motion_and_there_are_fourteen(vehicle: Vehicle) -> None:
     M, C, K = vehicle.matrices()
-    modes = modes_of(Matrices(M, C, K))
+    modes = compute_modes(Matrices(M, C, K))
     assert sum(2 if mode.pole.imag else 1 for mode in modes) == 14
     for mode in modes:
         forces = [mode.pole**2 * M @ mode.shape, mode.pole * C @ mode.shape, K @ mode.shape]
@@ -95,7 +104,7 @@ def test_poles_solve_the_equation_of_motion_and_there_are_fourteen(vehicle: Vehi
 @given(vehicles)
 @settings(max_examples=30, deadline=None)
 def test_every_name_is_used_once_or_for_a_pair_of_real_poles(vehicle: Vehicle) -> None:
-    modes = modes_of(vehicle.matrices())
+    modes = compute_modes(vehicle.matrices())
     poles: dict[str | None, list[complex]] = {}
     for mode in modes:
         poles.setdefault(mode.name, []).append(mode.pole)
@@ -111,7 +120,7 @@ def test_the_product_of_all_frequencies_is_that_of_the_undamped_vehicle(vehicle:
     # det A = det(M⁻¹K): damping moves the fourteen poles but not their product.
     M, _, K = vehicle.matrices()
     undamped = np.sqrt(eigh(K, M, eigvals_only=True)) / (2 * np.pi)
-    logs = [np.log(mode.frequency) / (1 if mode.pole.imag else 2) for mode in modes_of(vehicle.matrices())]
+    logs = [np.log(mode.frequency) / (1 if mode.pole.imag else 2) for mode in compute_modes(vehicle.matrices())]
     assert sum(logs) == pytest.approx(float(np.sum(np.log(undamped))), abs=1e-7)
 
 
@@ -119,7 +128,7 @@ def test_overdamped_modes_come_in_adjacent_pairs_at_their_undamped_frequency() -
     # Two uncoupled oscillators in two channels: λ² + 50 λ + 400 (poles -10, -40, √400 = 20 rad/s) and 5 rad/s undamped.
     poles = [-40, complex(-0.1, 5), complex(-0.1, -5), -10]
     shapes = np.array([[1, 0, 0, 1], [0, 1, 1, 0]])
-    modes = modes_from(poles, shapes)
+    modes = make_modes(poles, shapes)
     assert [mode.pole for mode in modes] == [complex(-0.1, 5), -10, -40]
 
 
@@ -128,8 +137,8 @@ def test_overdamped_modes_come_in_adjacent_pairs_at_their_undamped_frequency() -
 def test_similarity_ignores_size_and_phase_and_lies_between_0_and_1(
     vehicle: Vehicle, phase: float, size: float
 ) -> None:
-    shapes = np.stack([mode.shape for mode in modes_of(vehicle.matrices())], axis=1)
-    alike = similarity(shapes, size * np.exp(1j * phase) * shapes)
+    shapes = np.stack([mode.shape for mode in compute_modes(vehicle.matrices())], axis=1)
+    alike = modal_assurance_criterion(shapes, size * np.exp(1j * phase) * shapes)
     assert_allclose(np.diag(alike), 1.0, atol=1e-12)
     assert_allclose(alike, alike.T, atol=1e-12)
     assert alike.min() >= 0
@@ -140,16 +149,16 @@ def test_similarity_ignores_size_and_phase_and_lies_between_0_and_1(
 def test_shapes_at_eight_sensors_give_back_coordinates_and_names(vehicle: Vehicle) -> None:
     sensors = default_sensors(vehicle)
     rows = Rows.of([sensor.row for sensor in sensors], ("a",)).at([vehicle.a])
-    truth = modes_of(vehicle.matrices())
+    truth = compute_modes(vehicle.matrices())
     seen = [Mode(mode.pole, rows @ mode.shape) for mode in truth]
-    for mode, back in zip(truth, in_coordinates(seen, sensors, vehicle.a), strict=True):
+    for mode, back in zip(truth, expand_to_coordinates(seen, sensors, vehicle.a), strict=True):
         assert_allclose(back.shape, mode.shape, atol=1e-12)
     # Also without knowing where the centre of gravity is.
-    assert [mode.name for mode in name_by_sensors(seen, sensors)] == [mode.name for mode in truth]
+    assert [mode.name for mode in name_modes_at_sensors(seen, sensors)] == [mode.name for mode in truth]
 
 
 def test_a_few_modes_get_the_names_that_fit_them() -> None:
-    truth = modes_of(SCHOOL_BUS.matrices())
+    truth = compute_modes(SCHOOL_BUS.matrices())
     some = [truth[i] for i in (2, 0, 4)]
     assert [mode.name for mode in name_modes(some)] == ["body roll", "body pitch", "rear axle tramp"]
     assert name_modes([]) == ()

@@ -12,7 +12,9 @@ from sprung.vehicle.response import affine_response
 Array = NDArray[np.float64]
 
 
-def first_fall(watch: Array, generator: Array, state: Array, step: float, intervals: int) -> tuple[float, int] | Array:
+def find_first_zero(
+    watch: Array, generator: Array, state: Array, step: float, intervals: int
+) -> tuple[float, int] | Array:
     """Find which of several linear functions of Y falls to zero first, with Ẏ = generator Y.
 
     A function that is zero at the start counts only if it falls from there: it has just come up. One that dips below

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
-from sprung.modal import Mode, modes_of, name_modes, paper_name
 from sprung.vehicle import SCHOOL_BUS, Vehicle
+from sprung.vibration import Mode, compute_modes, name_modes, paper_name
 from strategies import vehicles
 
 # Coordinates: z, pitch, roll, wheels A front left, B front right, C rear left, D rear right.
@@ -104,7 +104,7 @@ def test_two_real_poles_of_one_motion_share_its_name() -> None:
 @given(vehicles)
 @settings(max_examples=30, deadline=None)
 def test_left_and_right_exchanged_changes_no_name(vehicle: Vehicle) -> None:
-    modes = modes_of(vehicle.matrices())
+    modes = compute_modes(vehicle.matrices())
     seen = name_modes([Mode(mode.pole, mirrored(mode.shape, LEFT_RIGHT)) for mode in modes], *levers(vehicle))
     assert [mode.name for mode in seen] == [mode.name for mode in modes]
 
@@ -112,7 +112,7 @@ def test_left_and_right_exchanged_changes_no_name(vehicle: Vehicle) -> None:
 @given(vehicles)
 @settings(max_examples=30, deadline=None)
 def test_front_and_rear_exchanged_exchanges_the_axles(vehicle: Vehicle) -> None:
-    modes = modes_of(vehicle.matrices())
+    modes = compute_modes(vehicle.matrices())
     seen = name_modes([Mode(mode.pole, mirrored(mode.shape, FRONT_REAR)) for mode in modes], *levers(vehicle))
     exchanged = {"front": "rear", "rear": "front"}
     expected = [" ".join(exchanged.get(word, word) for word in (mode.name or "-").split()) for mode in modes]
@@ -120,14 +120,14 @@ def test_front_and_rear_exchanged_exchanges_the_axles(vehicle: Vehicle) -> None:
 
 
 def levers(vehicle: Vehicle) -> tuple[float, float]:
-    """Give those by which `modes_of` compares angles with displacements."""
+    """Give those by which `compute_modes` compares angles with displacements."""
     return float(np.sqrt(vehicle.I_yy / vehicle.m_s)), float(np.sqrt(vehicle.I_xx / vehicle.m_s))
 
 
 def test_the_paper_calls_the_same_shapes_otherwise() -> None:
     # Table 3 lists bounce, pitch, roll and articulation at 12.42, 12.44, 13.86 and 13.97 Hz; in the model of Tables 4 and 5
     # these are the rear axle in phase and in opposition, and the front axle in phase and in opposition.
-    wheels = [mode for mode in modes_of(SCHOOL_BUS.matrices()) if mode.frequency > 5]
+    wheels = [mode for mode in compute_modes(SCHOOL_BUS.matrices()) if mode.frequency > 5]
     assert [mode.name for mode in wheels] == ["rear axle hop", "rear axle tramp", "front axle hop", "front axle tramp"]
     for mode, opposition in zip(wheels, (False, True, False, True), strict=True):
         axle = mode.shape[3:5] if "front" in str(mode.name) else mode.shape[5:7]

@@ -15,16 +15,16 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-EQUAL = 1e-6
+EQUAL_ENTRIES = 1e-6
 """Relative difference below which two entries of a shape are as large as each other."""
 
-UNRESOLVED = 0.1
+UNRESOLVED_FROM = 0.1
 """Standard uncertainty of a pole, as a part of its size, from which on the records do not determine it."""
 
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Spread:
+class ModeUncertainty:
     """How sure a mode is.
 
     Attributes
@@ -56,14 +56,14 @@ class Mode:
         How far each channel or coordinate moves, dimensionless, its largest entry 1; shape (channel,).
     name
         One of `sprung.modal.MODE_NAMES`; None where nothing was said about what moves.
-    spread
+    uncertainty
         How sure it is; None where the method does not tell.
     """
 
     pole: complex
     shape: Complex
     name: str | None = None
-    spread: Spread | None = None
+    uncertainty: ModeUncertainty | None = None
 
     @property
     def frequency(self) -> float:
@@ -83,7 +83,9 @@ class Mode:
     @property
     def resolved(self) -> bool:
         """Whether the records determine the pole, as far as anybody asked."""
-        return self.spread is None or bool(np.trace(self.spread.pole) < (UNRESOLVED * abs(self.pole)) ** 2)
+        return self.uncertainty is None or bool(
+            np.trace(self.uncertainty.pole) < (UNRESOLVED_FROM * abs(self.pole)) ** 2
+        )
 
     @property
     def frequency_std(self) -> float | None:
@@ -102,12 +104,12 @@ class Mode:
         return self._std(across / abs(self.pole) ** 3)
 
     def _std(self, slope: Real) -> float | None:
-        if self.spread is None:
+        if self.uncertainty is None:
             return None
-        return float(np.sqrt(np.maximum(slope @ self.spread.pole @ slope, 0.0)))
+        return float(np.sqrt(np.maximum(slope @ self.uncertainty.pole @ slope, 0.0)))
 
 
-def similarity(one: ArrayLike, other: ArrayLike) -> Real:
+def modal_assurance_criterion(one: ArrayLike, other: ArrayLike) -> Real:
     """Compare shapes: the modal assurance criterion |u·v|²/(|u|²|v|²), blind to their lengths and phases.
 
     Parameters
@@ -126,7 +128,7 @@ def similarity(one: ArrayLike, other: ArrayLike) -> Real:
     return comparison
 
 
-def together(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
+def group_real_pairs(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
     """Put the two real poles of each overdamped motion together, in the order of undamped natural frequency.
 
     Two real poles λ₁ λ₂ belong together where their shapes are most alike; their undamped natural frequency is √(λ₁λ₂).
@@ -146,7 +148,7 @@ def together(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
     groups: list[tuple[Mode, ...]] = list(found)
     if real:
         shapes = np.stack([mode.shape for mode in real], axis=1)
-        alike = np.triu(similarity(shapes, shapes), 1)
+        alike = np.triu(modal_assurance_criterion(shapes, shapes), 1)
         left = set(range(len(real)))
         for i, j in np.argwhere(alike > 0)[np.argsort(-alike[alike > 0], kind="stable")].tolist():
             if i in left and j in left:
@@ -156,7 +158,7 @@ def together(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
     return sorted(groups, key=lambda group: float(np.mean([np.log(max(abs(m.pole), 1e-300)) for m in group])))
 
 
-def leading_entry(shape: ArrayLike) -> int:
+def largest_entry(shape: ArrayLike) -> int:
     """Index of the largest entry of a shape; of entries as large as each other the first.
 
     Left and right of a symmetric vehicle are equal but for rounding, which must not decide the sign of a shape.
@@ -171,10 +173,10 @@ def leading_entry(shape: ArrayLike) -> int:
     int
     """
     sizes = np.abs(np.asarray(shape))
-    return int(np.argmax(sizes >= (1 - EQUAL) * sizes.max()))
+    return int(np.argmax(sizes >= (1 - EQUAL_ENTRIES) * sizes.max()))
 
 
-def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
+def make_modes(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
     """Make modes of all poles of a real system.
 
     Parameters
@@ -187,19 +189,19 @@ def modes_from(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
     Returns
     -------
     tuple of Mode
-        One for each conjugate pair and each real pole, in the order of `together`.
+        One for each conjugate pair and each real pole, in the order of `group_real_pairs`.
     """
     poles, shapes = np.asarray(poles, dtype=complex), np.asarray(shapes, dtype=complex)
     modes = []
     for pole, shape in zip(poles.tolist(), shapes.T, strict=True):
         if pole.imag >= 0:
-            largest = shape[leading_entry(shape)]
+            largest = shape[largest_entry(shape)]
             modes.append(Mode(pole, shape / (largest if largest != 0 else 1.0)))
-    return tuple(mode for group in together(modes) for mode in group)
+    return tuple(mode for group in group_real_pairs(modes) for mode in group)
 
 
-def in_order(modes: Sequence[Mode]) -> tuple[Mode, ...]:
-    """Bring modes into the order of `modes_from`, spreads and all.
+def sort_modes(modes: Sequence[Mode]) -> tuple[Mode, ...]:
+    """Bring modes into the order of `make_modes`, spreads and all.
 
     Parameters
     ----------
@@ -208,7 +210,7 @@ def in_order(modes: Sequence[Mode]) -> tuple[Mode, ...]:
     """
     if not modes:
         return ()
-    ordered = modes_from([mode.pole for mode in modes], np.stack([mode.shape for mode in modes], axis=1))
+    ordered = make_modes([mode.pole for mode in modes], np.stack([mode.shape for mode in modes], axis=1))
     left = list(modes)
     found = []
     for mode in ordered:
@@ -217,7 +219,7 @@ def in_order(modes: Sequence[Mode]) -> tuple[Mode, ...]:
     return tuple(found)
 
 
-def vibrations(matrices: Matrices) -> tuple[Mode, ...]:
+def eigenmodes(matrices: Matrices) -> tuple[Mode, ...]:
     """Give the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), without names.
 
     Parameters
@@ -228,7 +230,7 @@ def vibrations(matrices: Matrices) -> tuple[Mode, ...]:
     Returns
     -------
     tuple of Mode
-        Shapes in its coordinates, in the order of `together`.
+        Shapes in its coordinates, in the order of `group_real_pairs`.
     """
     poles, vectors = np.linalg.eig(matrices.state)
-    return modes_from(poles, vectors[: len(matrices.M)])
+    return make_modes(poles, vectors[: len(matrices.M)])

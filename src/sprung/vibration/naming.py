@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.optimize import linear_sum_assignment
 
-from sprung.modal.modes import Mode, similarity, together, vibrations
 from sprung.vehicle import Matrices, Rows, Sensor
+from sprung.vibration.modes import Mode, eigenmodes, group_real_pairs, modal_assurance_criterion
 
 Real = NDArray[np.float64]
 
@@ -101,7 +101,7 @@ def name_modes(
     tuple of Mode
         The same modes, in the order of undamped natural frequency; ``name`` None where a shape is like no template.
     """
-    groups = together(modes)
+    groups = group_real_pairs(modes)
     if not groups:
         return ()
     # The body counts at its four corners, and an engine as much, of which it is a large part.
@@ -114,7 +114,10 @@ def name_modes(
         # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
         alike = np.stack(
             [
-                np.append(similarity(shape[:7], templates).mean(axis=0), similarity(shape, _alone(scale)).mean(axis=0))
+                np.append(
+                    modal_assurance_criterion(shape[:7], templates).mean(axis=0),
+                    modal_assurance_criterion(shape, _alone(scale)).mean(axis=0),
+                )
                 for shape in shapes
             ]
         )
@@ -134,7 +137,7 @@ def _alone(scale: Real) -> Real:
     return np.eye(len(scale))[:, 7:]
 
 
-def modes_of(matrices: Matrices) -> tuple[Mode, ...]:
+def compute_modes(matrices: Matrices) -> tuple[Mode, ...]:
     """Give the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), with their names.
 
     Parameters
@@ -151,14 +154,14 @@ def modes_of(matrices: Matrices) -> tuple[Mode, ...]:
     Examples
     --------
     >>> from sprung.vehicle import SCHOOL_BUS
-    >>> [f"{mode.name} {mode.frequency:.3f}" for mode in modes_of(SCHOOL_BUS.matrices())][:3]
+    >>> [f"{mode.name} {mode.frequency:.3f}" for mode in compute_modes(SCHOOL_BUS.matrices())][:3]
     ['body roll 1.071', 'body bounce 2.015', 'body pitch 2.812']
     """
     sprung, pitch, roll = np.diag(matrices.M)[:3]
-    return name_modes(vibrations(matrices), float(np.sqrt(pitch / sprung)), float(np.sqrt(roll / sprung)))
+    return name_modes(eigenmodes(matrices), float(np.sqrt(pitch / sprung)), float(np.sqrt(roll / sprung)))
 
 
-def in_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
+def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
     """Turn shapes at the sensors into shapes in the seven coordinates, by least squares.
 
     Parameters
@@ -181,11 +184,11 @@ def in_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | 
         a = -float(places[:, 0].min() + places[:, 0].max()) / 2 if len(places) else 0.0
     rows = Rows.of([sensor.row for sensor in sensors], ("a",)).at([a])
     inverse = np.linalg.pinv(rows)
-    return tuple(replace(mode, shape=inverse @ mode.shape, name=None, spread=None) for mode in modes)
+    return tuple(replace(mode, shape=inverse @ mode.shape, name=None, uncertainty=None) for mode in modes)
 
 
-def name_by_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
-    """Name modes identified from records: `in_coordinates`, then `name_modes`, with the sensors' spread as levers.
+def name_modes_at_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
+    """Name modes identified from records: `expand_to_coordinates`, then `name_modes`, with the sensors' spread as levers.
 
     Parameters
     ----------
@@ -203,7 +206,7 @@ def name_by_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float |
     """
     spread = np.ptp(_body_places(sensors), axis=0) / 2 if len(_body_places(sensors)) else np.zeros(2)
     return name_modes(
-        in_coordinates(modes, sensors, a),
+        expand_to_coordinates(modes, sensors, a),
         float(spread[0]) or _HALF_WHEELBASE,
         float(spread[1]) or _HALF_TRACK,
     )
