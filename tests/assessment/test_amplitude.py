@@ -11,7 +11,7 @@ from hysteresis import measured
 from numpy.typing import NDArray
 
 import sprung
-from sprung.assessment import BodyMotion, Trace, mode_amplitudes
+from sprung.assessment import AmplitudeCurve, BodyMotion, mode_amplitudes
 from sprung.assessment.sliding import follow_mode
 from sprung.estimation import FitStatistics
 from sprung.vehicle import (
@@ -66,7 +66,7 @@ def test_it_is_as_sure_as_it_says() -> None:
     assert 0.7 < np.std(misses) < 1.35
 
 
-def fall(trace: Trace) -> float:
+def fall(trace: AmplitudeCurve) -> float:
     """Frequency at the smallest amplitude over that at the largest."""
     return float(trace.frequency[trace.amplitude.argmin()] / trace.frequency[trace.amplitude.argmax()])
 

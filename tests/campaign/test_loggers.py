@@ -67,7 +67,7 @@ def test_a_logger_is_found_by_its_name_or_its_channel(tmp_path: Path) -> None:
     expected = np.sin(2 * np.pi * 1.5 * (recording.time - 10))
     np.testing.assert_allclose(recording.values, np.tile(expected, (5, 1)), atol=2e-6)
     assert [clock.channels for clock in recording.clocks] == [(0,), (1,), (2, 3, 4)]
-    stand = [(clock.ahead, clock.share) for clock in recording.clocks]
+    stand = [(clock.offset, clock.rate_ratio) for clock in recording.clocks]
     np.testing.assert_allclose(stand, [(0.0, 0.4), (-13.0, 0.4), (-10.0, 1.0)], rtol=1e-9)
 
 
@@ -168,9 +168,9 @@ def test_loggers_are_put_on_one_clock_by_a_moment_they_share(rate: float) -> Non
     together = merged(whole, [100.3, -7.0 + 0.3997])
     true = together.time - 99.8
     clock = together.clocks[1]
-    assert clock.ahead - together.clocks[0].ahead == pytest.approx(-7 + 0.3997 - 100.3, abs=0.5 / rate + 1e-9)
+    assert clock.offset - together.clocks[0].offset == pytest.approx(-7 + 0.3997 - 100.3, abs=0.5 / rate + 1e-9)
     # By its clock's own word a sample was taken when it was: within half a step, or interpolated.
-    own = together.time + clock.ahead + 7 + 0.1003
+    own = together.time + clock.offset + 7 + 0.1003
     exact = np.exp(-own) * np.sin(2 * np.pi * 11 * own)
     # 500.05 Hz is taken for 500: 0.2 ms off at the end.
     np.testing.assert_allclose(together.values[1], exact, atol=1e-9 if rate == 500 else 3e-3)

@@ -40,6 +40,7 @@ KEYS = {
     "fit",
     "drops",
     "faults",
+    "trace",
 }
 UNITS = {"kg", "kg m^2", "N/m", "N s/m", "N", "m", "1"}
 SEVEN_DEGREES_OF_FREEDOM = {
@@ -128,6 +129,8 @@ def test_results_json(any_campaign: Identified) -> None:
         assert 0 <= drop["start"] < drop["end"]
     for fault in document["faults"]:
         assert fault.keys() == {"code", "where", "what", "do"}
+    for step in document["trace"]:
+        assert step.keys() == {"stage", "what", "why"}
 
 
 def check_parameter(estimate: dict[str, Any]) -> None:

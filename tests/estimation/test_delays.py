@@ -38,9 +38,9 @@ def clocks(late: float = 0.0, std: float = 0.05, follows: float = 0.0) -> tuple[
             str(number),
             group,
             0.0,
-            late=late if number == 1 else 0.0,
-            std=std,
-            follows={"c_sf": follows * (number == 1)},
+            delay=late if number == 1 else 0.0,
+            delay_std=std,
+            d_delay_d_parameter={"c_sf": follows * (number == 1)},
         )
         for number, group in enumerate(groups)
     )
@@ -124,7 +124,7 @@ def test_delays_are_where_brute_force_finds_them() -> None:
     found = likelihood(those).at(values).delays(WEIGHTS, np.zeros((15, 15)))[0]
 
     def at(late: Real) -> float:
-        told = [replace(clock, late=float(one), std=1e-9) for clock, one in zip(clocks(), late, strict=True)]
+        told = [replace(clock, delay=float(one), delay_std=1e-9) for clock, one in zip(clocks(), late, strict=True)]
         residual, _ = likelihood([replace(those[0], clocks=tuple(told))]).at(values).misfit(WEIGHTS)
         return float((residual @ WEIGHTS).sum() + np.sum((late / 0.05) ** 2))
 

@@ -71,7 +71,7 @@ def test_channels_on_another_clock_are_read_at_the_times_of_the_others(tmp_path:
     np.testing.assert_array_equal(table.take()[0], VALUES[0])
     np.testing.assert_allclose(table.take()[1], np.sin(2 * np.pi * 3 * TIME), atol=1e-4)
     np.testing.assert_allclose(table.take()[2], -table.take()[1], atol=1e-12)
-    assert table.resampled[1].share == pytest.approx(0.1)
+    assert table.resampled[1].rate_ratio == pytest.approx(0.1)
     assert table.notes == ("on another clock, and read at the times of the others: slow, slower",)
 
 

@@ -110,7 +110,7 @@ def test_a_channel_at_another_rate(
     # Once the wheel has landed for good: 0.03 m/s² of noise in both.
     late = slice(500, read.shape[1])
     assert np.sqrt(np.mean((read - exact[:, : read.shape[1]])[:, late] ** 2)) < 0.06
-    share = campaign.recordings[0].shares
+    share = campaign.recordings[0].rate_ratios
     assert share == () if every == 1 else share[wheel] == pytest.approx(0.5, rel=1e-6)
     result = sprung.identify(campaign)
     assert result.verdict.state == "accept", result.verdict.reasons

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import html
-import json
 import math
 import re
 import xml.etree.ElementTree as ET
@@ -60,17 +59,6 @@ def test_the_words_of_a_report(name: str, regenerate: bool) -> None:
     body = re.sub(r"<(style|script|svg)\b.*?</\1>", "", page[page.index("<body>") :], flags=re.DOTALL)
     lines = (" ".join(html.unescape(re.sub(r"<[^>]+>", " ", line)).split()) for line in body.splitlines())
     compare(name, "".join(f"{line}\n" for line in lines if line), regenerate, "page.txt")
-
-
-def test_a_result_of_an_older_sprung_says_what_it_lacks(tmp_path: Path) -> None:
-    document = json.loads((HERE / "accept.json").read_text(encoding="utf-8"))
-    del document["setup"], document["checksums"]
-    for found in document["modes"].values():
-        for one in found:
-            del one["motion"]
-    (tmp_path / "results.json").write_text(json.dumps(document), encoding="utf-8")
-    page = page_of(sprung.load(tmp_path / "results.json", series=False))
-    assert "an older sprung wrote this result, without the shapes" in page
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -141,7 +129,7 @@ def test_a_check(regenerate: bool) -> None:
     compare("check", text_of(check_view(check), CONSOLE), regenerate)
 
 
-def test_a_check_that_an_older_sprung_could_have_made() -> None:
+def test_a_drop_without_anything_observed() -> None:
     shown = text_of(check_view(Check((DropReport("a.csv", "empty", 0.4, 3.5, ()),), ())), CONSOLE)
     assert "a.csv" in shown
     assert "Limits" not in shown

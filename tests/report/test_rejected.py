@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import re
-from pathlib import Path
 
 import pytest
 
@@ -74,16 +73,6 @@ def test_results_json_says_so_as_the_contract_has_it(rejected: Result) -> None:
     assert document["fit"]["noise"]
     assert document["fit"]["misfit"]
     assert document["validation"]
-
-
-def test_a_file_of_an_older_sprung_that_holds_numbers_is_read_without(sound: Result, tmp_path: Path) -> None:
-    document = json.loads(sound.to_json())
-    del document["checksums"]
-    document["verdict"] = {"state": "reject", "reasons": [REASON]}
-    (tmp_path / "results.json").write_text(json.dumps(document), encoding="utf-8")
-    read = sprung.load(tmp_path / "results.json", series=False)
-    assert {one.value for one in read.parameters.values() if one.status != "known"} == {None}
-    assert all(modes == () for modes in read.modes.values())
 
 
 def test_it_is_compared_and_drawn_without(sound: Result, rejected: Result) -> None:

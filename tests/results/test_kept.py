@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import sprung
+from sprung.assessment import Verdict
 from sprung.campaign import Campaign
 from sprung.errors import ResultFileError
 from sprung.report import page_of
-from sprung.results import Result
-from sprung.results.series import packed
+from sprung.results import Result, TraceStep
 from sprung.vehicle import TABLE_1_CAR
 from sprung.vibration import compute_modes, modal_assurance_criterion
 
@@ -67,7 +67,6 @@ def test_whole_recordings_are_kept_also_of_what_was_left_out(campaign: Campaign,
 
 
 def test_what_was_known_is_held_against_what_was_found(result: Result) -> None:
-    assert result.setup is not None
     mass = result.setup.known["total_mass"]
     assert (mass.value, mass.std, mass.unit, mass.found.status) == (TABLE_1_CAR.total_mass, 0.0, "kg", "known")
     assert result.setup.options == {"tracks": "left open", "extras": "none", "fall": "left open", "profile": "none"}
@@ -97,25 +96,28 @@ def test_amplitudes_are_what_a_validation_shows(campaign: Campaign, result: Resu
     assert all(one["load"] == "empty" for one in document.values())
 
 
-def test_a_folder_of_an_older_sprung_is_read_and_says_what_it_lacks(result: Result, folder: Path) -> None:
-    old = {
-        f"{name}/{part}": np.array(getattr(series, part))
-        for name, series in result.series.items()
-        for part in ("channels", "time", "measured", "fitted")
-    }
-    (folder / "series.npz").write_bytes(packed(old))
-    document = json.loads((folder / "results.json").read_text(encoding="utf-8"))
-    for key in ("setup", "amplitude", "validation", "next_step", "checksums"):
-        del document[key]
-    for mode in document["modes"]["empty"]:
-        del mode["motion"]
-    for drop in document["drops"]:
-        del drop["name"]
-    (folder / "results.json").write_text(json.dumps(document), encoding="utf-8")
-    page = page_of(sprung.load(folder))
-    assert "an older sprung wrote this result, without the shapes" in page
-    assert 'id="spectra"' in page
-    assert 'id="amplitude"' not in page
+STEPS = (
+    TraceStep("select_terms", "friction accepted", "Δ2lnL = 812, required 21"),
+    TraceStep("isolate_faults", "gain of wheel_fl <not> corrected", "z = 1.2, required 4.1"),
+)
+
+
+def test_the_trace_is_saved_loaded_and_shown(result: Result, tmp_path: Path) -> None:
+    traced = replace(result, trace=STEPS)
+    document = json.loads(traced.to_json())
+    assert document["trace"][0] == {"stage": "select_terms", "what": STEPS[0].what, "why": STEPS[0].why}
+    assert sprung.load(traced.save(tmp_path / "traced")).trace == STEPS
+    for shown in (page_of(traced), traced._repr_html_()):
+        assert shown.count("How the result was reached") >= 1
+        assert "&lt;not&gt; corrected" in shown
+        assert "Δ2lnL = 812, required 21" in shown
+    assert "How the result was reached" not in page_of(result) + result._repr_html_()
+
+
+def test_the_trace_of_a_rejected_result_is_shown(result: Result) -> None:
+    rejected = replace(result, trace=STEPS, verdict=Verdict("reject", ("the model does not hold",)))
+    assert "friction accepted" in rejected._repr_html_()
+    assert "friction accepted" in page_of(rejected)
 
 
 @pytest.mark.parametrize("spoilt", [{"body bounce": {}}, {"body bounce": 1}, [1], "curves"])

@@ -51,15 +51,6 @@ def test_results_keep_it(found: Validation, tmp_path: Path) -> None:
     assert first["whiteness"].keys() == set(document["fit"]["noise"])
 
 
-def test_results_of_an_older_sprung_have_none(found: Validation, tmp_path: Path) -> None:
-    found.result.save(tmp_path)
-    path = tmp_path / "results.json"
-    document = json.loads(path.read_text(encoding="utf-8"))
-    del document["validation"], document["checksums"]
-    path.write_text(json.dumps(document), encoding="utf-8")
-    assert sprung.load(tmp_path).validation == {}
-
-
 def test_its_files_hold_what_is_drawn(found: Validation, tmp_path: Path) -> None:
     folder = found.save(tmp_path / "validation")
     document = json.loads((folder / "validation.json").read_text(encoding="utf-8"))

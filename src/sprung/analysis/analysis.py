@@ -71,6 +71,8 @@ class Analysis:
         Faults that were found and of which nothing was changed.
     preparation
         The decays as they were found in the recordings; None until the campaign is preprocessed.
+    clock_fit
+        The fit that set the clocks of several loggers; None where there is one clock.
     requested
         The model that is asked for, as far as it is; None until there is a baseline.
     search
@@ -79,6 +81,8 @@ class Analysis:
         The fit in which faults were last looked for, and what was found.
     statistics
         Uncertainty of the fit; None until it is computed.
+    remarks
+        What is to be said of the fit beside the terms of the model.
     result
         None until the fit is assessed.
     trace
@@ -95,10 +99,12 @@ class Analysis:
     corrected: tuple[Hypothesis, ...] = ()
     suspected: tuple[Fault, ...] = ()
     preparation: Prepared | None = None
+    clock_fit: FitResult | None = None
     requested: ModelStructure | None = None
     search: ModelSearch | None = None
     isolated: tuple[FitResult, Isolated | None] | None = None
     statistics: FitStatistics | None = None
+    remarks: tuple[str, ...] = ()
     result: Result | None = None
     trace: tuple[TraceStep, ...] = ()
     fits: int = 0
@@ -140,6 +146,7 @@ class Analysis:
             excluded={**self.excluded, **excluded},
             preparation=preparation,
             search=None,
+            clock_fit=None,
             isolated=None,
             remaining=self.stages,
         )

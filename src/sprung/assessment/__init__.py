@@ -5,12 +5,13 @@ from sprung.assessment.bodies import MOTIONS, BodyMotion, body_motions
 from sprung.assessment.drops import DropValidation, validate_drops
 from sprung.assessment.residuals import Misfit, judge_residuals
 from sprung.assessment.sensors import Moments, SensorNoise, moments, sensor_noise
-from sprung.assessment.sliding import Trace
+from sprung.assessment.sliding import AmplitudeCurve
 from sprung.assessment.verdict import State, Verdict, judge
 from sprung.assessment.whiteness import Remainder, noise_of_sensors, remainders
 
 __all__ = [
     "MOTIONS",
+    "AmplitudeCurve",
     "BodyMotion",
     "DropValidation",
     "Misfit",
@@ -19,7 +20,6 @@ __all__ = [
     "Remainder",
     "SensorNoise",
     "State",
-    "Trace",
     "Verdict",
     "body_motions",
     "judge",

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.assessment.bodies import BodyMotion, body_rows
-from sprung.assessment.sliding import Trace, follow_mode
+from sprung.assessment.sliding import AmplitudeCurve, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.progress import Progress, counted, silent
@@ -62,9 +62,9 @@ class ModeAmplitude:
     mode: str
     frequency: float
     damping_ratio: float
-    records: tuple[Trace, ...]
-    simulated: tuple[Trace, ...]
-    model: Trace
+    records: tuple[AmplitudeCurve, ...]
+    simulated: tuple[AmplitudeCurve, ...]
+    model: AmplitudeCurve
     load: str = EMPTY.name
 
 

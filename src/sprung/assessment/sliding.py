@@ -37,7 +37,7 @@ _LEAST, _MOST = -0.1, 0.8
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Trace:
+class AmplitudeCurve:
     """One mode through one decay. All arrays have the shape (window,); neighbouring windows overlap by five sixths.
 
     Attributes
@@ -72,7 +72,7 @@ def follow_mode(
     which: int,
     largest: float,
     least: float = 0.0,
-) -> Trace:
+) -> AmplitudeCurve:
     """Follow one mode.
 
     Parameters
@@ -132,7 +132,7 @@ def follow_mode(
             break
     table = np.array(found).reshape(-1, 6)
     told = (table[:, 3] < _SURE * table[:, 2]) & (table[:, 4] > _LEAST) & (table[:, 4] < _MOST)
-    return Trace(name, *np.ascontiguousarray(table[told].T))
+    return AmplitudeCurve(name, *np.ascontiguousarray(table[told].T))
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,16 +11,16 @@ from sprung.campaign.merging import merged
 from sprung.campaign.plausibility import implausible
 from sprung.campaign.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.reading import FILE, VehicleFile, read, read_document, read_vehicle
-from sprung.campaign.recording import ROUGHLY, LoggerClock, Recording
+from sprung.campaign.recording import CLOCK_STD, LoggerClock, Recording
 from sprung.campaign.sep005 import to_sep005
 from sprung.campaign.source import CampaignSource, campaign_from
 from sprung.campaign.sources import SourceFile
 from sprung.campaign.writing import campaign_files, write
 
 __all__ = [
+    "CLOCK_STD",
     "FILE",
     "KINDS",
-    "ROUGHLY",
     "SCHEMA_FILE",
     "SCHEMA_LINE",
     "Campaign",

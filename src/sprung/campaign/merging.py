@@ -68,14 +68,14 @@ def merged(whole: Recording, moments: Sequence[float | None]) -> Recording:
         parts=whole.parts,
         clocks=tuple(clocks),
         full_scale=_full_scales(whole),
-        shares=_shares(whole),
+        rate_ratios=_rate_ratios(whole),
     )
 
 
-def _shares(whole: Recording) -> tuple[float, ...]:
-    """Give the samples of its own logger's that were taken of each channel for each one; nothing where it is 1 for all."""
+def _rate_ratios(whole: Recording) -> tuple[float, ...]:
+    """Return the rate ratio of each channel within its logger's file; empty where it is 1 for all."""
     of_channels = {
-        channel: share for part in whole.parts for channel, share in zip(part.channels, part.shares, strict=False)
+        channel: ratio for part in whole.parts for channel, ratio in zip(part.channels, part.rate_ratios, strict=False)
     }
     return tuple(of_channels.get(channel, 1.0) for channel in whole.channels) if of_channels else ()
 

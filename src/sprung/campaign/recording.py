@@ -12,43 +12,49 @@ from sprung.display import shown
 from sprung.errors import Fault
 from sprung.vehicle import with_separate_tracks
 
-ROUGHLY = 0.05
-"""s: how far two clocks may stand apart where only the first motion that a logger shows has tied them."""
+CLOCK_STD = 0.05
+"""Standard uncertainty of a clock offset that was estimated from the first motion in the records alone, s."""
 
 
 @shown
 @dataclass(frozen=True, eq=False)
 class LoggerClock:
-    """One of several loggers of a drop, and how its clock stands to the recording's.
+    """Clock of one of several loggers of a drop, relative to the recording's clock.
 
     Attributes
     ----------
     name
-        The logger's.
+        Name of the logger.
     channels
-        Which channels it recorded, by their positions.
-    ahead
-        What its own clock shows when the recording's shows zero, s, as far as the release tells.
-    share
-        Samples that it took for each one in the recording: below 1 where it was slower.
-    late, std
-        By how much later its samples were taken than the recording's clock says, and how sure that is, s.
-    follows
-        By how much that grows with each parameter of the vehicle that told it, s per SI unit, by the parameter's name.
+        Positions of the channels that it recorded.
+    offset
+        Reading of its clock at time zero of the recording, s, estimated from the release.
+    rate_ratio
+        Its sampling rate over that of the recording; at most 1.
+    delay, delay_std
+        Delay of its samples behind the time that the recording gives them, and its standard uncertainty, s.
+    d_delay_d_parameter
+        Derivative of the delay with respect to the parameters of the vehicle from which it was estimated, s per SI unit.
     """
 
     name: str
     channels: tuple[int, ...]
-    ahead: float
-    share: float = 1.0
-    late: float = 0.0
-    std: float = ROUGHLY
-    follows: Mapping[str, float] = field(default_factory=dict)
+    offset: float
+    rate_ratio: float = 1.0
+    delay: float = 0.0
+    delay_std: float = CLOCK_STD
+    d_delay_d_parameter: Mapping[str, float] = field(default_factory=dict)
 
-    def expected(self, parameters: Mapping[str, float]) -> float:
-        """Give how late it is as far as is known, s, for a vehicle of these parameters, SI."""
+    def expected_delay(self, parameters: Mapping[str, float]) -> float:
+        """Return the expected delay of its samples, s.
+
+        Parameters
+        ----------
+        parameters
+            Of the vehicle, SI.
+        """
         apart = with_separate_tracks(parameters)
-        return self.late + sum(slope * apart[name] for name, slope in self.follows.items())
+        return self.delay + sum(slope * apart[name] for name, slope in self.d_delay_d_parameter.items())
 
 
 @shown
@@ -80,9 +86,9 @@ class Recording:
     full_scale
         The largest reading of each channel's sensor, m/s², by the unit of the file if nothing else names one; None where
         nobody says it. Empty where no file was read: the sensors' own units hold then.
-    shares
-        Samples that were taken of each channel for each one that is here, below 1 where a slower clock kept it than the
-        file's others. Empty where it is 1 for all of them.
+    rate_ratios
+        Sampling rate of each channel over that of the recording, below 1 where a slower clock of the file sampled it. Empty
+        where it is 1 for all of them.
     """
 
     name: str
@@ -95,7 +101,7 @@ class Recording:
     parts: tuple[Recording, ...] = ()
     clocks: tuple[LoggerClock, ...] = ()
     full_scale: tuple[float | None, ...] = ()
-    shares: tuple[float, ...] = ()
+    rate_ratios: tuple[float, ...] = ()
 
     @property
     def time(self) -> NDArray[np.float64]:

@@ -142,15 +142,15 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
         history=history,
         faults=tuple(faults),
         full_scale=tuple(full_scale),
-        shares=_shares(table, sensors),
+        rate_ratios=_rate_ratios(table, sensors),
     )
 
 
-def _shares(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
+def _rate_ratios(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
     """Give the samples that were taken for each one that is there, of each channel; nothing where all have one clock."""
     columns = [column_of(table, sensor.channel)[:1] for sensor in sensors]
     slower = [
-        table.resampled[column[0]].share if column and column[0] in table.resampled else 1.0 for column in columns
+        table.resampled[column[0]].rate_ratio if column and column[0] in table.resampled else 1.0 for column in columns
     ]
     return tuple(slower) if min(slower, default=1.0) < 1 else ()
 

@@ -4,7 +4,6 @@ from sprung.estimation.characteristics import characteristics_of
 from sprung.estimation.closed_form import Likelihood, LikelihoodAt
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
-from sprung.estimation.fault_scores import FaultScore, score_faults
 from sprung.estimation.fit import NEAR, STARTS, FitResult, escape_local_optimum, fit_linear, score_linear_term
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
@@ -15,10 +14,10 @@ from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
+from sprung.estimation.solution import ModalSlopes, respond
 from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, overdispersion_of, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
-from sprung.estimation.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 
 __all__ = [
     "CONVERGED",
@@ -32,12 +31,12 @@ __all__ = [
     "Coordinates",
     "Correlation",
     "Estimates",
-    "FaultScore",
     "FitResult",
     "FitStatistics",
     "Inflater",
     "Likelihood",
     "LikelihoodAt",
+    "ModalSlopes",
     "ModeEstimate",
     "Mounting",
     "Prediction",
@@ -56,20 +55,17 @@ __all__ = [
     "fit_linear",
     "fit_nonlinear",
     "identifiable_subspace",
-    "mask_unsynchronised",
     "mode_estimates",
     "mountings_of",
     "overdispersion_of",
     "parameters_from_matrices",
     "predictions",
     "profiled",
-    "score_faults",
+    "respond",
     "score_linear_term",
     "score_nonlinear_terms",
     "score_stepped_terms",
     "shape_of",
-    "synchronise_at_release",
-    "synchronise_by_decay",
     "to_estimates",
     "uncertainty_of",
     "wald_test",

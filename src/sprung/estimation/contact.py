@@ -117,7 +117,7 @@ def _shocked(decay: FreeDecay, found: FitResult, position: int) -> int:
 
 def _wary(decay: FreeDecay) -> int:
     """Give samples by which to stay away from the last contact where a logger interpolated: they have something of it."""
-    slowest = min(decay.shares, default=1.0)
+    slowest = min(decay.rate_ratios, default=1.0)
     return round(_NEIGHBOURS / slowest) if slowest < 1 else 0
 
 
@@ -134,14 +134,14 @@ def clear_of_splines(decay: FreeDecay) -> FreeDecay:
     Decay
         In which these loggers are late by that.
     """
-    skips = [round(_NEIGHBOURS / clock.share) if clock.share < 1 else 0 for clock in decay.clocks]
+    skips = [round(_NEIGHBOURS / clock.rate_ratio) if clock.rate_ratio < 1 else 0 for clock in decay.clocks]
     whole = np.concatenate([decay.earlier, decay.values], axis=1)
     length, before = whole.shape[1] - max(skips, default=0), decay.earlier.shape[1]
     values = whole[:, :length].copy()
     for clock, skip in zip(decay.clocks, skips, strict=True):
         values[list(clock.channels)] = whole[list(clock.channels), skip : skip + length]
     clocks = tuple(
-        replace(clock, ahead=clock.ahead + skip / decay.rate, late=clock.late + skip / decay.rate)
+        replace(clock, offset=clock.offset + skip / decay.rate, delay=clock.delay + skip / decay.rate)
         for clock, skip in zip(decay.clocks, skips, strict=True)
     )
     return replace(decay, earlier=values[:, :before], values=values[:, before:], clocks=clocks)

@@ -133,12 +133,12 @@ class RecordBatch:
             load=np.array([load for load, *_ in alike]),
             step=np.array([step for _, step, _ in alike]),
             samples=samples,
-            present=decays[order[0]].usable * channel_shares(decays[order[0]]),
+            present=decays[order[0]].usable * channel_rate_ratios(decays[order[0]]),
             energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
             blocked=np.concatenate(cut),
             late=_loggers(decays[order[0]]),
-            expected=np.array([[clock.late for clock in decays[i].clocks] for i in order]),
-            expected_std=np.array([[clock.std for clock in decays[i].clocks] for i in order]),
+            expected=np.array([[clock.delay for clock in decays[i].clocks] for i in order]),
+            expected_std=np.array([[clock.delay_std for clock in decays[i].clocks] for i in order]),
             follows=np.array([[_by_parameter(clock, names) for clock in decays[i].clocks] for i in order]),
             flown=FlightInformation.of([decays[i] for i in order], names),
         )
@@ -260,7 +260,7 @@ class Records:
         together: dict[tuple[object, ...], list[list[int]]] = {}
         for i in sorted(range(len(decays)), key=lambda i: (decays[i].load, decays[i].rate)):
             loggers = tuple(clock.channels for clock in decays[i].clocks)
-            runs = together.setdefault((*decays[i].usable, *channel_shares(decays[i]), loggers), [[]])
+            runs = together.setdefault((*decays[i].usable, *channel_rate_ratios(decays[i]), loggers), [[]])
             if runs[-1] and sum(decays[other].samples for other in (*runs[-1], i)) > _LARGEST * BLOCK_LENGTH:
                 runs.append([])
             runs[-1].append(i)
@@ -278,11 +278,11 @@ class Records:
         return ordered
 
 
-def channel_shares(decay: FreeDecay) -> Real:
+def channel_rate_ratios(decay: FreeDecay) -> Real:
     """Give the samples that each channel's logger took for each one of the decay, shape (channel,)."""
-    shares = np.array(decay.shares or np.ones(len(decay.values)))
+    shares = np.array(decay.rate_ratios or np.ones(len(decay.values)))
     for clock in decay.clocks:
-        shares[list(clock.channels)] *= clock.share
+        shares[list(clock.channels)] *= clock.rate_ratio
     return shares
 
 
@@ -296,4 +296,4 @@ def _loggers(decay: FreeDecay) -> Real:
 
 def _by_parameter(clock: LoggerClock, names: Sequence[str]) -> list[float]:
     """Give how a clock follows the parameters of a fit, which may share half-distances; shape (parameter,)."""
-    return [sum(clock.follows.get(own, 0.0) for own in separate_track_names(name)) for name in names]
+    return [sum(clock.d_delay_d_parameter.get(own, 0.0) for own in separate_track_names(name)) for name in names]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.closed_form import Evaluation
 from sprung.estimation.expm_likelihood import reach
-from sprung.estimation.records import channel_shares
+from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import ElementInput, NonlinearModel, Rows, Stepper, Trajectory
@@ -128,7 +128,7 @@ class SteppedLikelihood:
             every=every,
             samples=np.array([decay.samples for decay in decays]),
             values=values,
-            present=np.array([decay.usable * channel_shares(decay) for decay in decays]),
+            present=np.array([decay.usable * channel_rate_ratios(decay) for decay in decays]),
             tilting=float(tilting),
             begin=begin,
         )

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimation import FaultScore
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.channel import CHANNEL_HYPOTHESES, ChannelHypothesis, Numbers, flat
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.consistency import NEGLIGIBLE, score_faults_of
@@ -194,7 +194,7 @@ class ChannelCorrection(Hypothesis):
             return None, fits
         stds = tuple(score.std for score in scores)
         confirmed = ChannelCorrection.of(deletion, hypothesis, numbers, stds, candidate)
-        if max((score.pull for score in scores), default=0.0) < _SHIFT:
+        if max((score.max_parameter_shift for score in scores), default=0.0) < _SHIFT:
             return confirmed, fits
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
         return Hypothesis(

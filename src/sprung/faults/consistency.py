@@ -8,7 +8,8 @@ from typing import Literal
 import numpy as np
 
 from sprung.campaign import Campaign
-from sprung.estimation import FaultScore, FitResult, autocorrelation_inflation, corrections, score_faults
+from sprung.estimation import FitResult, autocorrelation_inflation
+from sprung.faults.fault_scores import FaultScore, score_faults
 from sprung.faults.high_pass import NEGLIGIBLE as NEGLIGIBLE_CORNER
 from sprung.faults.high_pass import CornerScores, score_corners
 from sprung.faults.residual_table import reference_noise, residual_table
@@ -95,7 +96,7 @@ def _scores(
 
 def _one_drop_stands_out(fit: FitResult, correlation: float) -> bool:
     """Whether one drop contradicts the others by far more than these each other, and than autocorrelated noise does."""
-    squares, directions = corrections(*fit.problem.by_drop(fit.point))
+    squares, directions = fit.drop_corrections
     *others, largest = np.sort(squares).tolist()
     chance = correlation * float(np.max(directions + _CHANCE * np.sqrt(2 * directions)))
     return largest > chance and bool(others) and largest > _OUTSTANDING * max(float(np.mean(others)), 1.0)

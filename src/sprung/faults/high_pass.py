@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimation import FaultScore, FitResult, LikelihoodAt, identifiable_subspace
+from sprung.estimation import FitResult, LikelihoodAt, identifiable_subspace
+from sprung.faults.fault_scores import FaultScore
 from sprung.preprocess import FreeDecay, by_corner
 from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import Sensor

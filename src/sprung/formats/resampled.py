@@ -29,19 +29,19 @@ class Resampled(NamedTuple):
 
     Attributes
     ----------
-    share
+    rate_ratio
         Samples that were taken for each one that is there now: below 1 where its clock was slower.
     first, last
         From which sample up to which, last apart, it reaches.
     """
 
-    share: float
+    rate_ratio: float
     first: int
     last: int
 
     def within(self, first: int, last: int) -> Resampled:
         """Give the same for the part of the column from first up to last, last apart."""
-        return Resampled(self.share, max(self.first - first, 0), max(min(self.last, last) - first, 0))
+        return Resampled(self.rate_ratio, max(self.first - first, 0), max(min(self.last, last) - first, 0))
 
 
 def resampled(
@@ -83,10 +83,10 @@ def resampled(
             values = _at(read, own[low:high], wanted, step)
         return np.tile(values, (len(columns), 1))
 
-    share = min((every[-1] - every[0]) / (length - 1) / step, 1.0)
+    rate_ratio = min((every[-1] - every[0]) / (length - 1) / step, 1.0)
     store = by_ranges(1, length, get)
     store = Store(1, length, store.read, lambda _, *__: samples.store.spoilt(samples.column, 0, own.size))
-    return Samples(store, 0), Resampled(float(share), int(first), int(last))
+    return Samples(store, 0), Resampled(float(rate_ratio), int(first), int(last))
 
 
 def _at(

@@ -38,17 +38,13 @@ def fit(
     Raises
     ------
     InputError
-        If there is no such drop or channel, or an older sprung wrote the result, without the motion of the body.
+        If there is no such drop or channel.
     """
     series = result.series[chosen(drop, list(result.series), "drop")]
     if channels is not None:
         names = [chosen(name, series.channels, "channel") for name in channels]
         return drawn(channels_picture(drop, series, names), axes)
-    picture = motion_picture(drop, series, result.validation.get(drop))
-    if picture is None:
-        do = "Identify the campaign again, or name channels."
-        raise InputError([Problem(f"drop {drop}", "no motion of the body", "a result that holds it", do)])
-    return drawn(picture, axes)
+    return drawn(motion_picture(drop, series, result.validation[drop]), axes)
 
 
 def recording(

@@ -106,16 +106,14 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     Raises
     ------
     InputError
-        If there is no such mode or load, its shape is not held, or the result was rejected.
+        If there is no such mode or load, or the result was rejected.
     """
+    if result.verdict.state == "reject":
+        do = "Read result.verdict.reasons; sprung.modes finds modes without a vehicle model."
+        raise InputError([Problem(f"mode {name}", "a rejected result, which has no modes", "accept or doubtful", do)])
     load = chosen(load or next(iter(result.modes)), list(result.modes), "load")
     modes = {one.name: one for one in result.modes[load]}
     found = modes[chosen(name, list(modes), "mode")]
-    if not found.motion or result.verdict.state == "reject":
-        what = "no shape" if not found.motion else "a rejected result"
-        raise InputError(
-            [Problem(f"mode {name}", what, "a result that holds its shape", "Identify the campaign again.")]
-        )
     car, axes = wire_car(result), single(axes)
     rise = (car.swing(found.motion) * np.exp(1j * phase)).real
     moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)

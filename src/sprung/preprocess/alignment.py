@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import ROUGHLY, Recording, merged
+from sprung.campaign import CLOCK_STD, Recording, merged
 from sprung.errors import Fault
 from sprung.preprocess.release import find_release
 
@@ -40,8 +40,8 @@ def align(recording: Recording) -> Recording:
     """
     if not recording.parts:
         return recording
-    known = {clock.name: _Told(clock.ahead, clock.std) for clock in recording.clocks}
-    set_before = any(clock.std < ROUGHLY for clock in recording.clocks)
+    known = {clock.name: _Told(clock.offset, clock.delay_std) for clock in recording.clocks}
+    set_before = any(clock.delay_std < CLOCK_STD for clock in recording.clocks)
     told = [known.get(part.name) if set_before else _release(part) for part in recording.parts]
     if not any(told):  # nothing but that they were all started has tied them
         return recording
@@ -63,7 +63,7 @@ def align(recording: Recording) -> Recording:
         nothing = np.full_like(recording.values, np.nan)
         return replace(recording, values=nothing, faults=(*recording.faults, fault))
     stds = iter([one.std for one in told if one is not None])
-    clocks = tuple(replace(clock, std=next(stds)) for clock in together.clocks)
+    clocks = tuple(replace(clock, delay_std=next(stds)) for clock in together.clocks)
     return replace(together, clocks=clocks, faults=(*recording.faults, *faults))
 
 
@@ -71,7 +71,7 @@ def lively(recording: Recording) -> NDArray[np.bool_]:
     """Say which channels tell the release: of several loggers those that showed it at once; shape (channel,)."""
     told = np.ones(len(recording.channels), dtype=bool)
     for clock in recording.clocks:
-        told[list(clock.channels)] = clock.std <= _TOLD
+        told[list(clock.channels)] = clock.delay_std <= _TOLD
     return told if (told & recording.usable).any() else np.ones_like(told)
 
 
@@ -91,4 +91,4 @@ def _release(part: Recording) -> _Told | None:
     if found is None:
         return None
     peak = np.abs(values - found.rest.level[:, None]).max()
-    return _Told(part.start + found.sample / part.rate, _TOLD if peak > _LIVELY else ROUGHLY)
+    return _Told(part.start + found.sample / part.rate, _TOLD if peak > _LIVELY else CLOCK_STD)

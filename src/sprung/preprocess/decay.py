@@ -76,7 +76,7 @@ class FreeDecay:
         What is wrong with the drop.
     clocks
         For several loggers how their clocks stand to this one; without any, all channels have one clock.
-    shares
+    rate_ratios
         Samples that were taken of each channel for each one that is here; empty where it is 1 for all of them.
     undone
         Corner of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
@@ -100,7 +100,7 @@ class FreeDecay:
     faults: tuple[Fault, ...] = ()
     clocks: tuple[LoggerClock, ...] = ()
     undone: tuple[float, ...] = ()
-    shares: tuple[float, ...] = ()
+    rate_ratios: tuple[float, ...] = ()
     velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     events: Events = field(default_factory=Events)
     flight: FromFlight | None = None

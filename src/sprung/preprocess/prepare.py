@@ -246,7 +246,7 @@ def _decay(
         rest=no_rest(len(recording.channels)) if release is None else release.rest,
         faults=tuple(faults),
         clocks=recording.clocks,
-        shares=recording.shares,
+        rate_ratios=recording.rate_ratios,
         undone=undone,
         velocity=velocities(recording, release, undone, landing.possible),
         events=_events(recording, release, landing, first, why_end),

@@ -108,8 +108,7 @@ def wire_car(result: Result, width: float = 220.0) -> WireCar:
     WireCar
     """
     told = {name: found.value for name, found in result.parameters.items() if found.value is not None}
-    before = {} if result.setup is None else {name: one.value for name, one in result.setup.known.items()}
-    wheelbase = before.get("wheelbase", 1.0)
+    wheelbase = result.setup.known["wheelbase"].value if "wheelbase" in result.setup.known else 1.0
     a, b = told.get("a"), told.get("b")
     a, b = (a, b) if a and b else (wheelbase / 2, wheelbase / 2)
     length = a + b
@@ -138,6 +137,6 @@ def wire_car(result: Result, width: float = 220.0) -> WireCar:
 def _half_track(result: Result, told: Mapping[str, float], wheelbase: float) -> float:
     """Give half the track: where springs or dampers are widest apart, or else the body's sensors."""
     places = [value for name, value in told.items() if name.startswith(("t_f", "t_r"))]
-    if not places and result.setup is not None:
+    if not places:
         places = [abs(one.position[1]) for one in result.setup.sensors if one.position is not None]
     return max(places, default=0.0) or _TRACK * wheelbase

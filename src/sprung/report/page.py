@@ -20,7 +20,7 @@ from sprung.report.sketch.svg import drawing_svg
 from sprung.report.style import alone_style, role_rules
 from sprung.report.svg import lower, svg_of
 from sprung.report.words import facts_of, record_of, verdict_words
-from sprung.results import Result
+from sprung.results import TRACE_TITLE, Result
 
 FILE = "report.html"
 """The report's name beside results.json."""
@@ -127,6 +127,7 @@ def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[
         ("amplitude", "Frequency and damping against amplitude", "pictures.html", lambda: sections.amplitude(result)),
         ("correlation", "Correlation of the parameters", "correlation.html", lambda: sections.correlation(result)),
         ("next", "What to measure next", "next.html", lambda: sections.next_step(result)),
+        ("trace", TRACE_TITLE, "trace.html", lambda: sections.trace(result, unfolded)),
         ("settings", "Settings, versions and files", "settings.html", lambda: sections.settings(result)),
         ("literature", "Literature", "literature.html", lambda: sections.literature(result)),
     )

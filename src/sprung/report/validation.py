@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.assessment import DropValidation, ModeAmplitude, Trace
+from sprung.assessment import AmplitudeCurve, DropValidation, ModeAmplitude
 from sprung.files import atomic_write
 from sprung.report.drawing import file_names
 from sprung.report.layout import figures, hanging, laid_out
@@ -110,7 +110,7 @@ def amplitude_table(load: str, amplitudes: Sequence[ModeAmplitude]) -> Table:
     return Table(title, headers, tuple(rows), frozenset(headers[2:]), ("± ", "±", "damping ", "damping"))
 
 
-def _ends(trace: Trace) -> list[str]:
+def _ends(trace: AmplitudeCurve) -> list[str]:
     cells = []
     for i in (int(trace.amplitude.argmax()), int(trace.amplitude.argmin())):
         cells += [
@@ -155,8 +155,7 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     next(names)  # taken by the drawing above
     for name, (drop, series) in zip(names, result.series.items(), strict=True):
         picture = motion_picture(drop, series, result.validation[drop])
-        if picture is not None:
-            drawn[name] = sheet(drop, [(_said(result.validation[drop]), False)], [picture])
+        drawn[name] = sheet(drop, [(_said(result.validation[drop]), False)], [picture])
     return drawn
 
 

@@ -54,16 +54,15 @@ def record_of(result: Result) -> Iterator[tuple[str, str]]:
     """
     if result.tested_vehicle.identification is not None:
         yield "Vehicle identification", result.tested_vehicle.identification
-    if result.setup is not None:
-        test = result.setup.test
-        for name, told in (
-            ("Date", test.date),
-            ("Operator", test.operator),
-            ("Place", test.place),
-            ("Remarks", test.remarks),
-        ):
-            if told is not None:
-                yield name, str(told)
+    test = result.setup.test
+    for name, text in (
+        ("Date", test.date),
+        ("Operator", test.operator),
+        ("Place", test.place),
+        ("Remarks", test.remarks),
+    ):
+        if text is not None:
+            yield name, str(text)
 
 
 def facts_of(result: Result) -> Iterator[tuple[str, str]]:

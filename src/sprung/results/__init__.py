@@ -1,11 +1,13 @@
-"""The result of an identification: its records, tables and files."""
+"""The result of an identification: records, tables and files."""
 
-from sprung.results.amplitude import amplitude_document, plain_trace
-from sprung.results.result import FitReport, Result, TestedVehicle
+from sprung.results.amplitude import amplitude_document, curve_document
+from sprung.results.records import FitReport, TestedVehicle, TraceStep
+from sprung.results.result import Result
 from sprung.results.saved import load
-from sprung.results.series import Series, packed
+from sprung.results.series import Series, npz_bytes
 from sprung.results.setup import PriorComparison, Setup, setup_of
 from sprung.results.tables import (
+    TRACE_TITLE,
     characteristics_tables,
     derived_table,
     meaning_of,
@@ -13,27 +15,31 @@ from sprung.results.tables import (
     other_quantities,
     parameters_table,
     ratios_table,
+    trace_table,
 )
 from sprung.results.withholding import withhold_estimates
 
 __all__ = [
+    "TRACE_TITLE",
     "FitReport",
     "PriorComparison",
     "Result",
     "Series",
     "Setup",
     "TestedVehicle",
+    "TraceStep",
     "amplitude_document",
     "characteristics_tables",
+    "curve_document",
     "derived_table",
     "load",
     "meaning_of",
     "modes_table",
+    "npz_bytes",
     "other_quantities",
-    "packed",
     "parameters_table",
-    "plain_trace",
     "ratios_table",
     "setup_of",
+    "trace_table",
     "withhold_estimates",
 ]

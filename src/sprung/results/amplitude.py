@@ -1,19 +1,21 @@
-"""The body's modes against amplitude, as a result carries them: arrays in memory, plain lists by mode in JSON."""
+"""Frequency and damping of the body's modes against amplitude: arrays in a result, lists by mode in results.json."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer, SkipValidation
+from pydantic import BeforeValidator, PlainSerializer, SkipValidation
 
-from sprung.assessment import ModeAmplitude, Trace
+from sprung.assessment import AmplitudeCurve, ModeAmplitude
+
+_COLUMNS = tuple(field.name for field in fields(AmplitudeCurve) if field.name != "name")
 
 
 def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
-    """Give amplitude curves by mode as JSON holds them.
+    """Return amplitude curves by mode, as JSON holds them.
 
     Parameters
     ----------
@@ -21,69 +23,47 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
         From `amplitudes_of`.
     """
     return {
-        one.mode: {
-            "load": one.load,
-            "frequency": one.frequency,
-            "damping_ratio": one.damping_ratio,
-            "records": {trace.name: plain_trace(trace) for trace in one.records},
-            "simulated": {trace.name: plain_trace(trace) for trace in one.simulated},
-            "model": plain_trace(one.model),
+        mode.mode: {
+            "load": mode.load,
+            "frequency": mode.frequency,
+            "damping_ratio": mode.damping_ratio,
+            "records": {curve.name: curve_document(curve) for curve in mode.records},
+            "simulated": {curve.name: curve_document(curve) for curve in mode.simulated},
+            "model": curve_document(mode.model),
         }
-        for one in amplitudes
+        for mode in amplitudes
     }
 
 
-def plain_trace(trace: Trace) -> dict[str, list[float]]:
-    """Give a trace as lists by name."""
-    return {name: values.tolist() for name, values in asdict(trace).items() if name != "name"}
+def curve_document(curve: AmplitudeCurve) -> dict[str, list[float]]:
+    """Return the columns of a curve as lists by name."""
+    return {name: values.tolist() for name, values in asdict(curve).items() if name != "name"}
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid")
+def _amplitudes_from(document: Any) -> Any:
+    """Return amplitude curves from what JSON holds; such that are none raise ValueError, which pydantic reports."""
+    if isinstance(document, tuple):
+        return document  # made in memory, not read
+    try:
+        return tuple(_mode_from(name, entry) for name, entry in document.items())
+    except (AttributeError, KeyError, TypeError) as error:
+        raise ValueError(f"curves by mode are expected ({type(error).__name__}: {error})") from error
 
 
-class _Trace(_Strict):
-    time: tuple[float, ...]
-    amplitude: tuple[float, ...]
-    frequency: tuple[float, ...]
-    frequency_std: tuple[float, ...]
-    damping_ratio: tuple[float, ...]
-    damping_ratio_std: tuple[float, ...]
-
-    def named(self, name: str) -> Trace:
-        return Trace(name, **{key: np.array(values, dtype=float) for key, values in self})
-
-
-class _Mode(_Strict):
-    load: str
-    frequency: float
-    damping_ratio: float
-    records: dict[str, _Trace]
-    simulated: dict[str, _Trace]
-    model: _Trace
-
-
-def _understood(document: Any) -> Any:
-    if isinstance(document, tuple) and all(isinstance(one, ModeAmplitude) for one in document):
-        return document
-    if not isinstance(document, Mapping):
-        raise ValueError("curves by mode are expected")
-    modes = {name: _Mode.model_validate(entry) for name, entry in document.items()}
-    return tuple(
-        ModeAmplitude(
-            name,
-            mode.frequency,
-            mode.damping_ratio,
-            tuple(trace.named(drop) for drop, trace in mode.records.items()),
-            tuple(trace.named(drop) for drop, trace in mode.simulated.items()),
-            mode.model.named(""),
-            mode.load,
-        )
-        for name, mode in modes.items()
+def _mode_from(name: str, entry: Mapping[str, Any]) -> ModeAmplitude:
+    records, simulated = (
+        tuple(_curve_from(drop, columns) for drop, columns in entry[kind].items()) for kind in ("records", "simulated")
     )
+    frequency, damping_ratio = float(entry["frequency"]), float(entry["damping_ratio"])
+    model = _curve_from("", entry["model"])
+    return ModeAmplitude(name, frequency, damping_ratio, records, simulated, model, entry["load"])
+
+
+def _curve_from(name: str, columns: Mapping[str, Any]) -> AmplitudeCurve:
+    return AmplitudeCurve(name, *(np.array(columns[column], dtype=float) for column in _COLUMNS))
 
 
 Amplitudes = Annotated[
-    SkipValidation[tuple[ModeAmplitude, ...]], BeforeValidator(_understood), PlainSerializer(amplitude_document)
+    SkipValidation[tuple[ModeAmplitude, ...]], BeforeValidator(_amplitudes_from), PlainSerializer(amplitude_document)
 ]
 """Amplitude curves as a field of a result."""

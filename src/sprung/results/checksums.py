@@ -1,4 +1,4 @@
-"""Checksums by which a saved result is known to be as it was written."""
+"""Checksums of a saved result: they detect every change since it was written."""
 
 from __future__ import annotations
 
@@ -10,44 +10,44 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-SEALS = "checksums"
-"""Key of results.json under which they stand; results written before there were any lack it."""
+CHECKSUMS = "checksums"
+"""Key of the checksums in results.json."""
 
 
-def document_seal(document: Mapping[str, Any]) -> str:
-    """Give the checksum of a document, whatever its order, its spaces and its way to write numbers.
+def document_checksum(document: Mapping[str, Any]) -> str:
+    """Return the checksum of a document, independent of the order of keys, of spaces and of 1 or 1.0.
 
     Parameters
     ----------
     document
-        Plain values, as JSON has them; what stands under `SEALS` does not count.
+        Plain values, as JSON has them, without the key `CHECKSUMS`.
 
     Returns
     -------
     str
         ``sha256:`` and 64 hexadecimal digits.
     """
-    text = json.dumps(_plain({key: value for key, value in document.items() if key != SEALS}), sort_keys=True)
+    text = json.dumps(_with_floats(document), sort_keys=True)
     return f"sha256:{hashlib.sha256(text.encode()).hexdigest()}"
 
 
-def _plain(value: Any) -> Any:
+def _with_floats(value: Any) -> Any:
     # 3 and 3.0 are one number to JSON: a program that writes the document again may choose either.
     match value:
         case bool():
             return value
         case int():
             return float(value)
-        case dict():
-            return {key: _plain(one) for key, one in value.items()}
+        case Mapping():
+            return {key: _with_floats(item) for key, item in value.items()}
         case list() | tuple():
-            return [_plain(one) for one in value]
+            return [_with_floats(item) for item in value]
         case _:
             return value
 
 
-def arrays_seal(arrays: Mapping[str, NDArray[Any]]) -> str:
-    """Give the checksum of named arrays: of what they hold, not of how a file packs it.
+def arrays_checksum(arrays: Mapping[str, NDArray[Any]]) -> str:
+    """Return the checksum of named arrays: of their content, not of how a file compresses it.
 
     Parameters
     ----------
@@ -59,9 +59,9 @@ def arrays_seal(arrays: Mapping[str, NDArray[Any]]) -> str:
     str
         ``sha256:`` and 64 hexadecimal digits.
     """
-    seal = hashlib.sha256()
+    checksum = hashlib.sha256()
     for name, array in sorted(arrays.items()):
-        kept = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
-        seal.update(f"{name} {kept.dtype.str} {kept.shape}\n".encode())
-        seal.update(kept.tobytes())
-    return f"sha256:{seal.hexdigest()}"
+        portable = np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<"))
+        checksum.update(f"{name} {portable.dtype.str} {portable.shape}\n".encode())
+        checksum.update(portable.tobytes())
+    return f"sha256:{checksum.hexdigest()}"

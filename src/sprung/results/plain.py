@@ -1,4 +1,4 @@
-"""Records as plain values for JSON, and checked records from plain values."""
+"""Conversion of records to plain values for JSON, and back with validation."""
 
 from __future__ import annotations
 

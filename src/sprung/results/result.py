@@ -1,4 +1,4 @@
-"""The result: everything an identification gives, one frozen record, and its way to a folder and back."""
+"""The result of an identification: one frozen record, saved as results.json and series.npz."""
 
 from __future__ import annotations
 
@@ -11,22 +11,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import ConfigDict, Field
+from pydantic import Field
 
 from sprung.assessment import DropValidation, Verdict
 from sprung.checking import DropReport, Recorded
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.estimation import Correlation, Inflater, ModeEstimate, Scale, Unidentifiable
+from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
 from sprung.files import atomic_write
 from sprung.results.amplitude import Amplitudes
-from sprung.results.checksums import SEALS, arrays_seal, document_seal
+from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import plain_document
-from sprung.results.series import Series, arrays_of, packed
+from sprung.results.records import EXACT_KEYS, FitReport, TestedVehicle, TraceStep
+from sprung.results.series import Series, arrays_of, npz_bytes
 from sprung.results.setup import Setup
-from sprung.results.tables import characteristics_tables, modes_table, other_quantities, parameters_table, ratios_table
+from sprung.results.tables import (
+    TRACE_TITLE,
+    characteristics_tables,
+    modes_table,
+    other_quantities,
+    parameters_table,
+    ratios_table,
+    trace_table,
+)
 from sprung.results.vehicle import identified_vehicle
-from sprung.selection import SelectionStep
 from sprung.tables import escaped
 from sprung.uncertainty import Covariance, Estimate, NamedValues
 from sprung.vehicle import Vehicle
@@ -37,109 +45,21 @@ if TYPE_CHECKING:
 SCHEMA: Literal[1] = 1
 """Version of results.json; a change that an old reader would misread raises it."""
 
-
-_EXACTLY = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
-"""How a saved result is checked when it is read: a key that it does not have is an error."""
-
-
-@shown
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TestedVehicle:
-    """The vehicle that was tested.
-
-    Attributes
-    ----------
-    name
-        For people to read.
-    identification
-        Chassis, registration or test number, as the campaign file has it; None where it has none.
-    """
-
-    __pydantic_config__ = _EXACTLY
-
-    name: str
-    identification: str | None = None
-
-
-@shown
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FitReport:
-    """How the fit went.
-
-    Attributes
-    ----------
-    samples, drops
-        Samples (over all channels) and drops that were fitted.
-    noise
-        Estimated noise of each channel, m/s² root-mean-square.
-    model
-        Extras beyond the paper's seven degrees of freedom.
-    tracks
-        Whether springs and dampers of an axle share their half-distance.
-    why
-        What decided that.
-    axes
-        About which axes the inertias are; empty where an older sprung wrote the result.
-    since
-        Whether drops were used from their release on, or from when the last tyre was down.
-    path
-        What was tried on the way to the model, and what it gained; empty where an older sprung wrote the result.
-    method
-        What estimated it.
-    iterations, converged, starts, starts_agreeing
-        Steps from the winning start, whether the last one promised nothing more, and how many starts ended alike.
-    inflation
-        By how much coloured residuals, or drops that contradict each other, enlarged every variance: a factor, 1 for neither.
-    inflated_by
-        Which of them; None where an older sprung wrote the result.
-    most_coloured
-        The channel whose residuals are most coloured, where they enlarged the variances.
-    misfit
-        Model error of each channel as a part of its signal; 0 where none is significant.
-    loglikelihood
-        Natural logarithm of the likelihood at its maximum, of all samples and what was known with an uncertainty:
-        -½ Σ (ln 2πσ² + r²/σ²) with the estimated noise σ of each channel and the residuals r; None where an older sprung
-        wrote the result.
-    unknowns
-        How many numbers were estimated from the samples: free parameters of the vehicle, the noise of each channel, the initial
-        state of each drop, the offset of each channel in each drop, and offsets of clocks; None likewise.
-    """
-
-    __pydantic_config__ = _EXACTLY
-
-    samples: int
-    drops: int
-    noise: dict[str, float]
-    model: tuple[str, ...]
-    tracks: Literal["shared", "separate"]
-    why: str
-    axes: str = ""
-    since: Literal["release", "landing"] = "landing"
-    path: tuple[SelectionStep, ...] = ()
-    method: str
-    iterations: int
-    converged: bool
-    starts: int
-    starts_agreeing: int
-    inflation: float
-    inflated_by: Inflater | None = None
-    most_coloured: str | None = None
-    misfit: dict[str, float]
-    loglikelihood: float | None = None
-    unknowns: int | None = None
+_MAX_LINES = 7
+"""Lines of parameters in the text of a result."""
 
 
 @shown
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Result:
-    """Everything an identification gives; the contract's results.json, and the series beside it.
+    """Result of an identification: the contract's results.json, and the series beside it.
 
     Attributes
     ----------
     schema_version, version
         Of results.json, and of the sprung that wrote it.
     tested_vehicle
-        Which vehicle was tested: ``vehicle`` in results.json.
+        The vehicle that was tested: ``vehicle`` in results.json.
     verdict
         ``state`` and ``reasons``.
     parameters
@@ -148,43 +68,44 @@ class Result:
     derived
         The same of quantities that follow from the parameters: masses, static loads and centre of gravity of the empty vehicle,
         ride and hop frequency and damping ratio of each axle (`sprung.vehicle.CHARACTERISTICS` and ``WHEEL_LOADS``);
-        ``I_xx_roll_axis``, the roll inertia about the axis of roll, where its height is given; and those whose profile was
-        asked for, such as ``wheelbase``.
+        ``I_xx_roll_axis``, the roll inertia about the roll axis, where its height is given; and those whose likelihood profile
+        was requested, such as ``wheelbase``.
     scale
-        Whether absolute scale is known, and what is left without it.
+        Whether the absolute scale is known, and the ratios that are determined without it.
     unidentifiable
-        Combinations that the data do not determine.
+        Combinations of parameters that the data do not determine.
     correlation
         Of the estimated parameters.
     modes
         By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
-        How the fit went, what was used of each drop, and what was wrong.
+        Summary of the fit, the part of each drop that was used, and the faults of recordings and campaign.
     validation
-        By drop name: how well the fitted vehicle explains the drop, and how well the other drops predict it; empty where an
-        older sprung wrote the result.
+        By drop name: how well the fitted vehicle explains the drop, and how well the other drops predict it.
     next_step
-        What to measure next, in a sentence; None where the verdict is reject, or an older sprung wrote the result.
+        Recommended next measurement, one sentence; None where the verdict is reject.
     setup
-        What it began with: what was known, settings, files and versions; None where an older sprung wrote the result.
+        Input of the identification: what was known, settings, files and versions.
     amplitude
-        Frequency and damping of the body's modes against amplitude; empty where it was not asked for, or the verdict is reject.
+        Frequency and damping of the body's modes against amplitude; empty where not requested, or the verdict is reject.
+    trace
+        How the result was reached: model terms and corrections that were tried, accepted or rejected, in order.
     omissions
-        What decorates a result and could not be made, a sentence each, such as the amplitude curves.
+        Optional parts that could not be computed or drawn, such as the amplitude curves, one sentence each.
     series
         By drop name: what was fitted.
     recordings
         By drop name, of all drops: the whole recording.
     """
 
-    __pydantic_config__ = _EXACTLY
+    __pydantic_config__ = EXACT_KEYS
 
     schema_version: Annotated[Literal[1], Field(alias="schema")] = SCHEMA
     version: Annotated[str, Field(alias="sprung")]
     tested_vehicle: Annotated[TestedVehicle, Field(alias="vehicle")]
     verdict: Verdict
     parameters: dict[str, Estimate]
-    derived: dict[str, Estimate] = field(default_factory=dict)
+    derived: dict[str, Estimate]
     scale: Scale
     unidentifiable: tuple[Unidentifiable, ...]
     correlation: Correlation
@@ -192,10 +113,11 @@ class Result:
     fit: FitReport
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
-    validation: dict[str, DropValidation] = field(default_factory=dict)
-    next_step: str | None = None
-    setup: Setup | None = None
+    validation: dict[str, DropValidation]
+    next_step: str | None
+    setup: Setup
     amplitude: Amplitudes = ()
+    trace: tuple[TraceStep, ...] = ()
     omissions: tuple[str, ...] = ()
     series: Mapping[str, Series] = field(default_factory=dict, repr=False)
     recordings: Mapping[str, Recorded] = field(default_factory=dict, repr=False)
@@ -205,14 +127,12 @@ class Result:
             object.__setattr__(self, mapping, NamedValues(getattr(self, mapping)))
 
     def __repr__(self) -> str:
-        said = ", ".join(f"{name} {found}" for name, found in self.parameters.items())
-        lines = textwrap.wrap(said, 84, initial_indent="    ", subsequent_indent="    ")
-        most = 7
-        kept = lines if len(lines) <= most else [*lines[: most - 1], "    ..."]
-        loads = ", ".join(self.modes)
-        return "\n".join(
-            [f"Result of {self.name}: {self.verdict.state}", *kept, f"    modes: {loads}; {len(self.drops)} drops"]
-        )
+        values = ", ".join(f"{name} {estimate}" for name, estimate in self.parameters.items())
+        lines = textwrap.wrap(values, 84, initial_indent="    ", subsequent_indent="    ")
+        if len(lines) > _MAX_LINES:
+            lines = [*lines[: _MAX_LINES - 1], "    ..."]
+        head = f"Result of {self.name}: {self.verdict.state}"
+        return "\n".join([head, *lines, f"    modes: {', '.join(self.modes)}; {len(self.drops)} drops"])
 
     @property
     def covariance(self) -> Covariance:
@@ -222,22 +142,18 @@ class Result:
         return Covariance(names, np.array(self.correlation.matrix).reshape(len(names), len(names)) * np.outer(std, std))
 
     @property
-    def loglikelihood(self) -> float | None:
-        """Natural logarithm of the maximum of the likelihood: see `FitReport`; None where an older sprung wrote the result."""
+    def loglikelihood(self) -> float:
+        """Natural logarithm of the maximum of the likelihood: see `FitReport`."""
         return self.fit.loglikelihood
 
     @property
-    def aic(self) -> float | None:
-        """Akaike's information criterion, 2 k - 2 ln L with k = ``fit.unknowns``, all estimated numbers; None as above."""
-        if self.fit.loglikelihood is None or self.fit.unknowns is None:
-            return None
+    def aic(self) -> float:
+        """Akaike's information criterion, 2 k - 2 ln L with k = ``fit.unknowns``, the number of estimated quantities."""
         return 2 * self.fit.unknowns - 2 * self.fit.loglikelihood
 
     @property
-    def bic(self) -> float | None:
-        """The Bayesian information criterion, k ln n - 2 ln L with n = ``fit.samples`` and k as in `aic`; None as above."""
-        if self.fit.loglikelihood is None or self.fit.unknowns is None:
-            return None
+    def bic(self) -> float:
+        """Bayesian information criterion, k ln n - 2 ln L with n = ``fit.samples`` and k as in `aic`."""
         return self.fit.unknowns * math.log(self.fit.samples) - 2 * self.fit.loglikelihood
 
     def to_dataframe(self) -> pd.DataFrame:
@@ -245,8 +161,8 @@ class Result:
         import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
 
         rows = {
-            name: (found.value, found.std, *(found.interval95 or (None, None)), found.unit, found.status)
-            for name, found in {**self.parameters, **self.derived}.items()
+            name: (estimate.value, estimate.std, *(estimate.interval95 or (None, None)), estimate.unit, estimate.status)
+            for name, estimate in {**self.parameters, **self.derived}.items()
         }
         columns = ["value", "std", "lower95", "upper95", "unit", "status"]
         table = pd.DataFrame.from_dict(rows, orient="index", columns=columns)
@@ -266,33 +182,35 @@ class Result:
         InputError
             If the verdict is reject, or a parameter is not determined.
         """
-        return identified_vehicle(
-            self.name, self.verdict, self.parameters, {} if self.setup is None else self.setup.heights
-        )
+        return identified_vehicle(self.name, self.verdict, self.parameters, self.setup.heights)
 
     def _repr_html_(self) -> str:
-        """Show the verdict, the parameters and the modes in a notebook; of a rejected result the verdict alone."""
+        """Return verdict, parameters, modes and trace as HTML for a notebook; of a rejected result verdict and trace."""
+        trace = f"<details><summary>{TRACE_TITLE}</summary>\n{trace_table(self.trace).html(False)}</details>\n"
+        last = trace if self.trace else ""
         if self.verdict.state == "reject":
-            return self.verdict._repr_html_() + "".join(f"<p>{escaped(one.text)}.</p>\n" for one in self.unidentifiable)
-        parts = [
-            self.verdict._repr_html_(),
-            parameters_table(self.name, {**self.parameters, **other_quantities(self.derived)}).html(),
-        ]
-        parts += [table.html() for table in characteristics_tables(self.name, self.derived)]
-        parts += [f"<p>Not determined: {escaped(one.text)}.</p>\n" for one in self.unidentifiable]
+            texts = [f"<p>{escaped(combination.text)}.</p>\n" for combination in self.unidentifiable]
+            return "".join([self.verdict._repr_html_(), *texts, last])
+        tables = [parameters_table(self.name, {**self.parameters, **other_quantities(self.derived)})]
+        tables += characteristics_tables(self.name, self.derived)
+        parts = [self.verdict._repr_html_(), *(table.html() for table in tables)]
+        parts += [f"<p>Not determined: {escaped(combination.text)}.</p>\n" for combination in self.unidentifiable]
         if not self.scale.known and self.scale.per_total_mass:
             parts.append(ratios_table(self.scale.per_total_mass).html())
-        return "".join([*parts, *(modes_table(load, modes).html() for load, modes in self.modes.items())])
+        return "".join([*parts, *(modes_table(load, modes).html() for load, modes in self.modes.items()), last])
 
     def document(self) -> dict[str, Any]:
         """Return the contract's results.json as plain values, without the checksums."""
         return plain_document(self, "series", "recordings")
 
     def to_json(self) -> str:
-        """Write the contract's results.json as text, with the checksums by which `sprung.load` knows that nobody changed it."""
+        """Return the contract's results.json as text, with the checksums by which `sprung.load` detects changes."""
         document = self.document()
-        seals = {"document": document_seal(document), "series": arrays_seal(arrays_of(self.series, self.recordings))}
-        return json.dumps({**document, SEALS: seals}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+        checksums = {
+            "document": document_checksum(document),
+            "series": arrays_checksum(arrays_of(self.series, self.recordings)),
+        }
+        return json.dumps({**document, CHECKSUMS: checksums}, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
     def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write results.json and series.npz, whole or not at all.
@@ -318,12 +236,12 @@ class Result:
         return Path(folder)
 
     def files(self) -> dict[str, bytes]:
-        """Give what `save` writes, by file name: series.npz and, last, results.json.
+        """Return what `save` writes, by file name: series.npz and, last, results.json.
 
         Returns
         -------
         dict
             Content by name.
         """
-        series = packed(arrays_of(self.series, self.recordings))
+        series = npz_bytes(arrays_of(self.series, self.recordings))
         return {"series.npz": series, "results.json": self.to_json().encode()}

@@ -1,4 +1,4 @@
-"""Reading back a saved result, and refusing one that is not as sprung wrote it."""
+"""Reading of a saved result; a result that was changed since it was written is refused."""
 
 from __future__ import annotations
 
@@ -8,27 +8,24 @@ import struct
 import tokenize
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from sprung.errors import Problem, Problems, ResultFileError
-from sprung.results.checksums import SEALS, arrays_seal, document_seal
+from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import record_from
 from sprung.results.result import SCHEMA, Result
-from sprung.results.series import Everything, everything_in
-from sprung.results.withholding import withhold_estimates
-from sprung.uncertainty import Estimate
+from sprung.results.series import series_from
 from sprung.vehicle import UNKNOWN_KEY
 
-_AGAIN = "Run the identification again, or take the file from where it was copied."
-_ROUNDING = 1e-6
-"""By which a correlation may exceed 1 or differ from its mirror image."""
+_REMEDY = "Run the identification again, or take the file from where it was copied."
 
 _UNREADABLE = (
     *(OSError, ValueError, LookupError, EOFError, TypeError, ArithmeticError, MemoryError, RuntimeError, SyntaxError),
@@ -38,7 +35,7 @@ _UNREADABLE = (
 
 
 def load(folder: str | Path, *, series: bool = True) -> Result:
-    """Give back a saved result.
+    """Return a saved result.
 
     Parameters
     ----------
@@ -58,44 +55,41 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
     """
     folder = Path(folder)
     path = folder if folder.suffix == ".json" else folder / "results.json"
-    document = _document(path)
+    document = _read_document(path)
+    checksums = document.pop(CHECKSUMS, None)
+    checksums = checksums if isinstance(checksums, dict) else {}
     problems = Problems()
-    seals = document.pop(SEALS, {})
+    result = None
     try:
         result = record_from(Result, document)
     except ValidationError as error:
-        result = None
-        for what in error.errors():
-            place = ".".join(str(part) for part in what["loc"])
-            found = "a key that no result has" if what["type"] == UNKNOWN_KEY else what["msg"]
-            problems.add(f"{path}: {place}", found, *_as_written(document))
-    if result is not None:
-        for where, found in _contradictions(result):
-            problems.add(f"{path}: {where}", found, *_as_written(document))
-    if not isinstance(seals, dict) or seals.get("document", document_seal(document)) != document_seal(document):
-        found = "numbers or words that were changed after it was written (its checksum is another)"
-        problems.add(str(path), found, "a result as sprung wrote it", _AGAIN)
-    everything = Everything({}, {})
+        for reason in error.errors():
+            key = ".".join(map(str, reason["loc"]))
+            found = "a key that no result has" if reason["type"] == UNKNOWN_KEY else reason["msg"]
+            problems.add(f"{path}: {key}", found, *_expected_of(document))
+    if checksums.get("document") != document_checksum(document):
+        found = "a file that was changed after it was written (its checksum differs)"
+        problems.add(str(path), found, "a result as sprung wrote it", _REMEDY)
     if series:
         with problems.collecting():
-            everything = _everything(
-                path.with_name("series.npz"), seals.get("series") if isinstance(seals, dict) else None
-            )
+            arrays = _read_arrays(path.with_name("series.npz"), checksums.get("series"))
+            if result is not None:
+                result = _with_series(result, arrays, path.with_name("series.npz"))
     if problems or result is None:
         raise ResultFileError(problems)
-    return withhold_estimates(replace(result, **everything._asdict()))
+    return result
 
 
-def _document(path: Path) -> dict[str, Any]:
+def _read_document(path: Path) -> dict[str, Any]:
     try:
-        document = json.loads(path.read_text(encoding="utf-8"), parse_constant=_no_number)
+        document = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
     except OSError as error:
         inside = path.parent / "results"
         do = f"Did you mean {inside}?" if (inside / "results.json").is_file() else "Name the folder given to save."
         _refuse(path, (error.strerror or str(error)).lower(), "a saved result", do, error)
     except (ValueError, RecursionError) as error:
         found = f"no valid JSON ({error}): cut off or changed by hand"
-        _refuse(path, found, "a whole results.json", _AGAIN, error)
+        _refuse(path, found, "a whole results.json", _REMEDY, error)
     if not isinstance(document, dict):
         _refuse(path, f"JSON that holds a {type(document).__name__}", "a result", "Name the folder given to save.")
     schema = document.get("schema")
@@ -108,69 +102,43 @@ def _document(path: Path) -> dict[str, Any]:
     return document
 
 
-def _no_number(name: str) -> NoReturn:
+def _refuse_constant(name: str) -> NoReturn:
     raise ValueError(f"{name} is no number of JSON")
 
 
-def _as_written(document: Mapping[str, Any]) -> tuple[str, str]:
-    """Say what is expected of a document, and what to do where it is not so."""
-    here, writer = version("sprung"), str(document.get("sprung"))
-    if _release(writer) > _release(here):
-        return f"what sprung {here} knows", f"It was written by sprung {writer}: update sprung to read it."
-    return "a result as sprung wrote it", _AGAIN
+def _expected_of(document: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what is expected of a document that does not fit, and the remedy."""
+    own, writer = version("sprung"), str(document.get("sprung"))
+    if _release(writer) > _release(own):
+        return f"a result that sprung {own} can read", f"It was written by sprung {writer}: update sprung to read it."
+    return "a result as sprung wrote it", _REMEDY
 
 
 def _release(text: str) -> tuple[int, ...]:
     return tuple(map(int, re.findall(r"\d+", text)[:3]))
 
 
-def _contradictions(result: Result) -> Iterator[tuple[str, str]]:
-    """Name what cannot be in one result, though each number alone could be."""
-    for name, found in result.parameters.items():
-        if not _is_whole(found):
-            yield f"parameters.{name}", f"{found.status} with value {found.value} and std {found.std}"
-    names, matrix = result.correlation.names, result.correlation.matrix
-    strangers = [name for name in names if name not in result.parameters]
-    if strangers:
-        yield "correlation.names", f"{', '.join(strangers)}, of which there is no parameter"
-    if len(matrix) != len(names) or any(len(row) != len(names) for row in matrix):
-        yield "correlation.matrix", f"rows that do not fit {len(names)} names"
-    elif names:
-        rows = np.array(matrix)
-        if (
-            np.abs(rows - rows.T).max() > _ROUNDING
-            or np.abs(np.diag(rows) - 1).max() > _ROUNDING
-            or np.abs(rows).max() > 1 + _ROUNDING
-        ):
-            yield "correlation.matrix", "numbers that are no correlations"
-
-
-def _is_whole(found: Estimate) -> bool:
-    match found.status:
-        case "unidentifiable":
-            return found.value is None and found.std is None
-        case "known":
-            return found.value is not None and found.std == 0
-        case "estimated":
-            return found.value is not None and found.std is not None and found.std > 0
-
-
-def _everything(path: Path, seal: object) -> Everything:
+def _read_arrays(path: Path, checksum: object) -> dict[str, NDArray[Any]]:
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {key: archive[key] for key in archive.files}
     except FileNotFoundError as error:
         _refuse(path, "no such file", "the series of the result beside it", "Copy the whole results folder.", error)
     except _UNREADABLE as error:
-        _refuse(path, f"no series ({error}): cut off or spoilt", "the series of a saved result", _AGAIN, error)
-    if seal is not None and seal != arrays_seal(arrays):
-        found = "series that do not belong to this result (their checksum is another)"
-        _refuse(path, found, "the series that were written with results.json", _AGAIN)
+        _refuse(path, f"no series ({error}): cut off or damaged", "the series of a saved result", _REMEDY, error)
+    if checksum != arrays_checksum(arrays):
+        found = "series that do not belong to this result (their checksum differs)"
+        _refuse(path, found, "the series that were written with results.json", _REMEDY)
+    return arrays
+
+
+def _with_series(result: Result, arrays: Mapping[str, NDArray[Any]], path: Path) -> Result:
     try:
-        return everything_in(arrays)
+        series, recordings = series_from(arrays)
     except ValueError as error:
-        expected = "channels, time, measured and fitted of every drop, and what else sprung writes"
-        _refuse(path, str(error), expected, _AGAIN, error)
+        expected = "the arrays of every drop, as sprung writes them"
+        _refuse(path, str(error), expected, _REMEDY, error)
+    return replace(result, series=series, recordings=recordings)
 
 
 def _refuse(path: Path, found: str, expected: str, do: str, because: Exception | None = None) -> NoReturn:

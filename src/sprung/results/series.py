@@ -1,11 +1,11 @@
-"""What the figures draw, and its way to series.npz and back."""
+"""Time series of a result, which its figures draw: arrays in memory, and series.npz."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +15,12 @@ from sprung.display import shown
 from sprung.preprocess import Mark
 
 Real = NDArray[np.float64]
-Drawn = NDArray[np.float32]
+Single = NDArray[np.float32]
 
-_FITTED = ("channels", "time", "measured", "fitted")
-_BODY = ("body_measured", "body_simulated")
-_WHOLE = ("recording", "clock")
+_FITTED = ("channels", "time", "measured", "fitted", "body_measured", "body_simulated")
+_RECORDED = ("recording", "clock")
 _MARKS = "marks "
-"""What stands behind a drop's name: of the fit, of the body, of its recording, and of each mark."""
+"""Names of arrays after the drop's name: of the fit, of its recording, and the beginning of each mark's."""
 
 
 @shown
@@ -39,41 +38,26 @@ class Series:
         m/s², positive up, shape (channel, time); NaN in channels that were left out.
     body_measured, body_simulated
         Vertical acceleration of the centre of gravity, m/s², pitch and roll acceleration of the body, rad/s², shape (3, time);
-        NaN for what the sensors do not tell; None where an older sprung wrote the result.
+        NaN where the sensors do not measure it.
     """
 
     channels: tuple[str, ...]
     time: Real
     measured: Real
     fitted: Real
-    body_measured: Drawn | None = None
-    body_simulated: Drawn | None = None
+    body_measured: Single
+    body_simulated: Single
 
 
-class Everything(NamedTuple):
-    """All series of a result, by the names of their drops.
-
-    Attributes
-    ----------
-    series
-        Of the drops that were fitted.
-    recordings
-        Of all drops.
-    """
-
-    series: dict[str, Series]
-    recordings: dict[str, Recorded]
-
-
-def packed(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Give the bytes of an .npz file of arrays by name."""
+def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
+    """Return the content of an .npz file of arrays by name."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
 def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, Recorded]) -> dict[str, NDArray[Any]]:
-    """Give everything as arrays by name: ``drop/what``.
+    """Return all series as arrays by name: ``drop/what``.
 
     Parameters
     ----------
@@ -81,25 +65,18 @@ def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, Recorded]) 
         By the drop's name.
     """
     arrays: dict[str, NDArray[Any]] = {}
-    for name, one in series.items():
-        arrays |= {
-            f"{name}/channels": np.array(one.channels),
-            f"{name}/time": one.time,
-            f"{name}/measured": one.measured,
-            f"{name}/fitted": one.fitted,
-        }
-        if one.body_measured is not None and one.body_simulated is not None:
-            arrays |= {f"{name}/body_measured": one.body_measured, f"{name}/body_simulated": one.body_simulated}
-    for name, whole in recordings.items():
-        arrays |= {f"{name}/recording": whole.values, f"{name}/clock": np.array([whole.start, whole.rate])}
-        for i, mark in enumerate(whole.marks):
-            place = np.stack([np.full(len(mark.samples), mark.channel), mark.samples])
-            arrays[f"{name}/{_MARKS}{i} {mark.code}"] = place
+    for drop, fitted in series.items():
+        arrays |= {f"{drop}/{what}": np.asarray(getattr(fitted, what)) for what in _FITTED}
+    for drop, recorded in recordings.items():
+        arrays |= {f"{drop}/recording": recorded.values, f"{drop}/clock": np.array([recorded.start, recorded.rate])}
+        for i, mark in enumerate(recorded.marks):
+            channels = np.full(len(mark.samples), mark.channel)
+            arrays[f"{drop}/{_MARKS}{i} {mark.code}"] = np.stack([channels, mark.samples])
     return arrays
 
 
-def everything_in(arrays: Mapping[str, NDArray[Any]]) -> Everything:
-    """Give back what `arrays_of` made arrays of.
+def series_from(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, Series], dict[str, Recorded]]:
+    """Return series and recordings by drop name, from the arrays that `arrays_of` makes.
 
     Parameters
     ----------
@@ -108,46 +85,46 @@ def everything_in(arrays: Mapping[str, NDArray[Any]]) -> Everything:
 
     Returns
     -------
-    Everything
+    series
+        Of the drops that were fitted.
+    recordings
+        Of all drops.
 
     Raises
     ------
     ValueError
-        If something is left over or missing.
+        If an array is unknown or missing.
     """
-    held: dict[str, dict[str, NDArray[Any]]] = {}
+    by_drop: dict[str, dict[str, NDArray[Any]]] = {}
     for key, array in arrays.items():
-        name, _, what = key.rpartition("/")
-        held.setdefault(name, {})[what] = array
-    wrong = sorted(f"{name}/{what}" for name, found in held.items() for what in _wrong(found))
+        drop, _, what = key.rpartition("/")
+        by_drop.setdefault(drop, {})[what] = array
+    wrong = sorted(f"{drop}/{what}" for drop, own in by_drop.items() for what in _unknown_or_missing(own))
     if wrong:
-        raise ValueError(f"{', '.join(wrong[:3])} left over or missing")
+        raise ValueError(f"{', '.join(wrong[:3])} unknown or missing")
     series, recordings = {}, {}
-    for name, found in held.items():
-        if "clock" in found:
-            start, rate = found["clock"].tolist()
-            recordings[name] = Recorded(start, rate, found["recording"], tuple(_marks(found)))
-        if "channels" in found:
-            channels = tuple(found["channels"].tolist())
-            series[name] = Series(channels, **{what: found[what] for what in (*_FITTED[1:], *_BODY) if what in found})
-    return Everything(series, recordings)
+    for drop, own in by_drop.items():
+        if "clock" in own:
+            start, rate = own["clock"].tolist()
+            recordings[drop] = Recorded(start, rate, own["recording"], tuple(_marks(own)))
+        if "channels" in own:
+            channels = tuple(own["channels"].tolist())
+            series[drop] = Series(channels, *(own[what] for what in _FITTED[1:]))
+    return series, recordings
 
 
-def _wrong(found: Iterable[str]) -> set[str]:
-    """Name what is left over or missing of one drop: what belongs together is there together."""
-    marks = {what for what in found if what.startswith(_MARKS)}
-    there = set(found) - marks
-    whole = set(_WHOLE) if marks else set()
-    for together in (_FITTED, _BODY, _WHOLE):
-        if there.intersection(together):
-            whole.update(together)
-    if there.intersection(_BODY):
-        whole.update(_FITTED)
-    return there ^ whole
+def _unknown_or_missing(arrays: Iterable[str]) -> set[str]:
+    """Return the unknown and the missing arrays of one drop; those of a fit, or of a recording, are all there or none."""
+    marks = {what for what in arrays if what.startswith(_MARKS)}
+    present = set(arrays) - marks
+    complete = set(_RECORDED) if marks else set()
+    for group in (_FITTED, _RECORDED):
+        if present.intersection(group):
+            complete.update(group)
+    return present ^ complete
 
 
-def _marks(found: Mapping[str, NDArray[Any]]) -> Iterator[Mark]:
-    for what, place in found.items():
-        if what.startswith(_MARKS):
-            code = what.removeprefix(_MARKS).partition(" ")[2]
-            yield Mark(code, int(place[0, 0]), place[1].astype(np.int64))
+def _marks(arrays: Mapping[str, NDArray[Any]]) -> Iterator[Mark]:
+    for what, (channels, samples) in ((what, array) for what, array in arrays.items() if what.startswith(_MARKS)):
+        code = what.removeprefix(_MARKS).partition(" ")[2]
+        yield Mark(code, int(channels[0]), samples.astype(np.int64))

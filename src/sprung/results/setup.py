@@ -1,4 +1,4 @@
-"""What an identification began with: what was known, where sensors and loads were, which settings and files."""
+"""Input of an identification: what was known, sensors and loads, settings, files and versions."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ from sprung.uncertainty import Estimate, KnownValue
 from sprung.vehicle import DERIVED, Load, Sensor
 
 _LIBRARIES = ("numpy", "scipy")
-"""Whose versions may change the last digits of a result."""
+"""Libraries whose versions may change the last digits of a result."""
 
 
 @shown
 @dataclass(frozen=True, slots=True)
 class PriorComparison:
-    """A quantity known before the recordings were looked at, and what they say of it.
+    """A quantity that was known before the identification, and its estimate.
 
     Attributes
     ----------
     value, std, unit
-        As it was measured beforehand, SI; a std of 0 stands for exact.
+        Value known beforehand and its standard uncertainty, SI; a std of 0 stands for exact.
     found
-        What came out: for an exact quantity the same.
+        Estimate; for an exact quantity the value itself.
     missed
-        By how many standard uncertainties the recordings, and everything else that is known, would rather have another
-        value; None where they say nothing of it.
+        Difference between the value known beforehand and the value that the recordings, with everything else that is known,
+        give, in standard uncertainties; None where they do not determine it.
     """
 
     value: float
@@ -46,7 +46,7 @@ class PriorComparison:
 @shown
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setup:
-    """What an identification began with.
+    """Input of an identification.
 
     Attributes
     ----------
@@ -59,13 +59,13 @@ class Setup:
     model
         What the campaign file says about the model.
     options
-        What was asked of `identify` beside it, by its name, in words.
+        Options given to `identify`, by name, in words.
     files
-        The campaign file and the recordings, as they were read; empty where there were none.
+        The campaign file and the recordings, as they were read; empty for a campaign made in memory.
     software
         Versions by name.
     test
-        When, where and by whom the vehicle was tested, as far as the campaign file says it.
+        When, where and by whom the vehicle was tested, as far as the campaign file states it.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid")
@@ -84,7 +84,7 @@ class Setup:
 def setup_of(
     campaign: Campaign, fit: FitStatistics, known: Mapping[str, KnownValue], options: Mapping[str, object]
 ) -> Setup:
-    """Put together what an identification began with.
+    """Return the input of an identification, with what was known beside its estimates.
 
     Parameters
     ----------
@@ -93,14 +93,13 @@ def setup_of(
     fit
         The fit.
     known
-        Everything known beforehand about the model's parameters.
+        Everything that was known beforehand about the parameters of the model.
     options
-        What was asked for, by name; None for what was left open.
+        Options of `identify` by name; None for those left open.
     """
-    told = {name: one for name, one in known.items() if name in fit.names or name in DERIVED}
     heights = {key: value for key, value in campaign.heights.by_key.items() if value is not None}
     return Setup(
-        known={name: _before(fit, known, name) for name in told},
+        known={name: _compared(fit, known, name) for name in known if name in fit.names or name in DERIVED},
         heights=heights,
         sensors=campaign.sensors,
         loads=campaign.loads,
@@ -116,11 +115,11 @@ def setup_of(
     )
 
 
-def _before(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> PriorComparison:
+def _compared(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> PriorComparison:
     found = estimate_of(fit, known, name)
     missed = fit.contradictions.get(name)
-    told = missed is not None and np.isfinite(missed)
-    return PriorComparison(known[name].value, known[name].std, found.unit, found, missed if told else None)
+    missed = missed if missed is not None and np.isfinite(missed) else None
+    return PriorComparison(known[name].value, known[name].std, found.unit, found, missed)
 
 
 def _in_words(value: object) -> str:

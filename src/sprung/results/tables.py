@@ -1,26 +1,32 @@
-"""The tables of a result: what every place that shows them shows, each in its own way."""
+"""The tables of a result, shared by terminal, notebook and report."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
 from sprung.estimation import ModeEstimate
+from sprung.results.records import TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
 from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, PARAMETERS, WHEEL_LOADS
 
-_OF_ALL = "of the empty vehicle"
+TRACE_TITLE = "How the result was reached"
+"""Title of the trace wherever it is shown."""
+
+_WHOLE_VEHICLE = "of the empty vehicle"
+"""Meaning of a quantity that has no text of its own."""
+
 _DERIVED = {
-    "I_xx_roll_axis": "roll inertia of the sprung mass about the axis of roll",
+    "I_xx_roll_axis": "roll inertia of the sprung mass about the roll axis",
     "wheelbase": "front axle to rear axle",
-    **{name: one.meaning for name, one in CHARACTERISTICS.items()},
+    **{name: quantity.meaning for name, quantity in CHARACTERISTICS.items()},
     **WHEEL_LOADS,
 }
-"""What derived quantities mean."""
+"""Meaning of each derived quantity."""
 
 _CHARACTERISTICS = (
     ("mass, kg", "front_axle_mass", "rear_axle_mass", "total_mass"),
-    ("part of the mass", "front_axle_share", "", ""),
+    ("share of the mass", "front_axle_share", "", ""),
     ("load of each wheel, N", "front_wheel_load", "rear_wheel_load", ""),
     ("load of the left wheel, N", "front_left_wheel_load", "rear_left_wheel_load", ""),
     ("load of the right wheel, N", "front_right_wheel_load", "rear_right_wheel_load", ""),
@@ -35,7 +41,7 @@ _CHARACTERISTICS = (
 
 
 def meaning_of(name: str) -> str:
-    """Say what a parameter or derived quantity is.
+    """Return the meaning of a parameter or derived quantity.
 
     Parameters
     ----------
@@ -48,16 +54,16 @@ def meaning_of(name: str) -> str:
     """
     if name in PARAMETERS or name.startswith(LOAD_MASS):
         return PARAMETERS[name].meaning
-    return _DERIVED.get(name, _OF_ALL)
+    return _DERIVED.get(name, _WHOLE_VEHICLE)
 
 
 def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:
-    """Show every parameter with its uncertainty.
+    """Return the table of all parameters with their uncertainties.
 
     Parameters
     ----------
     vehicle
-        Whose they are.
+        Name of the vehicle.
     parameters
         By name, derived quantities among them.
 
@@ -66,13 +72,13 @@ def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:
     Table
     """
     headers = ("parameter", "value", "±", "%", "unit", "status", "meaning")
-    rows = tuple((name, *value_cells(found), meaning_of(name)) for name, found in parameters.items())
+    rows = tuple((name, *value_cells(estimate), meaning_of(name)) for name, estimate in parameters.items())
     title = f"{vehicle}: parameters, one standard uncertainty"
     return Table(title, headers, rows, frozenset(("value", "±", "%")), ("meaning", "%", "status"))
 
 
 def other_quantities(derived: Mapping[str, Estimate]) -> dict[str, Estimate]:
-    """Return the derived quantities that no `characteristics_tables` show.
+    """Return the derived quantities that are in none of the `characteristics_tables`.
 
     Parameters
     ----------
@@ -84,18 +90,18 @@ def other_quantities(derived: Mapping[str, Estimate]) -> dict[str, Estimate]:
     dict
         By name.
     """
-    return {name: found for name, found in derived.items() if name not in {**CHARACTERISTICS, **WHEEL_LOADS}}
+    return {name: estimate for name, estimate in derived.items() if name not in {**CHARACTERISTICS, **WHEEL_LOADS}}
 
 
 def derived_table(vehicle: str, derived: Mapping[str, Estimate]) -> Table:
-    """Show masses, loads, centre of gravity, ride and wheel hop by their names, one below the other.
+    """Return the table of masses, loads, centre of gravity, ride and wheel hop, one quantity a row.
 
     Parameters
     ----------
     vehicle
-        Whose they are.
+        Name of the vehicle.
     derived
-        By name; others than these are left out.
+        By name; other quantities are left out.
 
     Returns
     -------
@@ -111,19 +117,19 @@ def derived_table(vehicle: str, derived: Mapping[str, Estimate]) -> Table:
 
 
 def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tuple[Table, ...]:
-    """Show masses, loads, centre of gravity, ride and wheel hop, axle by axle.
+    """Return the table of masses, loads, centre of gravity, ride and wheel hop, axle by axle.
 
     Parameters
     ----------
     vehicle
-        Whose they are.
+        Name of the vehicle.
     derived
         By name.
 
     Returns
     -------
     tuple of Table
-        One, or none where a result has no value for any of them.
+        One, or none where no quantity has a value.
     """
     rows = []
     for label, *names in _CHARACTERISTICS:
@@ -137,15 +143,15 @@ def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tup
     return (Table(title, headers, tuple(rows), frozenset(headers[1:])),)
 
 
-def _with_uncertainty(found: Estimate | None) -> str:
-    if found is None or found.value is None or found.std is None:
+def _with_uncertainty(estimate: Estimate | None) -> str:
+    if estimate is None or estimate.value is None or estimate.std is None:
         return "-"
-    value, std = round_by_uncertainty(found.value, found.std)
+    value, std = round_by_uncertainty(estimate.value, estimate.std)
     return f"{value} ± {std}" if std else value
 
 
 def ratios_table(ratios: Mapping[str, Ratio]) -> Table:
-    """Show what is left without absolute scale.
+    """Return the table of ratios that are determined without absolute scale.
 
     Parameters
     ----------
@@ -165,7 +171,7 @@ def ratios_table(ratios: Mapping[str, Ratio]) -> Table:
 
 
 def modes_table(load: str, modes: Sequence[ModeEstimate]) -> Table:
-    """Show the modes of one load, with uncertainties; what is undetermined gets no number.
+    """Return the table of the modes of one load, with uncertainties; "-" where undetermined.
 
     Parameters
     ----------
@@ -185,3 +191,19 @@ def modes_table(load: str, modes: Sequence[ModeEstimate]) -> Table:
         rows.append((mode.name, *frequency, damped, *with_std(mode.damping_ratio, mode.damping_ratio_std)))
     headers = ("mode", "f_n Hz", "± Hz", "f_d Hz", "damping", "±")
     return Table(f"Modes, {load}", headers, tuple(rows), frozenset(headers[1:]), ("f_d Hz", "±"))
+
+
+def trace_table(trace: Sequence[TraceStep]) -> Table:
+    """Return the table of the steps of the analysis.
+
+    Parameters
+    ----------
+    trace
+        Of a result.
+
+    Returns
+    -------
+    Table
+    """
+    rows = tuple((step.stage, step.what, step.why) for step in trace)
+    return Table(TRACE_TITLE, ("stage", "what", "why"), rows)

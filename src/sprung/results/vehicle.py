@@ -38,10 +38,12 @@ def identified_vehicle(
     if verdict.state == "reject":
         do = "Read result.verdict.reasons; measure again, or correct the campaign."
         raise InputError([Problem(f"result of {name}", "the verdict reject", "accept or doubtful", do)])
-    values = {parameter: found.value for parameter, found in parameters.items() if found.value is not None}
+    values = {parameter: estimate.value for parameter, estimate in parameters.items() if estimate.value is not None}
     missing = [parameter for parameter in parameters if parameter not in values]
     if missing:
         found = f"no value of {', '.join(missing)}"
-        do = "Read result.unidentifiable: what is said there would determine them. Ratios are in result.scale.per_total_mass."
+        do = (
+            "Read result.unidentifiable: it names what would determine them. Ratios are in result.scale.per_total_mass."
+        )
         raise InputError([Problem(f"result of {name}", found, "every parameter determined", do)])
     return Vehicle.nearest(values, name=name, **heights)

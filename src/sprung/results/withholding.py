@@ -1,7 +1,7 @@
-"""What a rejected result keeps to itself: every number that follows from the fitted vehicle.
+"""Removal of every number that follows from the fitted vehicle from a rejected result.
 
-What shows why it was rejected stays: residuals, noise, misfit of each channel, measured and fitted recordings, how well each
-drop is predicted, what was wrong, and how the model was chosen. Modes that need no vehicle come from `sprung.modes`.
+What shows why it was rejected stays: residuals, noise, misfit of each channel, measured and fitted recordings, the errors of
+prediction, the faults, and how the model was chosen. `sprung.modes` finds modes without a vehicle.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def withhold_estimates(result: Result) -> Result:
     Parameters
     ----------
     result
-        As it was fitted, or read from a file that an older sprung wrote.
+        As it was fitted.
 
     Returns
     -------
@@ -32,29 +32,29 @@ def withhold_estimates(result: Result) -> Result:
     """
     if result.verdict.state != "reject":
         return result
-    parameters = {name: without_value(found) for name, found in result.parameters.items()}
-    names = tuple(name for name, found in parameters.items() if found.status == "unidentifiable")
+    parameters = {name: without_value(estimate) for name, estimate in result.parameters.items()}
+    names = tuple(name for name, estimate in parameters.items() if estimate.status == "unidentifiable")
     return replace(
         result,
         parameters=parameters,
-        derived={name: without_value(found) for name, found in result.derived.items()},
+        derived={name: without_value(estimate) for name, estimate in result.derived.items()},
         scale=Scale(result.scale.known, {}),
         unidentifiable=(Unidentifiable(names, NO_ESTIMATES),) if names else (),
         correlation=Correlation((), ()),
         modes=dict.fromkeys(result.modes, ()),
         amplitude=(),
         next_step=None,
-        setup=None if result.setup is None else _without_findings(result.setup),
+        setup=_without_estimates(result.setup),
     )
 
 
-def without_value(found: Estimate) -> Estimate:
+def without_value(estimate: Estimate) -> Estimate:
     """Return an estimate as undetermined; what was known beforehand stays known."""
-    if found.status != "estimated":
-        return found
-    return Estimate(None, None, None, found.unit, "unidentifiable")
+    if estimate.status != "estimated":
+        return estimate
+    return Estimate(None, None, None, estimate.unit, "unidentifiable")
 
 
-def _without_findings(setup: Setup) -> Setup:
-    known = {name: replace(one, found=without_value(one.found)) for name, one in setup.known.items()}
+def _without_estimates(setup: Setup) -> Setup:
+    known = {name: replace(prior, found=without_value(prior.found)) for name, prior in setup.known.items()}
     return replace(setup, known=known)

@@ -17,7 +17,7 @@ from sprung.campaign import CampaignSource
 from sprung.display import shown
 from sprung.files import atomic_write
 from sprung.progress import Progress, silent
-from sprung.results import Result, amplitude_document, packed, plain_trace
+from sprung.results import Result, amplitude_document, curve_document, npz_bytes
 from sprung.vehicle import EMPTY, Tracks
 
 
@@ -60,10 +60,10 @@ class Validation:
             named = {f"records/{trace.name}": trace for trace in one.records}
             named |= {f"simulated/{trace.name}": trace for trace in one.simulated} | {"model": one.model}
             for where, trace in named.items():
-                series = plain_trace(trace).items()
+                series = curve_document(trace).items()
                 arrays |= {f"amplitude/{one.mode}/{where}/{name}": np.array(values) for name, values in series}
         text = json.dumps(self.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-        return {"validation.npz": packed(arrays), "validation.json": text.encode()}
+        return {"validation.npz": npz_bytes(arrays), "validation.json": text.encode()}
 
     def save(self, folder: str | Path, *, overwrite: bool = False) -> Path:
         """Write validation.json and validation.npz, whole or not at all.
@@ -127,8 +127,8 @@ def validate(
     >>> max(drop.predicted_residual for drop in validation.result.validation.values()) < 1.05
     True
     """
-    found = identify_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
-    fitted, result = found.fitted, with_amplitudes(found, progress)
-    motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    run = identify_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
+    result = with_amplitudes(run, progress)
+    motions = body_motions(run.uncertainty, run.decays, run.campaign.sensors)
     amplitudes = result.amplitude
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sprung.errors import Fault
-from sprung.estimation import FaultScore
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.consistency import score_faults_of
 from sprung.faults.correction import Correction, move_load_item
 from sprung.faults.hypothesis import Hypothesis

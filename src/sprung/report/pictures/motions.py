@@ -15,7 +15,7 @@ Real = NDArray[np.float64]
 _UNITS = ("m/s²", "rad/s²", "rad/s²")
 
 
-def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Picture | None:
+def motion_picture(name: str, series: Series, drop: DropValidation) -> Picture:
     """Show one drop in the coordinates of the body.
 
     Parameters
@@ -29,11 +29,8 @@ def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Pi
 
     Returns
     -------
-    Picture or None
-        None where the result does not hold the motion of the body.
+    Picture
     """
-    if series.body_measured is None or series.body_simulated is None:
-        return None
     measured, simulated = series.body_measured.astype(float), series.body_simulated.astype(float)
     panels: list[Panel] = []
     for i, motion in enumerate(MOTIONS):
@@ -44,15 +41,11 @@ def motion_picture(name: str, series: Series, drop: DropValidation | None) -> Pi
     return Picture(name, x, tuple(panels), told, zoomable=True)
 
 
-def _note(motion: str, drop: DropValidation | None) -> str:
+def _note(motion: str, drop: DropValidation) -> str:
     """Say how far the fitted vehicle is from a motion, or why no error is given."""
-    if drop is None:
-        return ""
     error: float | None = getattr(drop, motion)
     if error is not None:
         return f"error {100 * error:.1f} %"
-    if not drop.over_noise:
-        return ""
     ratio = drop.over_noise.get(motion)
     return (
         "no motion beyond the noise" if ratio is None else f"{ratio:.1f} times the noise, too small for an error in %"

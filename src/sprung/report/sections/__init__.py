@@ -3,7 +3,7 @@
 from sprung.report.sections.drops import motions, recordings
 from sprung.report.sections.geometry import geometry
 from sprung.report.sections.numbers import characteristics, correlation, known, parameters
-from sprung.report.sections.provenance import literature, next_step, settings
+from sprung.report.sections.provenance import literature, next_step, settings, trace
 from sprung.report.sections.vibrations import amplitude, modes, spectra, stabilisation
 
 __all__ = [
@@ -21,4 +21,5 @@ __all__ = [
     "settings",
     "spectra",
     "stabilisation",
+    "trace",
 ]

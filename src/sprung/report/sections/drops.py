@@ -57,20 +57,20 @@ def _joined(faults: tuple[Fault, ...]) -> list[Fault]:
     return [Fault(code, ", ".join(where), what, do) for (code, what, do), where in places.items()]
 
 
-def motions(result: Result, unfolded: bool) -> Context | None:
-    """Hold what the body did against what the fitted vehicle does, drop by drop."""
+def motions(result: Result, unfolded: bool) -> Context:
+    """Return the motion of the body in each drop, measured and simulated, with the errors."""
     groups: dict[str, list[Context]] = {}
     shown = _shown(result)
     for drop in result.drops:
-        series, said = result.series.get(drop.name), result.validation.get(drop.name)
-        picture = None if series is None else motion_picture(drop.name, series, said)
-        if picture is not None:
-            residual = "" if said is None else f"residual {said.residual:.2f} times the noise"
+        if drop.name in result.series:
+            validated = result.validation[drop.name]
             groups.setdefault(drop.load, []).append(
-                {"picture": picture, "said": residual, "open": unfolded or drop.name in shown}
+                {
+                    "picture": motion_picture(drop.name, result.series[drop.name], validated),
+                    "said": f"residual {validated.residual:.2f} times the noise",
+                    "open": unfolded or drop.name in shown,
+                }
             )
-    if not result.validation and not groups:
-        return None
     return {
         "overview": validation_table(result.name, result.validation),
         "columns": COLUMNS,

@@ -7,9 +7,7 @@ from sprung.report.sketch.sketch import vehicle_sketch
 from sprung.results import Result
 
 
-def geometry(result: Result) -> Context | None:
-    """Show the vehicle from above and from the side."""
-    if result.setup is None:
-        return None
+def geometry(result: Result) -> Context:
+    """Return the sketch of the vehicle from above and from the side."""
     sketch = vehicle_sketch(result)
     return {"drawings": sketch.drawings, "key": sketch.key, "unknown": ", ".join(sketch.unknown)}

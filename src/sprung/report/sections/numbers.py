@@ -81,10 +81,8 @@ def _limit(limit: float | None, std: float | None) -> str:
     return "an open end" if limit is None else round_by_uncertainty(limit, std or abs(limit) or 1.0)[0]
 
 
-def known(result: Result) -> Context | None:
-    """Hold what was known beforehand against what was found."""
-    if result.setup is None:
-        return None
+def known(result: Result) -> Context:
+    """Return the table of what was known beforehand beside its estimates."""
     headers = ("quantity", "known before", "±", "found", "± ", "unit", "the recordings")
     rows = []
     for name, one in result.setup.known.items():

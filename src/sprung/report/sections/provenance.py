@@ -4,21 +4,15 @@ from __future__ import annotations
 
 from sprung.report.literature import literature_of
 from sprung.report.sections.context import Context
-from sprung.results import Result
+from sprung.results import Result, trace_table
 from sprung.tables import Table
-
-_NOT_KEPT = "An older sprung wrote this result, without what is shown here: identify the campaign again."
 
 
 def next_step(result: Result) -> Context:
     """Say what to measure next."""
     if result.next_step is not None:
         return {"said": f"{result.next_step[0].upper()}{result.next_step[1:]}".rstrip(".") + "."}
-    if result.verdict.state == "reject":
-        return {
-            "said": "Remove the reasons of the verdict first: a model that does not describe the recordings plans nothing."
-        }
-    return {"said": _NOT_KEPT}
+    return {"said": "Remove the reasons of the verdict first. No test can be planned with a model that was rejected."}
 
 
 def settings(result: Result) -> Context:
@@ -88,6 +82,13 @@ def _bars(result: Result) -> str:
         return "those of white noise"
     because = f", because of {fit.inflated_by}" if fit.inflated_by not in {None, "nothing"} else ""
     return f"{fit.inflation**0.5:.2f} times those of white noise{because}"
+
+
+def trace(result: Result, unfolded: bool) -> Context | None:
+    """Return the steps of the analysis; None where none are recorded."""
+    if not result.trace:
+        return None
+    return {"steps": trace_table(result.trace), "count": len(result.trace), "open": unfolded}
 
 
 def literature(result: Result) -> Context:

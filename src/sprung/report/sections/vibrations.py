@@ -13,7 +13,6 @@ from sprung.report.pictures.stability import stability_picture
 from sprung.report.sections.context import Context
 from sprung.report.validation import AMPLITUDES, amplitude_table
 from sprung.results import Result, modes_table
-from sprung.tables import Table
 
 
 def spectra(result: Result) -> Context | None:
@@ -46,20 +45,14 @@ def modes(result: Result) -> Context:
     car = wire_car(result)
     if result.verdict.state == "reject":
         return {"why_not": "the verdict is reject; `sprung modal` finds modes without a vehicle model"}
-    if not any(mode.motion for mode in first):
-        return {"why_not": "an older sprung wrote this result, without the shapes", "tables": _mode_tables(result)}
     shaped = [mode for mode in first if mode.frequency_std is not None]
     return {
         "cars": list(cars_of(car, shaped)),
         "wire": wire_json(car),
         "load": load,
         "missing": ", ".join(mode.name for mode in first if mode.frequency_std is None),
-        "tables": _mode_tables(result),
+        "tables": [modes_table(load, modes) for load, modes in result.modes.items()],
     }
-
-
-def _mode_tables(result: Result) -> list[Table]:
-    return [modes_table(load, modes) for load, modes in result.modes.items()]
 
 
 def amplitude(result: Result) -> Context | None:

@@ -128,9 +128,7 @@ def _of_result(result: Result) -> Geometry:
         if found.status in usable
     }
     setup = result.setup
-    if setup is None:
-        return _geometry(result.name, lengths, {}, (), (), result.fit.tracks == "separate", identified=True)
-    lengths = {name: Length(one.value, one.std) for name, one in setup.known.items()} | lengths
+    lengths = {name: Length(prior.value, prior.std) for name, prior in setup.known.items()} | lengths
     return _geometry(
         result.name,
         lengths,

@@ -9,8 +9,8 @@ from scipy.interpolate import CubicSpline
 from scipy.stats import chi2
 from wireless import Wireless, wireless
 
-from sprung.estimation import clear_of_splines, synchronise_at_release
-from sprung.estimation.synchronisation import _as_taken
+from sprung.analysis.synchronisation import _as_taken, synchronise_at_release
+from sprung.estimation import clear_of_splines
 from sprung.preprocess import FreeDecay, FromFlight, prepare
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
@@ -35,8 +35,8 @@ def timed(simulated: Wireless, vehicle: Vehicle) -> list[tuple[FreeDecay, Real]]
 
 def missed(decay: FreeDecay, truth: Real, vehicle: Vehicle, sure: float) -> tuple[Real, Real]:
     """Give what the clocks that are told well miss, but for what is common to all, and their uncertainties; s."""
-    off = np.array([clock.expected(vehicle.parameters) - clock.ahead for clock in decay.clocks]) + truth
-    std = np.array([clock.std for clock in decay.clocks])
+    off = np.array([clock.expected_delay(vehicle.parameters) - clock.offset for clock in decay.clocks]) + truth
+    std = np.array([clock.delay_std for clock in decay.clocks])
     well = std < sure
     return off[well] - np.average(off[well], weights=std[well] ** -2), std[well]
 
@@ -120,10 +120,10 @@ def test_slower_loggers_begin_later_and_are_late_by_it() -> None:
     after = np.concatenate([later.earlier, later.values], axis=1)
     assert later.start == decay.start
     for clock, moved in zip(decay.clocks, later.clocks, strict=True):
-        skipped = round((moved.late - clock.late) * decay.rate)
+        skipped = round((moved.delay - clock.delay) * decay.rate)
         # Four samples of its own on each side make a new one.
-        assert skipped == (round(4 / clock.share) if clock.share < 1 else 0)
-        assert moved.ahead - clock.ahead == pytest.approx(skipped / decay.rate)
+        assert skipped == (round(4 / clock.rate_ratio) if clock.rate_ratio < 1 else 0)
+        assert moved.offset - clock.offset == pytest.approx(skipped / decay.rate)
         own = list(clock.channels)
         np.testing.assert_array_equal(after[own], before[own, skipped : skipped + after.shape[1]])
 
@@ -131,4 +131,4 @@ def test_slower_loggers_begin_later_and_are_late_by_it() -> None:
 def test_without_slower_loggers_nothing_moves() -> None:
     decay = prepare(wireless(seed=7).campaign).decays[0]
     np.testing.assert_array_equal(clear_of_splines(decay).values, decay.values)
-    assert all(clock.share == 1 for clock in decay.clocks)
+    assert all(clock.rate_ratio == 1 for clock in decay.clocks)

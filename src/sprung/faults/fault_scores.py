@@ -13,10 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import LikelihoodAt
-from sprung.estimation.fit import FitResult
-from sprung.estimation.problem import identifiable_subspace
-from sprung.estimation.solution import ModalSlopes, respond
+from sprung.estimation import FitResult, LikelihoodAt, ModalSlopes, identifiable_subspace, respond
 from sprung.vehicle import Heights, LinearModel, Load, Rows, Sensor
 
 Real = NDArray[np.float64]
@@ -47,7 +44,7 @@ class FaultScore(NamedTuple):
         By how much, in that unit.
     std
         Standard uncertainty of that in white noise.
-    pull
+    max_parameter_shift
         By how many of its own standard uncertainties a parameter moves with one of this, the most of all parameters: how
         much less is known of the vehicle where this is not known.
     """
@@ -58,7 +55,7 @@ class FaultScore(NamedTuple):
     item: int
     value: float
     std: float
-    pull: float
+    max_parameter_shift: float
 
     @property
     def gain(self) -> float:
@@ -111,20 +108,20 @@ def score_faults(
     score = gradient[parameters:] - across.T @ inverse @ (told.T @ own)
     directions = told @ inverse
     spreads = np.sqrt(np.maximum(np.einsum("ij,ij->i", directions, told), np.finfo(float).tiny))
-    pulls = np.abs(directions @ across / spreads[:, None]).max(axis=0, initial=0.0)
+    shifts = np.abs(directions @ across / spreads[:, None]).max(axis=0, initial=0.0)
     alone = np.diag(information)[parameters:]
     known = left > 1e-9 * np.maximum(alone, np.finfo(float).tiny)
     named = [
-        FaultScore(kind, where, axis, item, *_estimate(float(score[i]), float(left[i]), float(pulls[i])))
+        FaultScore(kind, where, axis, item, *_estimate(float(score[i]), float(left[i]), float(shifts[i])))
         for i, (kind, where, axis, item) in enumerate(accused)
         if known[i]
     ]
     return tuple(sorted(named, key=lambda one: one.gain, reverse=True))
 
 
-def _estimate(score: float, left: float, pull: float) -> tuple[float, float, float]:
-    """Give value, standard uncertainty and pull, from the score and the information that the parameters leave."""
-    return score / left, left**-0.5, pull * left**-0.5
+def _estimate(score: float, left: float, max_parameter_shift: float) -> tuple[float, float, float]:
+    """Give value, standard uncertainty and max_parameter_shift, from the score and the information that the parameters leave."""
+    return score / left, left**-0.5, max_parameter_shift * left**-0.5
 
 
 _Who = tuple[Kind, str, int, int]

@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from sprung.campaign import ROUGHLY, Drop
+from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
-from sprung.estimation.closed_form import Likelihood
-from sprung.estimation.fit import FitResult
+from sprung.estimation import FitResult, Likelihood
 from sprung.preprocess import DropObservation, FreeDecay, FromFlight
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, with_separate_tracks
 
@@ -33,7 +32,7 @@ _FLIGHT = 0.04
 _IN_THE_AIR, _LOW = 0.85, 0.02
 """Part of the time to the landing that is certainly flight, and height of blocks where nobody says it, m."""
 
-_AWAY = 2 * ROUGHLY
+_AWAY = 2 * CLOCK_STD
 """s within which the release is looked for on both sides of where the first motion that a logger shows would have it."""
 
 _BEFORE = 0.008
@@ -120,9 +119,9 @@ def synchronise_at_release(
         if begin is None:
             continue
         window = (times > begin - _BEFORE) & (times < begin + air)
-        taken = parts[clock.name].time - clock.ahead - recording.start - seen.release / recording.rate
+        taken = parts[clock.name].time - clock.offset - recording.start - seen.release / recording.rate
         read, when = values[own][:, window], times[window]
-        if clock.share < 1:
+        if clock.rate_ratio < 1:
             read, when = _as_taken(read, when, taken, 1 / parts[clock.name].rate)
         found = _moment_of(read, when, flight[own], slopes[:, own], begin)
         if found is not None:
@@ -135,9 +134,9 @@ def synchronise_at_release(
         replace(
             clock,
             # Expected at parameters of zero, so that the slopes alone lead to what is expected elsewhere.
-            late=common - told[number].time + float(told[number].slopes @ here),
-            std=told[number].std,
-            follows=dict(zip(parameters, (-told[number].slopes).tolist(), strict=True)),
+            delay=common - told[number].time + float(told[number].slopes @ here),
+            delay_std=told[number].std,
+            d_delay_d_parameter=dict(zip(parameters, (-told[number].slopes).tolist(), strict=True)),
         )
         if number in told
         else clock
@@ -279,7 +278,7 @@ def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tup
     likelihood = optimum.problem.likelihood
     assert isinstance(likelihood, Likelihood)  # noqa: S101 (several loggers are not stepped; for the type checker)
     place = likelihood.with_decays(decays).at(optimum.values)
-    untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.std > _UNTOLD}
+    untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.delay_std > _UNTOLD}
     timed = list(decays)
     shifts = np.arange(-_FARTHEST, _FARTHEST + _COARSE, _COARSE)
     for i, found in place.align_by_likelihood(1 / optimum.noise**2, shifts).items():
@@ -287,7 +286,7 @@ def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tup
         timed[i] = replace(
             timed[i],
             clocks=tuple(
-                replace(clock, late=late, std=4 * _COARSE) if (i, clock.name) in untold else clock
+                replace(clock, delay=late, delay_std=4 * _COARSE) if (i, clock.name) in untold else clock
                 for clock, late in clocks
             ),
         )
@@ -307,7 +306,7 @@ def mask_unsynchronised(decay: FreeDecay) -> FreeDecay:
     Decay
         With those channels NaN.
     """
-    untold = [channel for clock in decay.clocks if clock.std > _UNTOLD for channel in clock.channels]
+    untold = [channel for clock in decay.clocks if clock.delay_std > _UNTOLD for channel in clock.channels]
     values = decay.values.copy()
     values[untold] = np.nan
     return replace(decay, values=values)
