@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
-from sprung.planning import Bound, PlannedDrop, PlannedTest, Subject
+from sprung.planning import Bound, MeasurementSetup, PlannedDrop, PlannedTest
 from sprung.uncertainty import NORMAL_95, KnownValue
 from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity
 
@@ -211,10 +211,12 @@ class Trial(NamedTuple):
     drops: int
 
 
-def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> Subject:
+def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> MeasurementSetup:
     sensors = _without_noise(vehicle, False).sensors
     everything = {"wheelbase": KnownValue(vehicle.wheelbase), **known}
-    return Subject(vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION)
+    return MeasurementSetup(
+        vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION
+    )
 
 
 @lru_cache(maxsize=256)

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from campaigns import Real
 from pages import VERDICTS, arguments, figures, run, table, tell, write
+from sprung.analysis.fitted import fit_campaign
 from wireless import wireless
 
 import sprung
-from sprung.analysis.fitted import fit_campaign
 from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 

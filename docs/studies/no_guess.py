@@ -18,8 +18,8 @@ import numpy as np
 from campaigns import AXLES, WEIGHING, Case, Real, Trial
 from numpy.typing import NDArray
 from pages import VERDICTS, arguments, figures, run, table, tell, write
-
 from sprung.analysis.fitted import fit_campaign
+
 from sprung.analysis.identify import result_of
 from sprung.estimation import fit_linear
 from sprung.vehicle import Vehicle

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sprung.analysis.fitted import fit_campaign
 from wireless import Wireless, wireless
 
 import sprung
-from sprung.analysis.fitted import fit_campaign
 from sprung.campaign import Campaign
 from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR

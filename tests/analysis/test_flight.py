@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.preprocess import flights, prepare
+from sprung.preprocess import find_flights, prepare
 from sprung.preprocess.flight import FROM_RELEASE
 from sprung.vehicle import TABLE_1_CAR
 
@@ -80,8 +80,8 @@ def test_a_fall_that_the_model_does_not_explain_is_not_used(campaign: sprung.Cam
 def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
     """Those after a release that was found, of which nobody said from when on to use them, and whose samples are whole."""
     prepared = prepare(campaign)
-    found = flights(prepared.decays, prepared.seen)
-    for one, decay, seen in zip(found, prepared.decays, prepared.seen, strict=True):
+    found = find_flights(prepared.decays, prepared.observations)
+    for one, decay, seen in zip(found, prepared.decays, prepared.observations, strict=True):
         assert one is not None
         assert one.decay.events.why_fit == FROM_RELEASE
         assert one.decay.end == pytest.approx(decay.end)
@@ -89,10 +89,10 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
         assert one.since == pytest.approx(0.012)
     started = [replace(drop, start=0.6) for drop in campaign.drops]
     prepared = prepare(replace(campaign, drops=tuple(started)))
-    assert flights(prepared.decays, prepared.seen) == [None] * 3
+    assert find_flights(prepared.decays, prepared.observations) == [None] * 3
     clipped = [replace(one, values=np.clip(one.values, -30.0, 30.0)) for one in campaign.recordings]
     prepared = prepare(campaign.with_recordings(clipped))
-    assert flights(prepared.decays, prepared.seen) == [None] * 3
+    assert find_flights(prepared.decays, prepared.observations) == [None] * 3
 
 
 def test_the_campaign_may_say_whether_the_fall_is_used(campaign: sprung.Campaign) -> None:

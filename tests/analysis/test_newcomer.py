@@ -20,7 +20,7 @@ import tomli_w
 import sprung
 from sprung.campaign import Campaign, write
 from sprung.errors import Fault, InputError
-from sprung.preprocess import SlowMotion, slower_drops
+from sprung.preprocess import SlowMotion, find_slower_drops
 from sprung.vehicle import TABLE_1_CAR as CAR
 from sprung.vehicle import WHEELS, Item, Load, Sensor, Wheel
 
@@ -366,7 +366,7 @@ def swing(period: float, size: float) -> SlowMotion:
 )
 def test_another_mass_is_told_from_another_height(period: float, size: float, slower: tuple[bool, ...]) -> None:
     motions = [swing(1.0, 1.0), swing(1.0, 1.0), swing(period, size), swing(period, size)]
-    assert slower_drops(["bounce", "front", "bounce", "front"], motions) == slower
+    assert find_slower_drops(["bounce", "front", "bounce", "front"], motions) == slower
 
 
 def test_nothing_is_said_of_a_sound_campaign(recorded: Campaign) -> None:

@@ -11,7 +11,7 @@ from wireless import Wireless, wireless
 
 from sprung.analysis.synchronisation import _as_taken, synchronise_at_release
 from sprung.estimation import clear_of_splines
-from sprung.preprocess import FreeDecay, FromFlight, prepare
+from sprung.preprocess import FlightLikelihood, FreeDecay, prepare
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 Real = NDArray[np.float64]
@@ -27,7 +27,7 @@ def timed(simulated: Wireless, vehicle: Vehicle) -> list[tuple[FreeDecay, Real]]
     for decay in prepared.decays:
         i = names.index(decay.file)
         told = synchronise_at_release(
-            decay, prepared.seen[i], campaign.drops[i], vehicle, campaign.load(decay.load), campaign.sensors
+            decay, prepared.observations[i], campaign.drops[i], vehicle, campaign.load(decay.load), campaign.sensors
         )
         found.append((told, np.array([simulated.ahead[i][clock.channels[0]] for clock in told.clocks])))
     return found
@@ -65,7 +65,7 @@ def test_blocks_twist_a_vehicle_as_high_as_they_are() -> None:
         assert np.abs(off).max() < 1e-5, decay.name
 
 
-def flights_of(seed: int) -> list[FromFlight]:
+def flights_of(seed: int) -> list[FlightLikelihood]:
     told = timed(wireless(drift=0.0, seed=seed), TABLE_1_CAR)
     return [decay.flight for decay, _ in told if decay.flight is not None]
 
@@ -82,7 +82,7 @@ def test_at_the_truth_a_flight_leaves_noise_and_no_slope() -> None:
     assert freedom > 60
     assert chi2.cdf(squares, freedom) < 0.9999
     assert chi2.cdf(squares, freedom) > 1e-4
-    left, samples = (sum(getattr(one, name) for one in flights) for name in ("left", "samples"))
+    left, samples = (sum(getattr(one, name) for one in flights) for name in ("chi_square", "samples"))
     assert left / samples == pytest.approx(1.0, abs=0.12)  # noise is known from 0.3 s of rest
 
 
@@ -95,8 +95,8 @@ def test_what_is_missed_near_by_is_what_another_vehicle_misses() -> None:
     assert here is not None
     assert there is not None
     # Clocks are free in both: each is set anew.
-    assert here.missed(there.at) == pytest.approx(there.left, rel=0.03)
-    assert there.left > 1.5 * here.left
+    assert here.chi_square_at(there.at) == pytest.approx(there.chi_square, rel=0.03)
+    assert there.chi_square > 1.5 * here.chi_square
 
 
 @pytest.mark.parametrize("rate", [200.0, 400.0, 512.0, 600.0, 800.0])

@@ -11,8 +11,8 @@ from hysteresis import measured
 from numpy.typing import NDArray
 
 import sprung
-from sprung.assessment import AmplitudeCurve, BodyMotion, mode_amplitudes
-from sprung.assessment.sliding import follow_mode
+from sprung.assessment import AmplitudeCurve, BodyMotion, follow_modes
+from sprung.assessment.mode_tracking import follow_mode
 from sprung.estimation import FitStatistics
 from sprung.vehicle import (
     SCHOOL_BUS,
@@ -123,7 +123,7 @@ def test_dry_friction_lets_frequencies_rise_as_the_motion_dies() -> None:
     bus = replace(SCHOOL_BUS, F_f=1000.0, F_r=1500.0, s_f=2e6, s_r=3e6)
     held = compute_modes(replace(SCHOOL_BUS, k_sf=SCHOOL_BUS.k_sf + 2e6, k_sr=SCHOOL_BUS.k_sr + 3e6).matrices())
     highest = {mode.name: mode.frequency for mode in held if mode.pole.imag > 0}
-    found = mode_amplitudes(fit_of(bus), of_friction(bus), sensors_of_the_bus(), motions_of(bus))
+    found = follow_modes(fit_of(bus), of_friction(bus), sensors_of_the_bus(), motions_of(bus))
     bounce, roll = (next(one for one in found if one.mode == f"body {way}") for way in ("bounce", "roll"))
     for one, least in ((bounce, 1.5), (roll, 1.2)):
         assert fall(one.model) > least

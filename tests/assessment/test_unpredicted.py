@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import sprung
-from sprung.assessment import Verdict, body_motions, judge, judge_residuals, validate_drops
+from sprung.assessment import Verdict, body_motions, cross_validate_drops, decide_verdict, estimate_model_error
 from sprung.campaign import Campaign
 from sprung.estimation import Prediction, fit_linear, to_estimates, uncertainty_of
 from sprung.preprocess import prepare
@@ -25,8 +25,10 @@ def judged(made: Campaign) -> Verdict:
     choice, decays = choose_structure(made), prepare(made).decays
     optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
     fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
-    drops = validate_drops(optimum, fit, decays, channels, body_motions(fit, decays, made.sensors))
-    return judge(fit, judge_residuals(fit, decays), to_estimates(fit, choice.known).parameters, channels, (), drops)
+    drops = cross_validate_drops(optimum, fit, decays, channels, body_motions(fit, decays, made.sensors))
+    return decide_verdict(
+        fit, estimate_model_error(fit, decays), to_estimates(fit, choice.known).parameters, channels, (), drops
+    )
 
 
 @pytest.mark.parametrize("changed", [{"c_sf": 1650.0}, {"k_tf": 230_000.0}, {"k_sf": 17_700.0}])
@@ -60,7 +62,7 @@ def test_a_residual_below_rounding_has_no_ratio(monkeypatch: pytest.MonkeyPatch)
     """Without noise, sums of squares cancel to nothing in some drops, and rounding decides in which."""
     made = sprung.simulate(TABLE_1_CAR, noise=0.0, seed=1, drops=[{"wheels": ["fl", "rl"]}, {"wheels": ["fl", "fr"]}])
     nothing = Prediction(fitted=0.0, squares=0.0, by_chance=(3.0, 2.0), distance=(0.0, 13))
-    monkeypatch.setattr("sprung.assessment.drops.predictions", lambda *_: (nothing, nothing))
+    monkeypatch.setattr("sprung.assessment.cross_validation.predictions", lambda *_: (nothing, nothing))
     result = sprung.identify(made, tracks="shared", extras=())
     assert {drop.predicted_residual for drop in result.validation.values()} == {None}
     assert {drop.predicted for drop in result.validation.values()} == {0.0}

@@ -169,7 +169,7 @@ def test_a_drop_left_out(car: Campaign) -> None:
 def test_a_start_that_the_fit_moved_changes_no_other_moment(car: Campaign, seen: Check, samples: int) -> None:
     """`check` and a report say one number for one drop, whatever the fit makes of it."""
     prepared = prepare(car)
-    moved = prepared._replace(decays=tuple(decay.moved(samples) for decay in prepared.decays))
+    moved = prepared._replace(decays=tuple(decay.shifted(samples) for decay in prepared.decays))
     for one, decay, before in zip(check_prepared(car, moved).drops, moved.decays, seen.drops, strict=True):
         assert one.end == pytest.approx(before.end)
         assert replace(one, end=before.end, fit_start=None, why_fit="") == before

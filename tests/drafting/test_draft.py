@@ -17,7 +17,7 @@ from layouts import check_view_is_whole
 from sessions import NEUTRAL, fill_in, write_session, write_table
 from sprung.campaign import Campaign
 from sprung.campaign import TestRecord as Record
-from sprung.drafting import Draft
+from sprung.drafting import DraftCampaign
 from sprung.drafting.names import axis_named, load_named, part_named, station_named, wheels_named
 from sprung.drafting.text import campaign_text
 from sprung.errors import InputError
@@ -47,7 +47,7 @@ def one_day() -> Day:
     return day(TABLE_1_CAR, DAY, np.random.default_rng(1), rate=250.0, disturbances=1)
 
 
-def known(draft: Draft) -> dict[str, str]:
+def known(draft: DraftCampaign) -> dict[str, str]:
     return {sensor.channel: sensor.on for sensor in draft.sensors}
 
 
@@ -122,7 +122,7 @@ def test_a_whole_day_in_one_file_becomes_windows(tmp_path: Path, one_day: Day) -
         assert abs(estimate.value - getattr(TABLE_1_CAR, name)) < 5 * estimate.std + 1e-9
 
 
-def told(folder: Path, values: NDArray[np.float64], rate: float, names: tuple[str, ...] = NEUTRAL) -> Draft:
+def told(folder: Path, values: NDArray[np.float64], rate: float, names: tuple[str, ...] = NEUTRAL) -> DraftCampaign:
     write_table(folder / "day.csv", values, rate, names)
     return sprung.draft(folder)
 
@@ -278,7 +278,7 @@ def test_recordings_that_cannot_be_read_are_named_with_the_reason(tmp_path: Path
 
 
 def test_every_draft_explains_how_a_load_is_described() -> None:
-    text = campaign_text(Draft(folder=Path(), name="car", sensors=(), drops=(), files=(), unreadable={}))
+    text = campaign_text(DraftCampaign(folder=Path(), name="car", sensors=(), drops=(), files=(), unreadable={}))
     assert "load" not in tomllib.loads(text)
     head, name, first, second, _, added = (
         line.removeprefix("# ") for line in text[text.index("# [[load]]") :].splitlines()[:6]
@@ -289,7 +289,7 @@ def test_every_draft_explains_how_a_load_is_described() -> None:
 
 
 def test_every_draft_has_a_record_of_the_test_to_fill_in() -> None:
-    text = campaign_text(Draft(folder=Path(), name="car", sensors=(), drops=(), files=(), unreadable={}))
+    text = campaign_text(DraftCampaign(folder=Path(), name="car", sensors=(), drops=(), files=(), unreadable={}))
     lines = text[text.index("# [test]") :].split("\n\n")[0].splitlines()
     [record] = tomllib.loads("\n".join(line.removeprefix("# ") for line in lines)).values()
     assert record.keys() == {field.name for field in fields(Record)}

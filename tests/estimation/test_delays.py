@@ -12,7 +12,7 @@ from scipy.optimize import minimize
 from sprung.campaign import LoggerClock
 from sprung.estimation import FitResult, fit_linear, uncertainty_of
 from sprung.estimation.closed_form import Likelihood
-from sprung.preprocess import FreeDecay, FromFlight, prepare
+from sprung.preprocess import FlightLikelihood, FreeDecay, prepare
 from sprung.simulation import free_decays
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, parse_record
 
@@ -69,7 +69,7 @@ def flown(those: list[FreeDecay], at: Real) -> list[FreeDecay]:
     random = np.random.default_rng(5)
     for i in (0, 1):
         told = random.standard_normal((17, 3)) / (0.003 * (at @ ONTO)[:, None])
-        flight = FromFlight(APART, at @ ONTO, told @ random.standard_normal(3), told @ told.T, 0.0, 0)
+        flight = FlightLikelihood(APART, at @ ONTO, told @ random.standard_normal(3), told @ told.T, 0.0, 0)
         those[i] = replace(those[i], flight=flight)
     return those
 
@@ -80,7 +80,7 @@ def test_what_flights_tell_adds_to_cost_gradient_and_information() -> None:
     plain, told = likelihood(decays()), likelihood(with_flights)
     before, after = (fit.at(values).evaluate(WEIGHTS) for fit in (plain, told))
     flights = [one.flight for one in with_flights if one.flight is not None]
-    missed = sum(flight.missed(values @ ONTO) for flight in flights)
+    missed = sum(flight.chi_square_at(values @ ONTO) for flight in flights)
     assert cost(told, values) - cost(plain, values) == pytest.approx(missed, rel=1e-9)
     assert after.penalty - before.penalty == pytest.approx(missed, rel=1e-9)
     gradient = sum(ONTO @ (flight.gradient - flight.information @ ((values - at) @ ONTO)) for flight in flights)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from sprung.faults.corners import Corners
 
-from sprung.faults.corners import Corners, determined
+from sprung.faults.high_pass import determined
 
 
 def test_a_direction_that_the_parameters_imitate_tells_nothing() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 
 from sprung.campaign import Recording
 from sprung.preprocess import prepare
-from sprung.preprocess.clipping import clipped_samples, with_full_scale
+from sprung.preprocess.clipping import check_full_scale, detect_clipping
 from sprung.simulation import simulate
 from sprung.vehicle import TABLE_1_CAR
 
@@ -25,26 +25,26 @@ def at_full_scale() -> Recording:
 
 def test_the_file_tells_the_unit_of_the_range() -> None:
     clipped = at_full_scale()
-    told = with_full_scale(replace(clipped, full_scale=(FULL,) * 8), RANGED)
+    told = check_full_scale(replace(clipped, full_scale=(FULL,) * 8), RANGED)
     assert told.faults == ()
-    np.testing.assert_array_equal(clipped_samples(told), np.abs(clipped.values) == FULL)
-    assert clipped_samples(told).any()
+    np.testing.assert_array_equal(detect_clipping(told), np.abs(clipped.values) == FULL)
+    assert detect_clipping(told).any()
 
 
 def test_without_a_file_the_sensor_does_and_otherwise_it_is_si() -> None:
     in_g = tuple(replace(sensor, unit="g") for sensor in RANGED)
-    assert with_full_scale(at_full_scale(), in_g).full_scale == (FULL,) * 8
-    assert with_full_scale(replace(CLEAN.recordings[0], values=np.zeros((8, 9))), RANGED).full_scale == (5.0,) * 8
-    assert with_full_scale(CLEAN.recordings[0], CLEAN.sensors).full_scale == (None,) * 8
+    assert check_full_scale(at_full_scale(), in_g).full_scale == (FULL,) * 8
+    assert check_full_scale(replace(CLEAN.recordings[0], values=np.zeros((8, 9))), RANGED).full_scale == (5.0,) * 8
+    assert check_full_scale(CLEAN.recordings[0], CLEAN.sensors).full_scale == (None,) * 8
 
 
 def test_a_logger_that_shows_less_than_the_sensor_clips_as_well() -> None:
     """A range of 50 g is stated; the logger's input ends at 3 g, for some samples in a row."""
     one = CLEAN.recordings[0]
     cut = replace(one, values=np.clip(one.values, -0.6 * FULL, 0.6 * FULL), full_scale=(10 * FULL,) * 8)
-    assert clipped_samples(cut).any()
-    assert (np.abs(cut.values)[clipped_samples(cut)] == 0.6 * FULL).all()
-    assert not clipped_samples(replace(one, full_scale=(10 * FULL,) * 8)).any()
+    assert detect_clipping(cut).any()
+    assert (np.abs(cut.values)[detect_clipping(cut)] == 0.6 * FULL).all()
+    assert not detect_clipping(replace(one, full_scale=(10 * FULL,) * 8)).any()
 
 
 def test_a_range_that_is_exceeded_is_none() -> None:
@@ -76,4 +76,4 @@ def test_a_flat_turn_of_a_coarse_sensor_is_not_clipped_and_a_cut_one_is() -> Non
     cut = np.concatenate([level, np.maximum(9.8 - 6 * np.hanning(15), 5.0), level])
     values = step * np.round(np.array([one, cut]) / step)
     recording = replace(CLEAN.recordings[0], channels=("turn", "cut"), values=values)
-    assert clipped_samples(recording).any(axis=1).tolist() == [False, True]
+    assert detect_clipping(recording).any(axis=1).tolist() == [False, True]

@@ -41,10 +41,10 @@ def test_what_may_belong_to_a_decay_is_kept_back_to_the_landing(vehicle: Vehicle
 def test_a_decay_moves_and_moves_back() -> None:
     decay = next(d for d in prepare(simulate(SCHOOL_BUS, noise=0.02, seed=3)).decays if d.earlier.shape[1] > 1)
     far = decay.earlier.shape[1]
-    moved = decay.moved(-far)
+    moved = decay.shifted(-far)
     assert moved.start == pytest.approx(decay.start - far / decay.rate)
     assert moved.end == pytest.approx(decay.end)
-    np.testing.assert_array_equal(moved.moved(far).values, decay.values)
+    np.testing.assert_array_equal(moved.shifted(far).values, decay.values)
 
 
 def cut(campaign: Campaign, seconds: float) -> Campaign:

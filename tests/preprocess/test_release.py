@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sprung.preprocess import prepare
-from sprung.preprocess.release import find_release
+from sprung.preprocess.release import detect_release
 from sprung.simulation import free_decays, simulate
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 
@@ -19,7 +19,7 @@ from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 def test_release_is_found_to_the_sample(vehicle: Vehicle, noise: float, rest: float) -> None:
     campaign = simulate(vehicle, noise=noise, rest=rest, seed=1)
     for recording in campaign.recordings:
-        found = find_release(recording.values, recording.rate)
+        found = detect_release(recording.values, recording.rate)
         assert found is not None
         assert found.sample / recording.rate == pytest.approx(rest, abs=1.5 / recording.rate)
         np.testing.assert_allclose(found.rest.level, 9.80665, atol=0.02 + noise)
@@ -29,14 +29,14 @@ def test_release_is_found_to_the_sample(vehicle: Vehicle, noise: float, rest: fl
 def test_creep_on_the_blocks_is_not_noise() -> None:
     recording = simulate(TABLE_1_CAR, noise=0.02, seed=2).recordings[0]
     creeping = recording.values + 0.5 * recording.time
-    found = find_release(creeping, recording.rate)
+    found = detect_release(creeping, recording.rate)
     assert found is not None
     np.testing.assert_allclose(found.rest.noise.std(axis=1), 0.02, rtol=0.25)
 
 
 def test_a_recording_that_begins_in_the_decay_shows_no_rest() -> None:
     for recording in free_decays(TABLE_1_CAR, states=6, noise=0.02, seed=3).recordings:
-        assert find_release(recording.values, recording.rate) is None
+        assert detect_release(recording.values, recording.rate) is None
 
 
 def test_a_drop_without_rest_is_told_and_used() -> None:

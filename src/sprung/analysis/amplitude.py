@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.analysis.analysis import Analysis
-from sprung.assessment import BodyMotion, ModeAmplitude, mode_amplitudes
+from sprung.assessment import BodyMotion, ModeAmplitude, follow_modes
 from sprung.progress import Progress, silent
 from sprung.vehicle import EMPTY
 
@@ -32,5 +32,5 @@ def amplitudes_of(
     grounded = replace(structure, unilateral_tyres=False)
     model = grounded.nonlinear_models[load] if structure.is_nonlinear else structure.linear_models[load]
     own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
-    found = mode_amplitudes(run.uncertainty, model, run.campaign.sensors, own, progress)
+    found = follow_modes(run.uncertainty, model, run.campaign.sensors, own, progress)
     return tuple(replace(one, load=load) for one in found)

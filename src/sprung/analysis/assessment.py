@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from importlib.metadata import version
-from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,19 +13,24 @@ from sprung.analysis.analysis import Analysis
 from sprung.analysis.axes import about_roll_axis, axes_of
 from sprung.analysis.clocks import clock_reports
 from sprung.analysis.design import to_design
-from sprung.analysis.profiles import check_asked, profiles_of
-from sprung.assessment import BodyMotion, Misfit, ModeAmplitude, body_motions, judge, judge_residuals, validate_drops
-from sprung.campaign import CampaignSource, campaign_from
+from sprung.analysis.profiles import profiles_of
+from sprung.assessment import (
+    BodyMotion,
+    Misfit,
+    body_motions,
+    cross_validate_drops,
+    decide_verdict,
+    estimate_model_error,
+)
 from sprung.checking import check_prepared
-from sprung.errors import Omissions
 from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
-from sprung.planning import next_step
 from sprung.faults import detect_drift
+from sprung.planning import next_step
 from sprung.preprocess import FreeDecay
-from sprung.progress import Progress, Step, silent
+from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
 from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS, Tracks, Vehicle
+from sprung.vehicle import EMPTY, LOAD_MASS
 
 METHOD = "joint maximum likelihood"
 
@@ -42,10 +45,12 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     looked_at = check_prepared(campaign, run.prepared._replace(decays=decays))
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, structure.known)
-    misfit = judge_residuals(fit, decays)
+    misfit = estimate_model_error(fit, decays)
     motions = body_motions(fit, decays, campaign.sensors)
-    validated = validate_drops(optimum, fit, decays, channels, motions)
-    verdict = judge(fit, misfit, estimates.parameters, channels, [fault.what for fault in suspected], validated)
+    validated = cross_validate_drops(optimum, fit, decays, channels, motions)
+    verdict = decide_verdict(
+        fit, misfit, estimates.parameters, channels, [fault.what for fault in suspected], validated
+    )
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, fit, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]

@@ -27,7 +27,9 @@ def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
     search = select_roll_axis_height(ModelSearch(structure, fit, run.prepared.decays, (), progress))
     search = fit_requested_terms(search, [term for term in requested.linear_terms if term not in structure.terms])
     run = replace(run, requested=requested, search=from_contact(search), fits=run.fits + 2)
-    return run.noted("fit_baseline", described(run.model), f"{run.fit.starts_agreeing} of {run.fit.starts} starts agree")
+    return run.noted(
+        "fit_baseline", described(run.model), f"{run.fit.starts_agreeing} of {run.fit.starts} starts agree"
+    )
 
 
 def structures(run: Analysis) -> tuple[ModelStructure, ModelStructure]:

@@ -14,7 +14,7 @@ from sprung.analysis.synchronisation import mask_unsynchronised, synchronise_at_
 from sprung.campaign import Campaign, LoggerClock
 from sprung.checking import ClockReport
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, clear_of_splines, uncertainty_of
-from sprung.preprocess import FreeDecay, Prepared, leave_out, prepare
+from sprung.preprocess import FreeDecay, Prepared, exclude_drops, prepare
 from sprung.progress import Progress
 from sprung.selection import fit_structure
 from sprung.vehicle import Vehicle, with_separate_tracks
@@ -81,7 +81,7 @@ def synchronise(run: Analysis, progress: Progress) -> Analysis:
             replace(recording, clocks=tuple(known.get(recording.name, recording.clocks)))
             for recording in campaign.recordings
         ]
-        prepared = leave_out(campaign, prepare(campaign.with_recordings(recordings), progress), run.excluded)
+        prepared = exclude_drops(campaign, prepare(campaign.with_recordings(recordings), progress), run.excluded)
     by_file = {decay.file: decay.clocks for decay in timed}
     decays = [_with_known_clocks(decay, by_file.get(decay.file, ()), fit.parameters) for decay in prepared.decays]
     prepared = prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays))
@@ -98,7 +98,7 @@ def use_clock_flights(run: Analysis, progress: Progress) -> Analysis:
     prepared, fit = run.prepared, run.fit
     if not any(decay.clocks for decay in prepared.decays):
         return run
-    clocks = {observation.recording.name: observation.recording.clocks for observation in prepared.seen}
+    clocks = {observation.recording.name: observation.recording.clocks for observation in prepared.observations}
     flown = _synchronised_at_release(
         run.campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in run.decays], fit
     )
@@ -109,12 +109,10 @@ def use_clock_flights(run: Analysis, progress: Progress) -> Analysis:
     other = fit_structure(run.model.structure, decays, fit, CONVERGED, progress)
     values = with_separate_tracks(other.parameters)
     squares = sum(
-        flight.missed(np.array([values.get(name, at) for name, at in zip(flight.names, flight.at, strict=True)]))
+        flight.chi_square_at(np.array([values.get(name, at) for name, at in zip(flight.names, flight.at, strict=True)]))
         for flight in flights
     )
-    ratio = max(
-        float(np.max(other.noise / fit.noise)), (squares / sum(flight.samples for flight in flights)) ** 0.5
-    )
+    ratio = max(float(np.max(other.noise / fit.noise)), (squares / sum(flight.samples for flight in flights)) ** 0.5)
     run = replace(run, fits=run.fits + 1)
     if not other.converged or ratio >= _NO_WORSE:
         why = f"noise {ratio:.2f} times that of the decays, at most {_NO_WORSE}"
@@ -129,7 +127,7 @@ def _synchronised_at_release(
 ) -> list[FreeDecay]:
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
     vehicle = Vehicle.nearest(optimum.parameters, name=campaign.name, **campaign.heights.by_key)
-    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.seen}
+    by_name = {seen.recording.name: (seen, replace(seen.drop, wheels=seen.wheels)) for seen in prepared.observations}
     return [
         synchronise_at_release(decay, *by_name[decay.file], vehicle, campaign.load(decay.load), campaign.sensors)
         for decay in decays

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.analysis.analysis import Analysis
-from sprung.planning import PlannedDrop, PlannedTest, campaign_of_fit, subject_of_fit
+from sprung.planning import PlannedDrop, PlannedTest, completed_test, setup_from_fit
 from sprung.simulation import DEFAULT_HEIGHT
 from sprung.vehicle import LOAD_MASS, parameter_names
 
@@ -18,7 +18,7 @@ def to_design(run: Analysis) -> PlannedTest:
     campaign, decays, fitted = run.campaign, run.decays, run.model.structure
     structure = fitted.with_terms(fitted.linear_terms)
     fit = run.uncertainty.only(parameter_names(structure.tracks, structure.terms))
-    subject = subject_of_fit(
+    subject = setup_from_fit(
         fit,
         structure.tracks,
         structure.terms,
@@ -32,7 +32,7 @@ def to_design(run: Analysis) -> PlannedTest:
     used = {decay.file for decay in decays}
     dropped = [
         PlannedDrop(campaign.load(seen.drop.load), seen.wheels, seen.drop.height or DEFAULT_HEIGHT)
-        for seen in run.prepared.seen
+        for seen in run.prepared.observations
         if seen.recording.name in used
     ]
-    return campaign_of_fit(subject, fit, dropped)
+    return completed_test(subject, fit, dropped)

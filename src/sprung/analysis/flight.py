@@ -17,7 +17,7 @@ from sprung.analysis.analysis import Analysis
 from sprung.analysis.clocks import use_clock_flights
 from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
-from sprung.preprocess import Flight, flights
+from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
 from sprung.vehicle import WHEELS, BlockSupport, Rows, Vehicle, coordinates, evaluate_quantity, simulate_nonlinear_drops
@@ -51,7 +51,7 @@ def use_flight(run: Analysis, progress: Progress) -> Analysis:
         run = use_clock_flights(run, progress)
     if asked is False or (asked is None and not (is_sound and is_needed(run.uncertainty))):
         return run
-    found = flights(run.decays, run.prepared.seen)
+    found = find_flights(run.decays, run.prepared.observations)
     if any(found):
         progress(Step("using the fall"))
         fallen = _with_fall(run, found, progress)
@@ -103,7 +103,9 @@ def is_needed(fit: FitStatistics) -> bool:
     return bool(np.any(errors > NEEDED * sizes)) and hopeless < _UNDETERMINED
 
 
-def _initial_states(campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]) -> Real:
+def _initial_states(
+    campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]
+) -> Real:
     """Give {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
     states = optimum.states[:, : 2 * len(coordinates(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **choice.heights.by_key)

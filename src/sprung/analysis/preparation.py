@@ -7,7 +7,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.errors import Problems
 from sprung.faults import examine
-from sprung.preprocess import Prepared, leave_out, prepare
+from sprung.preprocess import Prepared, exclude_drops, prepare
 from sprung.progress import Progress, Step
 
 
@@ -29,7 +29,7 @@ def preprocess(run: Analysis, progress: Progress) -> Analysis:
             run = run.noted("preprocess", f"corrected {campaign.faults[-1].where}", campaign.faults[-1].what)
     elif run.preparation is None:
         run = replace(run, preparation=prepare(run.campaign, progress), preparations=run.preparations + 1)
-    prepared = leave_out(run.campaign, run.prepared, run.excluded)
+    prepared = exclude_drops(run.campaign, run.prepared, run.excluded)
     _require_decays(run, prepared)
     what = f"{len(prepared.decays)} of {len(run.campaign.drops)} drops can be used"
     reasons = "; ".join(f"{where}: {fault.what}" for where, fault in run.excluded.items())

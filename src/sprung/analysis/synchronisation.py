@@ -21,7 +21,7 @@ from scipy.interpolate import CubicSpline
 from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
 from sprung.estimation import FitResult, Likelihood
-from sprung.preprocess import DropObservation, FreeDecay, FromFlight
+from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, with_separate_tracks
 
 Real = NDArray[np.float64]
@@ -146,7 +146,9 @@ def synchronise_at_release(
         np.concatenate([getattr(one, name) for one in told.values()], axis=-1) for name in ("left", "unseen")
     )
     gradient, information = unseen @ left, unseen @ unseen.T
-    from_flight = FromFlight(tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told))
+    from_flight = FlightLikelihood(
+        tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told)
+    )
     return replace(decay, clocks=clocks, flight=from_flight)
 
 

@@ -7,10 +7,9 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep
+from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
-from sprung.selection import fit_forced_terms
 
 
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:

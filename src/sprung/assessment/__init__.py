@@ -1,13 +1,12 @@
 """Does the model hold? Measured against fitted, residuals against noise, and the verdict."""
 
-from sprung.assessment.amplitude import ModeAmplitude, mode_amplitudes
-from sprung.assessment.bodies import MOTIONS, BodyMotion, body_motions
-from sprung.assessment.drops import DropValidation, validate_drops
-from sprung.assessment.residuals import Misfit, judge_residuals
-from sprung.assessment.sensors import Moments, SensorNoise, moments, sensor_noise
-from sprung.assessment.sliding import AmplitudeCurve
-from sprung.assessment.verdict import State, Verdict, judge
-from sprung.assessment.whiteness import Remainder, noise_of_sensors, remainders
+from sprung.assessment.amplitude import ModeAmplitude, follow_modes
+from sprung.assessment.body_motion import MOTIONS, BodyMotion, body_motions
+from sprung.assessment.cross_validation import DropValidation, cross_validate_drops
+from sprung.assessment.mode_tracking import AmplitudeCurve
+from sprung.assessment.model_error import Misfit, estimate_model_error
+from sprung.assessment.residuals import ResidualStatistics, describe_residuals, estimate_noise_level
+from sprung.assessment.verdict import State, Verdict, decide_verdict
 
 __all__ = [
     "MOTIONS",
@@ -16,18 +15,14 @@ __all__ = [
     "DropValidation",
     "Misfit",
     "ModeAmplitude",
-    "Moments",
-    "Remainder",
-    "SensorNoise",
+    "ResidualStatistics",
     "State",
     "Verdict",
     "body_motions",
-    "judge",
-    "judge_residuals",
-    "mode_amplitudes",
-    "moments",
-    "noise_of_sensors",
-    "remainders",
-    "sensor_noise",
-    "validate_drops",
+    "cross_validate_drops",
+    "decide_verdict",
+    "describe_residuals",
+    "estimate_model_error",
+    "estimate_noise_level",
+    "follow_modes",
 ]

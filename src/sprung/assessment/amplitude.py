@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment.bodies import BodyMotion, body_rows
-from sprung.assessment.sliding import AmplitudeCurve, follow_mode
+from sprung.assessment.body_motion import BodyMotion, body_rows
+from sprung.assessment.mode_tracking import AmplitudeCurve, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.progress import Progress, counted, silent
@@ -68,7 +68,7 @@ class ModeAmplitude:
     load: str = EMPTY.name
 
 
-def mode_amplitudes(
+def follow_modes(
     fit: FitStatistics,
     model: LinearModel | NonlinearModel,
     sensors: Sequence[Sensor],

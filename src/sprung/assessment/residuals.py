@@ -1,4 +1,4 @@
-"""Does the model explain the records? What is left of them is held against what the sensors do at rest."""
+"""What is left of each channel in each drop: how large, and whether it is like noise."""
 
 from __future__ import annotations
 
@@ -7,38 +7,45 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import fftconvolve
 
-from sprung.assessment.sensors import moments, sensor_noise
 from sprung.display import shown
 from sprung.estimation import FitStatistics
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
 
 Real = NDArray[np.float64]
 
-_SIGNIFICANT = 4.0
-"""Standard errors by which an excess must be real before it counts."""
+_SPAN = 0.25
+"""s over which residuals are correlated with themselves: a quarter of a period of a body mode."""
 
 
 @shown
-@dataclass(frozen=True, eq=False)
-class Misfit:
-    """How far the model is from the records, beyond the sensors' noise.
+@dataclass(frozen=True, slots=True)
+class ResidualStatistics:
+    """What is left of one channel in one drop.
 
     Attributes
     ----------
-    relative
-        For each channel the model error as a part of the signal, both root-mean-square over all drops; 0 where none is
-        significant. Shape (channel,).
-    ratio
-        For each channel the ratio of residual and noise at rest; NaN where no recording shows a rest. Shape (channel,).
+    residual
+        m/s² root-mean-square.
+    over_noise
+        The ratio of that and the sensor's noise: at rest where a recording shows it, else what is left in all drops.
+    correlation, lag
+        The largest correlation of residuals with themselves within a quarter of a second, and how far they are apart, s.
+    colour
+        By how many standard deviations all these correlations together are more than those of white noise: Ljung and Box,
+        Biometrika 65 (1978) 297.
     """
 
-    relative: Real
-    ratio: Real
+    residual: float
+    over_noise: float
+    correlation: float
+    lag: float
+    colour: float
 
 
-def judge_residuals(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Misfit:
-    """Separate model error from noise in the residuals.
+def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Real:
+    """Give the noise of each sensor at rest, where a recording shows it, and not more than a fit leaves.
 
     Parameters
     ----------
@@ -49,30 +56,53 @@ def judge_residuals(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Misfit:
 
     Returns
     -------
-    Misfit
-
-    Notes
-    -----
-    White noise has no covariance from one sample to the next, and what the sensors do at rest is not the model's fault.
-    So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
-    variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
+    ndarray
+        m/s² root-mean-square, shape (channel,).
     """
-    residuals = fit.residuals
-    signals = [decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays]
-    left, signal = moments(residuals), moments(signals)
-    noise = sensor_noise(decays, left)
-    known = noise.samples > 0
+    seen = estimate_sensor_noise(decays, pool_moments(fit.residuals))
+    variance = seen.variance + seen.added
+    at_rest = np.where((seen.samples > 0) & (seen.variance > 0), np.sqrt(variance), np.inf)
+    return np.minimum(at_rest, fit.noise)
 
-    # A sensor whose noise is below its resolution may show none at rest; in motion its steps make an error that is coloured
-    # where the motion is slow, and of which no model is to blame.
-    by_colour = left.neighbour - noise.neighbour - noise.added
-    by_variance = np.where(known, left.variance - noise.variance - noise.added, 0.0)
-    samples = 1 / np.maximum(left.samples, 1.0) + np.where(known, 1 / np.maximum(noise.samples, 1.0), 0.0)
-    error = np.sqrt(2 * noise.per_independent * samples) * left.variance
-    excess = np.max([np.where(part > _SIGNIFICANT * error, part, 0.0) for part in (by_colour, by_variance)], axis=0)
 
-    tiny = np.finfo(float).tiny
-    return Misfit(
-        relative=np.sqrt(excess / np.maximum(signal.variance, tiny)),
-        ratio=np.sqrt(np.where(known, left.variance / np.maximum(noise.variance + noise.added, tiny), np.nan)),
+def describe_residuals(
+    fit: FitStatistics, decays: Sequence[FreeDecay], noise: Real
+) -> tuple[dict[int, ResidualStatistics], ...]:
+    """Say what is left of each channel in each drop.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    decays
+        What was fitted.
+    noise
+        Of each sensor, m/s², shape (channel,).
+
+    Returns
+    -------
+    tuple of dict
+        For each drop, by the position of the channel; without channels that are left out.
+    """
+    return tuple(
+        {
+            int(channel): _remainder(record[channel], decay.rate, float(noise[channel]))
+            for channel in np.flatnonzero(decay.usable)
+        }
+        for decay, record in zip(decays, fit.residuals, strict=True)
+    )
+
+
+def _remainder(values: Real, rate: float, noise: float) -> ResidualStatistics:
+    count, size = len(values), float(np.sqrt(np.mean(values**2)))
+    lags = np.arange(1, min(max(int(_SPAN * rate), 1), count // 4) + 1)
+    correlations = fftconvolve(values, values[::-1])[count - 1 + lags] / max(count * size**2, np.finfo(float).tiny)
+    portmanteau = count * (count + 2) * float(np.sum(correlations**2 / (count - lags)))
+    largest = int(np.abs(correlations).argmax())
+    return ResidualStatistics(
+        residual=size,
+        over_noise=size / noise,
+        correlation=float(correlations[largest]),
+        lag=float(lags[largest] / rate),
+        colour=float((portmanteau - len(lags)) / np.sqrt(2 * len(lags))),
     )

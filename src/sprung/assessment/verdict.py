@@ -10,8 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from sprung.assessment.drops import DropValidation
-from sprung.assessment.residuals import Misfit
+from sprung.assessment.cross_validation import DropValidation
+from sprung.assessment.model_error import Misfit
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.tables import escaped
@@ -66,7 +66,7 @@ class Verdict:
         return f"<p>Verdict: <strong>{self.state}</strong></p>\n<ul>\n{reasons}</ul>\n"
 
 
-def judge(
+def decide_verdict(
     fit: FitStatistics,
     misfit: Misfit,
     parameters: Mapping[str, Estimate],

@@ -2,14 +2,14 @@
 
 from sprung.checking.check import ChannelReport, Check, DropReport, check, check_prepared
 from sprung.checking.clock import ClockReport
-from sprung.checking.recorded import Recorded
+from sprung.checking.recorded import PlottedRecording
 
 __all__ = [
     "ChannelReport",
     "Check",
     "ClockReport",
     "DropReport",
-    "Recorded",
+    "PlottedRecording",
     "check",
     "check_prepared",
 ]

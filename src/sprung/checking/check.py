@@ -13,12 +13,12 @@ import numpy as np
 
 from sprung.campaign import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document, require_plausible
 from sprung.checking.clock import ClockReport
-from sprung.checking.recorded import Recorded
+from sprung.checking.recorded import PlottedRecording
 from sprung.display import shown
-from sprung.drafting import Draft, draft
+from sprung.drafting import DraftCampaign, draft
 from sprung.errors import Fault, InputError
 from sprung.faults import examine
-from sprung.preprocess import DropObservation, Events, FreeDecay, Prepared, leave_out, prepare
+from sprung.preprocess import DropObservation, Events, FreeDecay, Prepared, exclude_drops, prepare
 from sprung.progress import Progress, silent
 from sprung.vehicle import WHEELS, Sensor, Wheel
 
@@ -158,7 +158,7 @@ class Check:
 
     drops: tuple[DropReport, ...]
     faults: tuple[Fault, ...]
-    recorded: tuple[Recorded, ...] = field(default=(), repr=False)
+    recorded: tuple[PlottedRecording, ...] = field(default=(), repr=False)
     campaign: Campaign | None = field(default=None, repr=False)
     missing: tuple[Missing, ...] = ()
 
@@ -241,7 +241,7 @@ def check(campaign: Campaign | str | os.PathLike[str], *, progress: Progress = s
     except InputError as error:  # what makes identifying impossible is one more thing to be told of here
         found = tuple(Fault("mirrored", one.where, one.found, one.do) for one in error.problems)
         return check_prepared(replace(campaign, faults=(*campaign.faults, *found)), prepare(campaign, progress))
-    return check_prepared(campaign, leave_out(campaign, prepared, undeclared))
+    return check_prepared(campaign, exclude_drops(campaign, prepared, undeclared))
 
 
 def _campaign_at(path: Path, progress: Progress) -> Campaign:
@@ -253,7 +253,7 @@ def _campaign_at(path: Path, progress: Progress) -> Campaign:
     return replace(campaign, faults=(*campaign.faults, *_without_drop(drafted)))
 
 
-def _without_drop(drafted: Draft) -> Iterator[Fault]:
+def _without_drop(drafted: DraftCampaign) -> Iterator[Fault]:
     """Name the recordings in which no drop was found."""
     for file in drafted.files:
         if not file.drops:
@@ -269,12 +269,12 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     used = {decay.file: decay for decay in prepared.decays}
     left_out = {drop.recording.name: faults for drop, faults in prepared.left_out}
     reports = []
-    for short, seen in zip(drop_names(campaign.drops), prepared.seen, strict=True):
+    for short, seen in zip(drop_names(campaign.drops), prepared.observations, strict=True):
         name = seen.recording.name
         decay = used.get(name)
         faults = left_out[name] if decay is None else decay.faults
         reports.append(_report(short, seen, decay, faults, campaign.sensors))
-    recorded = tuple(Recorded.of(seen) for seen in prepared.seen)
+    recorded = tuple(PlottedRecording.of(seen) for seen in prepared.observations)
     of_drops = [fault for decay in prepared.decays for fault in decay.faults]
     of_left_out = [fault for _, faults in prepared.left_out for fault in faults]
     everything = tuple(dict.fromkeys((*campaign.faults, *of_drops, *of_left_out)))  # one may be that of several drops
@@ -308,7 +308,7 @@ def _report(
         faults=tuple(fault.code for fault in faults),
         kind=kind_of(drop.wheels or seen.wheels),
         wheels=drop.wheels,
-        wheels_seen=_fallen(drop, seen) if seen.fell else None,
+        wheels_seen=_fallen(drop, seen) if seen.dropped else None,
         release=events.release,
         landing=events.landing,
         last_lift_off=events.last_lift_off,
@@ -324,7 +324,7 @@ def _report(
 
 
 def _fallen(drop: Drop, seen: DropObservation) -> tuple[Wheel, ...]:
-    return tuple(wheel for wheel in WHEELS if seen.fell.get(wheel, wheel in drop.wheels))
+    return tuple(wheel for wheel in WHEELS if seen.dropped.get(wheel, wheel in drop.wheels))
 
 
 def _channels(

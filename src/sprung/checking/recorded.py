@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.preprocess import DropObservation, Mark
+from sprung.preprocess import DropObservation, MarkedSamples
 
 Real = NDArray[np.float64]
 Drawn = NDArray[np.float32]
@@ -16,7 +16,7 @@ Drawn = NDArray[np.float32]
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Recorded:
+class PlottedRecording:
     """One drop's whole recording, in SI, put right as far as it could be.
 
     Attributes
@@ -34,10 +34,10 @@ class Recorded:
     start: float
     rate: float
     values: Drawn
-    marks: tuple[Mark, ...] = ()
+    marks: tuple[MarkedSamples, ...] = ()
 
     @classmethod
-    def of(cls, seen: DropObservation) -> Recorded:
+    def of(cls, seen: DropObservation) -> PlottedRecording:
         """Take what a recording shows.
 
         Parameters

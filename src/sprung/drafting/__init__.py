@@ -1,12 +1,18 @@
 """A campaign drafted from its recordings: what they tell is written down, what they do not is marked as a gap."""
 
+from sprung.drafting.detected_drop import wheel_score
+from sprung.drafting.detection import Detection, detect_drops, drops_in
 from sprung.drafting.draft import draft
-from sprung.drafting.records import Draft, DraftDrop, DraftFile, DraftSensor
+from sprung.drafting.records import DraftCampaign, DraftDrop, DraftFile, DraftSensor
 
 __all__ = [
-    "Draft",
+    "Detection",
+    "DraftCampaign",
     "DraftDrop",
     "DraftFile",
     "DraftSensor",
+    "detect_drops",
     "draft",
+    "drops_in",
+    "wheel_score",
 ]

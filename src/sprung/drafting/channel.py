@@ -147,7 +147,7 @@ def _unit_of_gravity(level: float) -> str | None:
     return nearest if off[nearest] < _GRAVITY else None
 
 
-def told_apart(channels: Sequence[Channel]) -> tuple[Channel, ...]:
+def disambiguate_units(channels: Sequence[Channel]) -> tuple[Channel, ...]:
     """Tell mg from cm/s², in which gravity is 1000 and 981, by all channels together.
 
     Parameters

@@ -11,8 +11,8 @@ from pathlib import Path
 from sprung.campaign import FILE
 from sprung.drafting.gather import gather
 from sprung.drafting.look import Look, look
-from sprung.drafting.records import Draft
-from sprung.drafting.single import put_together
+from sprung.drafting.records import DraftCampaign
+from sprung.drafting.single_channel import join_single_channel_loggers
 from sprung.drafting.text import campaign_text, missing_in
 from sprung.errors import InputError, Problem
 from sprung.progress import Progress, Step, silent
@@ -24,7 +24,7 @@ _NO_RECORDINGS = frozenset(
 """Endings of what lies about in a folder of recordings, and is passed over without a word."""
 
 
-def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwrite: bool = False) -> Draft:
+def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwrite: bool = False) -> DraftCampaign:
     """Draft a campaign from the recordings in a folder and its subfolders.
 
     Parameters
@@ -68,13 +68,13 @@ def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwr
             looks.append(look(folder, name, tell))
         except InputError as error:
             unreadable[name] = error.problems
-    looks = list(put_together(looks, folder))
+    looks = list(join_single_channel_loggers(looks, folder))
     if not any(one.drops for one in looks):
         raise InputError([*_no_drops(looks), *(problem for problems in unreadable.values() for problem in problems)])
     sensors, drops, still = gather(looks)
     files = [one.file for one in looks]
     held = {one.file.name: {channel.name for channel in one.channels} for one in looks}
-    made = Draft(
+    made = DraftCampaign(
         folder=folder,
         name=folder.absolute().name or "vehicle",
         sensors=sensors,

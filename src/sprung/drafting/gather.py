@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.drafting.channel import Channel
+from sprung.drafting.detected_drop import DetectedDrop, SensorPlace, assign_dropped_wheels, wheel_score
 from sprung.drafting.loggers import called, together
 from sprung.drafting.look import Look
 from sprung.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.drafting.records import DraftDrop, DraftSensor
-from sprung.preprocess import FoundDrop, Place, slower_drops, tell_wheels, wheel_score
+from sprung.preprocess import find_slower_drops
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel
 
@@ -67,9 +68,9 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
     score = wheel_score(drops)
     parts = [_part(name, float(score[i]), drops, i) for i, name in enumerate(names)]
     places, by_files = _places(
-        names, [part for part, _ in parts], tell_wheels(drops, [part for part, _ in parts]), hints
+        names, [part for part, _ in parts], assign_dropped_wheels(drops, [part for part, _ in parts]), hints
     )
-    told = tell_wheels(drops, places)
+    told = assign_dropped_wheels(drops, places)
     scales = _most(looks)
     sensors = tuple(
         _sensor(
@@ -106,7 +107,7 @@ def _with_loads(
         i for i, (drop, told) in enumerate(zip(drops, named, strict=True)) if not told and drop.found.slow is not None
     ]
     motions = [found.at(body) for i in open_ if (found := drops[i].found.slow) is not None]
-    slower = slower_drops([drops[i].found.fell for i in open_], motions) if body else ()
+    slower = find_slower_drops([drops[i].found.dropped_channels for i in open_], motions) if body else ()
     given = list(drops)
     for i, is_slower in zip(open_, slower, strict=False):
         drop = given[i]
@@ -121,14 +122,14 @@ def _with_loads(
     return tuple(given)
 
 
-def _of(drop: FoundDrop, held: Sequence[str], names: Sequence[str]) -> FoundDrop:
+def _of(drop: DetectedDrop, held: Sequence[str], names: Sequence[str]) -> DetectedDrop:
     """Give a drop with the readings of other channels than those it holds, or in another order."""
     channels = [held.index(name) if name in held else None for name in names]
     return replace(drop, seen=drop.seen.at(channels), slow=None if drop.slow is None else drop.slow.at(channels))
 
 
 def _part(
-    name: str, score: float, drops: Sequence[FoundDrop], channel: int
+    name: str, score: float, drops: Sequence[DetectedDrop], channel: int
 ) -> tuple[Literal["body", "wheel"], tuple[str, ...]]:
     """Tell body from wheel by how it moves; by its name only where it never fell."""
     peak = float(np.nanmax([drop.seen.peak[channel] for drop in drops])) / STANDARD_GRAVITY
@@ -145,20 +146,23 @@ def _part(
     return seen, (note,)
 
 
-def _deepest(drops: Sequence[FoundDrop]) -> float:
+def _deepest(drops: Sequence[DetectedDrop]) -> float:
     return max(float(np.nanmax(drop.seen.depth)) for drop in drops) / STANDARD_GRAVITY
 
 
 def _places(
-    names: Sequence[str], parts: Sequence[Place], drops: Sequence[FoundDrop], hints: Sequence[tuple[Wheel, ...]]
-) -> tuple[list[Place], tuple[str, ...]]:
+    names: Sequence[str],
+    parts: Sequence[SensorPlace],
+    drops: Sequence[DetectedDrop],
+    hints: Sequence[tuple[Wheel, ...]],
+) -> tuple[list[SensorPlace], tuple[str, ...]]:
     """Tell the wheels' stations: by the channels' names, or else by which of them fall in files named after wheels."""
-    places: list[Place] = [
+    places: list[SensorPlace] = [
         station_named(name) or part if part == "wheel" else part for name, part in zip(names, parts, strict=True)
     ]
     unknown = [i for i, place in enumerate(places) if place == "wheel"]
     free = [wheel for wheel in WHEELS if wheel not in places]
-    clues = [(set(drop.fell), set(hint)) for drop, hint in zip(drops, hints, strict=True) if hint]
+    clues = [(set(drop.dropped_channels), set(hint)) for drop, hint in zip(drops, hints, strict=True) if hint]
     if not unknown or len(unknown) > len(free) or not clues:
         return places, ()
     scored = sorted(
@@ -200,10 +204,10 @@ def _most(looks: Sequence[Look]) -> dict[str, float]:
 
 def _sensor(
     channel: Channel,
-    place: Place,
+    place: SensorPlace,
     notes: tuple[str, ...],
     scales: Mapping[str, float],
-    drops: Sequence[FoundDrop],
+    drops: Sequence[DetectedDrop],
     index: int,
 ) -> DraftSensor:
     direction, own = channel.direction, list(channel.notes)
@@ -236,7 +240,7 @@ def _sensor(
     )
 
 
-def _corner(drops: Sequence[FoundDrop], index: int, turned: bool) -> Wheel | None:
+def _corner(drops: Sequence[DetectedDrop], index: int, turned: bool) -> Wheel | None:
     """Tell the corner of the body at which a sensor sits, from drops of one end and of one side."""
     depths: dict[str, list[float]] = {key: [] for key in ("f", "r", "l", "R")}
     for drop in drops:
@@ -261,7 +265,7 @@ def _spoken(corner: Wheel) -> str:
 
 def _drop(
     files: tuple[str, ...],
-    drop: FoundDrop,
+    drop: DetectedDrop,
     hint: tuple[Wheel, ...],
     names: Sequence[str],
     one: Look,
@@ -275,8 +279,8 @@ def _drop(
     if not wheels and hint:
         wheels = hint
         notes.append("which wheels fell: by the name of the file")
-        if any(sensor.on != "body" for sensor in sensors) and len(drop.fell) != len(hint):
-            notes.append(f"though {len(drop.fell)} channels show the fall of a wheel")
+        if any(sensor.on != "body" for sensor in sensors) and len(drop.dropped_channels) != len(hint):
+            notes.append(f"though {len(drop.dropped_channels)} channels show the fall of a wheel")
     alone = several == 1 and one.file.end - one.file.start <= _SHORT
     window = None if alone or len(files) > 1 else drop.window
     load = load_named(called(files)) or next((load for load in map(load_named, files) if load is not None), None)

@@ -9,11 +9,12 @@ from dataclasses import replace
 from functools import reduce
 from pathlib import PurePath
 
+from sprung.drafting.detected_drop import DetectedDrop
 from sprung.drafting.look import Look
 from sprung.drafting.names import tokens
-from sprung.preprocess import DropFeatures, FoundDrop
+from sprung.preprocess import DropFeatures
 
-Recorded = tuple[tuple[str, ...], FoundDrop, tuple[str, ...]]
+Recorded = tuple[tuple[str, ...], DetectedDrop, tuple[str, ...]]
 """Files, drop, and the channels whose readings the drop has."""
 
 

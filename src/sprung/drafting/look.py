@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from sprung.drafting.channel import Channel
+from sprung.drafting.detected_drop import DetectedDrop, is_on_wheel
+from sprung.drafting.detection import Detection, detect_drops
 from sprung.drafting.records import DraftFile
 from sprung.drafting.survey import Survey, full_scales, largest, pieces, survey
 from sprung.errors import InputError, Problem
 from sprung.formats import SLOWEST, Table, read_table
-from sprung.preprocess import Found, FoundDrop, find_drops, on_wheels
 from sprung.units import acceleration_factor
 
 _UNITS = ("m/s^2", "g", "mm/s^2", "mg")
@@ -43,7 +44,7 @@ class Look:
 
     file: DraftFile
     channels: tuple[Channel, ...]
-    drops: tuple[FoundDrop, ...]
+    drops: tuple[DetectedDrop, ...]
     full_scale: Mapping[str, float]
     files: tuple[str, ...] = ()
 
@@ -102,18 +103,18 @@ def _refuse(name: str, seen: Survey) -> None:
         )
 
 
-def _found(table: Table, seen: Survey, progress: Callable[[float], None]) -> tuple[Survey, Found]:
+def _found(table: Table, seen: Survey, progress: Callable[[float], None]) -> tuple[Survey, Detection]:
     """Find the drops; where a unit is not known, in one in which wheels fall as wheels do."""
     if all(channel.unit is not None for channel in seen.channels):
         return seen, _drops_of(table, seen, progress)
-    results: list[tuple[bool, int, Survey, Found]] = []
+    results: list[tuple[bool, int, Survey, Detection]] = []
     size = largest(table, seen)
     for unit in _UNITS:
         choice = replace(seen, channels=tuple(replace(channel, assumed=unit) for channel in seen.channels))
         if not _LEAST < size * acceleration_factor(unit) < _MOST:
             continue
         found = _drops_of(table, choice, progress)
-        results.append((bool(on_wheels(found.drops).any()), len(found.drops), choice, found))
+        results.append((bool(is_on_wheel(found.drops).any()), len(found.drops), choice, found))
         if results[-1][0]:
             break
     if not results:
@@ -121,13 +122,13 @@ def _found(table: Table, seen: Survey, progress: Callable[[float], None]) -> tup
     return max(results, key=lambda result: result[:2])[2:]
 
 
-def _drops_of(table: Table, seen: Survey, progress: Callable[[float], None]) -> Found:
+def _drops_of(table: Table, seen: Survey, progress: Callable[[float], None]) -> Detection:
     factors = np.array([channel.factor for channel in seen.channels])
     read = pieces(table, seen, factors)
-    return find_drops(read, seen.rate, start=seen.start, samples=seen.samples, progress=progress)
+    return detect_drops(read, seen.rate, start=seen.start, samples=seen.samples, progress=progress)
 
 
-def _on_clock(drop: FoundDrop, table: Table, seen: Survey) -> FoundDrop:
+def _on_clock(drop: DetectedDrop, table: Table, seen: Survey) -> DetectedDrop:
     """Put a drop's times on a clock that is not quite even."""
     clock = table.clock
     if not isinstance(clock, np.ndarray):

@@ -11,9 +11,10 @@ import numpy as np
 
 from sprung.campaign import FILE, SCHEMA_FILE, kind_of, schema_text
 from sprung.display import shown
+from sprung.drafting.detected_drop import DetectedDrop, SensorPlace
+from sprung.drafting.detection import RejectedEvent
 from sprung.errors import Problem
 from sprung.files import atomic_write
-from sprung.preprocess import FoundDrop, Place, Refusal
 from sprung.vehicle import Wheel
 
 
@@ -47,7 +48,7 @@ class DraftSensor:
     """
 
     channel: str
-    on: Place
+    on: SensorPlace
     corner: Wheel | None
     unit: str | None
     written: str | None
@@ -84,7 +85,7 @@ class DraftDrop:
     window: tuple[float, float] | None
     load: str | None
     wheels: tuple[Wheel, ...]
-    found: FoundDrop
+    found: DetectedDrop
     notes: tuple[str, ...]
     proposed: bool = False
 
@@ -121,14 +122,14 @@ class DraftFile:
     start: float
     end: float
     drops: int
-    refused: tuple[Refusal, ...]
+    refused: tuple[RejectedEvent, ...]
     events: int
     left_out: Mapping[str, str]
 
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Draft:
+class DraftCampaign:
     """A drafted campaign.
 
     Attributes

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from sprung.drafting.channel import Channel, channel_of, told_apart
+from sprung.drafting.channel import Channel, channel_of, disambiguate_units
 from sprung.drafting.names import axis_named
 from sprung.errors import Problem
 from sprung.formats import Table
@@ -93,7 +93,7 @@ def survey(table: Table) -> Survey:
             columns.append(column)
         else:
             left_out[name] = found
-    return Survey(told_apart(channels), tuple(columns), left_out, rate, start, end, samples)
+    return Survey(disambiguate_units(channels), tuple(columns), left_out, rate, start, end, samples)
 
 
 def _spots(table: Table, rate: float) -> tuple[list[int], Real]:

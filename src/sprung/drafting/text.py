@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
 from sprung.campaign import SCHEMA_LINE, gap, gaps_in
-from sprung.drafting.records import Draft, DraftDrop, DraftSensor
+from sprung.drafting.records import DraftCampaign, DraftDrop, DraftSensor
 
 _HEAD = """\
 # Drafted by `sprung new` from the recordings in this folder. Go through it from top to bottom: in place of every text that
@@ -45,7 +45,7 @@ _KEYS = 9
 """Length of the longest usual key of a section, so that the equals signs stand below each other."""
 
 
-def campaign_text(draft: Draft) -> str:
+def campaign_text(draft: DraftCampaign) -> str:
     """Write a campaign file.
 
     Parameters
@@ -139,7 +139,7 @@ def _sensor(sensor: DraftSensor) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _load(name: str, draft: Draft) -> str:
+def _load(name: str, draft: DraftCampaign) -> str:
     own = [drop for drop in draft.drops if drop.load == name]
     why = [_comment("by the names of the recordings")]
     if any(drop.proposed for drop in own):
@@ -167,19 +167,19 @@ def _drop(drop: DraftDrop) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _without_drop(draft: Draft) -> Iterator[str]:
+def _without_drop(draft: DraftCampaign) -> Iterator[str]:
     for file in draft.files:
         if not file.drops:
             why = file.refused[0].why if file.refused else "nothing in it moves"
             yield _comment(f"No drop was found in {file.name}: {why}.")
 
 
-def _unread(draft: Draft) -> Iterator[str]:
+def _unread(draft: DraftCampaign) -> Iterator[str]:
     for name, problems in draft.unreadable.items():
         yield _comment(f"Not read: {name}: {problems[0].found}.")
 
 
-def _left_out(draft: Draft) -> Iterator[str]:
+def _left_out(draft: DraftCampaign) -> Iterator[str]:
     said: dict[tuple[str, str], None] = {}
     for file in draft.files:
         said |= dict.fromkeys(file.left_out.items())

@@ -74,7 +74,7 @@ def fit_from_contact(
         shifts, states = _shifts(best, models, found)
         if not any(shifts):
             break
-        moved = tuple(decay.moved(shift) for decay, shift in zip(best, shifts, strict=True))
+        moved = tuple(decay.shifted(shift) for decay, shift in zip(best, shifts, strict=True))
         next_one = again(moved, found, states).after(found)
         if np.any(next_one.noise > _NO_WORSE * found.noise):
             break

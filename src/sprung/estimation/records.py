@@ -24,7 +24,7 @@ _LARGEST = 400
 
 
 class FlightInformation(NamedTuple):
-    """What flights tell of the vehicle before each record of a run, as `FromFlight` of one does.
+    """What flights tell of the vehicle before each record of a run, as `FlightLikelihood` of one does.
 
     Attributes
     ----------

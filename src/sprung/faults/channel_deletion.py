@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.faults.fault_scores import FaultScore
-from sprung.faults.channel import CHANNEL_HYPOTHESES, ChannelHypothesis, Numbers, flat
+from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
+from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.consistency import NEGLIGIBLE, score_faults_of
 from sprung.faults.correction import mask_channel
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.faults.residual_table import ResidualTable

@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
 from sprung.faults.isolation import CandidateFit
-from sprung.preprocess import SILENT, FreeDecay
+from sprung.preprocess import FreeDecay, is_ac_coupled
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Rows, Sensor
 
@@ -108,9 +108,9 @@ class ChannelPrediction:
 
     def gravity_allows(self, gain: float) -> bool:
         """Whether the reading at rest agrees with a gain: a sensor that shows gravity shows it with the same gain."""
-        levels = [decay.rest.level[self.channel] for decay in self.decays]
+        levels = [decay.rest.level[self.channel] for decay in self.decays if not is_ac_coupled(decay)[self.channel]]
         level = float(np.median(levels)) if levels else np.nan
-        if not abs(level) > SILENT:  # AC-coupled, zeroed at rest, or no rest was recorded
+        if not np.isfinite(level):  # AC-coupled, zeroed at rest, or no rest was recorded
             return True
         return abs(gain - level / STANDARD_GRAVITY) < _OFFSET * max(abs(gain), 1.0)
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign, Recording
-from sprung.preprocess import FreeDecay, by_corner
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -125,13 +125,17 @@ def with_corners(decay: FreeDecay, corners: Mapping[int, float]) -> FreeDecay:
     corners
         By channel, Hz.
     """
-    integral = by_corner(decay)
-    stated = np.array(decay.undone or np.zeros(len(decay.values)))
+    integral = differentiate_by_cutoff(decay)
+    stated = np.array(decay.high_pass or np.zeros(len(decay.values)))
     wanted = stated.copy()
     wanted[list(corners)] = list(corners.values())
     values = decay.values + 2 * np.pi * (wanted - stated)[:, None] * integral
     return replace(
-        decay, values=values, earlier=decay.earlier[:, :0], undone=tuple(wanted.tolist()), velocity=integral[:, 0]
+        decay,
+        values=values,
+        earlier=decay.earlier[:, :0],
+        high_pass=tuple(wanted.tolist()),
+        initial_velocity=integral[:, 0],
     )
 
 

@@ -12,7 +12,7 @@ from scipy.stats import f as fisher
 from sprung.errors import Fault
 from sprung.estimation import FitResult
 from sprung.faults.residual_table import reference_noise, residual_table
-from sprung.preprocess import FreeDecay, rounding
+from sprung.preprocess import FreeDecay, quantisation_variance
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -57,7 +57,7 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
     ):
         return ()
     slow, fast = slowness(decays, optimum)
-    fast = np.maximum(fast, rounding(decays))
+    fast = np.maximum(fast, quantisation_variance(decays))
     drops = np.sum([one.usable for one in decays], axis=0)
     most = _MORE * fisher.isf(_CHANCE, np.maximum(_SLOWEST * drops, 1), np.maximum((_LAST - _FIRST) * drops, 1))
     walks = (slow > most * fast) & [sensor.high_pass is None for sensor in sensors]

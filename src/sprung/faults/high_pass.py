@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.errors import Fault
 from sprung.estimation import FitResult, LikelihoodAt, identifiable_subspace
 from sprung.faults.fault_scores import FaultScore
-from sprung.preprocess import FreeDecay, by_corner
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff
 from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import Sensor
 
@@ -154,7 +154,7 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
     place, point, problem = optimum.point.place, optimum.point, optimum.problem
     if not isinstance(place, LikelihoodAt):
         return None
-    changes = [by_corner(decay) for decay in decays]
+    changes = [differentiate_by_cutoff(decay) for decay in decays]
     open_ = np.flatnonzero(np.any([change.any(axis=1) for change in changes], axis=0)).tolist()
     if not open_:
         return None

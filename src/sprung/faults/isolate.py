@@ -7,19 +7,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sprung.faults.campaign import (
-    exchanged_channels,
-    exchanged_loads,
-    high_passes,
-    known_quantities,
-    load_frames,
-    load_position,
-    twist,
-)
+from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, twist
+from sprung.faults.campaign.known_quantity import known_quantities
+from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.channel_deletion import ChannelDeletion
 from sprung.faults.consistency import SHARE, SIGNIFICANT
 from sprung.faults.correction import Correction, exclude_drops, mask_channel
-from sprung.faults.drop import DropDeletion
+from sprung.faults.drop import DROP_HYPOTHESES
+from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
 from sprung.faults.isolation import FaultIsolation
 from sprung.progress import Progress, Step, silent

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment import moments, sensor_noise
 from sprung.estimation import FitResult
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
 
 Real = NDArray[np.float64]
 
@@ -120,7 +119,7 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
     left = optimum.residuals
-    noise = sensor_noise(decays, moments(left))
+    noise = estimate_sensor_noise(decays, pool_moments(left))
     few = noise.samples < _FEW
     second_difference = (
         np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import FILE
+from sprung.drafting import detect_drops
 from sprung.errors import Problems
 from sprung.formats import Table, read_table
 from sprung.modal_survey.identified import LoadModes, modal_analysis
-from sprung.preprocess import find_drops
 from sprung.progress import Progress, counted, silent
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
 
@@ -235,7 +235,7 @@ def _decays(values: Real, rate: float, time: Real) -> list[tuple[int, int | None
     """Give first and last sample of each free decay: after each drop's landing, or without a drop from the largest reading."""
     # Files that name no unit are as often in g as in m/s².
     for factor in (1.0, STANDARD_GRAVITY):
-        if found := find_drops([(0, factor * values)], rate, start=float(time[0])).drops:
+        if found := detect_drops([(0, factor * values)], rate, start=float(time[0])).drops:
             break
     else:
         return [(_begin(values), None)]

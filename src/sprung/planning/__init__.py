@@ -1,22 +1,22 @@
 """What a test would tell before it is done: Cramér-Rao bounds of alternatives, and which of them to take next."""
 
-from sprung.planning.bound import Bound, two_figures
-from sprung.planning.done import campaign_of_fit, subject_of_fit
-from sprung.planning.plan import NextStep, Plan, PlanRow, draw_up, draw_up_rejected, next_step
-from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
+from sprung.planning.completed import completed_test, setup_from_fit
+from sprung.planning.cramer_rao import Bound, two_figures
+from sprung.planning.plan import NextStep, Plan, PlanRow, next_step, tabulate_alternatives, tabulate_rejected
+from sprung.planning.setup import MeasurementSetup, PlannedDrop, PlannedTest
 
 __all__ = [
     "Bound",
+    "MeasurementSetup",
     "NextStep",
     "Plan",
     "PlanRow",
     "PlannedDrop",
     "PlannedTest",
-    "Subject",
-    "campaign_of_fit",
-    "draw_up",
-    "draw_up_rejected",
+    "completed_test",
     "next_step",
-    "subject_of_fit",
+    "setup_from_fit",
+    "tabulate_alternatives",
+    "tabulate_rejected",
     "two_figures",
 ]

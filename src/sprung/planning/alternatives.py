@@ -10,8 +10,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.planning.bound import Bound
-from sprung.planning.subject import PlannedDrop, PlannedTest
+from sprung.planning.cramer_rao import Bound
+from sprung.planning.setup import PlannedDrop, PlannedTest
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from sprung.display import shown
 from sprung.errors import InputError, SprungError
 from sprung.planning.alternatives import Alternative, Cost, alternatives, bound
-from sprung.planning.bound import Bound, two_figures
-from sprung.planning.subject import PlannedTest
+from sprung.planning.cramer_rao import Bound, two_figures
+from sprung.planning.setup import PlannedTest
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -129,7 +129,7 @@ class Plan:
         return {**head, **told, "unidentifiable": silent}
 
 
-def draw_up(test: PlannedTest, wanted: float = 1.0) -> Plan:
+def tabulate_alternatives(test: PlannedTest, wanted: float = 1.0) -> Plan:
     """Draw up the table of alternatives to a test.
 
     Parameters
@@ -161,7 +161,7 @@ def draw_up(test: PlannedTest, wanted: float = 1.0) -> Plan:
     )
 
 
-def draw_up_rejected(
+def tabulate_rejected(
     vehicle: str, wanted: float, noise: Mapping[str, float], rate: float, reasons: Sequence[str]
 ) -> Plan:
     """Return a plan that promises nothing: every bound would be one of a vehicle that is not known.

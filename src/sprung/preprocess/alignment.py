@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import CLOCK_STD, Recording, merged
 from sprung.errors import Fault
-from sprung.preprocess.release import find_release
+from sprung.preprocess.release import detect_release
 
 _STANDS_OUT = 8.0
 """Peak over noise from which one logger's release is believed: others saw it too, so that it need not be so clear."""
@@ -25,7 +25,7 @@ _TOLD = 0.005
 """s to which such a logger has told it."""
 
 
-def align(recording: Recording) -> Recording:
+def align_loggers(recording: Recording) -> Recording:
     """Put what several loggers recorded on one clock, to within some milliseconds: the fit finds the rest.
 
     Parameters
@@ -67,7 +67,7 @@ def align(recording: Recording) -> Recording:
     return replace(together, clocks=clocks, faults=(*recording.faults, *faults))
 
 
-def lively(recording: Recording) -> NDArray[np.bool_]:
+def active_channels(recording: Recording) -> NDArray[np.bool_]:
     """Say which channels tell the release: of several loggers those that showed it at once; shape (channel,)."""
     told = np.ones(len(recording.channels), dtype=bool)
     for clock in recording.clocks:
@@ -87,7 +87,7 @@ def _release(part: Recording) -> _Told | None:
     if not part.usable.any():
         return None
     values = part.values[part.usable]
-    found = find_release(values, part.rate, _STANDS_OUT)
+    found = detect_release(values, part.rate, _STANDS_OUT)
     if found is None:
         return None
     peak = np.abs(values - found.rest.level[:, None]).max()

@@ -33,7 +33,7 @@ _NOISY, _COARSE = 6.0, 0.05
 may stay on one step for some samples, and a finer signal never does."""
 
 
-def with_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recording:
+def check_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recording:
     """Give a recording that no file was read for the full scale of its channels, and take back one that cannot be.
 
     Parameters
@@ -69,7 +69,7 @@ def with_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recordin
     return replace(recording, full_scale=kept, faults=(*recording.faults, *faults))
 
 
-def clipped_samples(recording: Recording) -> NDArray[np.bool_]:
+def detect_clipping(recording: Recording) -> NDArray[np.bool_]:
     """Find the clipped samples.
 
     Parameters

@@ -19,7 +19,7 @@ FITTED = "in the fitted vehicle every tyre is down for good"
 
 
 @dataclass(frozen=True, eq=False)
-class FromFlight:
+class FlightLikelihood:
     """What the samples between the release and the landing tell of the vehicle, whatever the clocks that they were taken by.
 
     Attributes
@@ -30,8 +30,8 @@ class FromFlight:
         Their values for which the rest holds, SI, shape (parameter,).
     gradient, information
         Of the log-likelihood of these samples by the parameters, there; shapes (parameter,), (parameter, parameter).
-    left
-        Sum of squares that is left there, over the variance of the noise.
+    chi_square
+        Sum of squared residuals there over the variance of the noise.
     samples
         How many there are.
     """
@@ -40,13 +40,13 @@ class FromFlight:
     at: NDArray[np.float64]
     gradient: NDArray[np.float64]
     information: NDArray[np.float64]
-    left: float
+    chi_square: float
     samples: int
 
-    def missed(self, values: NDArray[np.float64]) -> float:
-        """Give what is left for a vehicle near by, from its parameters, shape (parameter,)."""
+    def chi_square_at(self, values: NDArray[np.float64]) -> float:
+        """Return the sum of squared residuals over the noise variance for other parameter values, shape (parameter,)."""
         step = values - self.at
-        return float(self.left + step @ (self.information @ step - 2 * self.gradient))
+        return float(self.chi_square + step @ (self.information @ step - 2 * self.gradient))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +78,9 @@ class FreeDecay:
         For several loggers how their clocks stand to this one; without any, all channels have one clock.
     rate_ratios
         Samples that were taken of each channel for each one that is here; empty where it is 1 for all of them.
-    undone
+    high_pass
         Corner of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
-    velocity
+    initial_velocity
         What each sensor read above its rest level, integrated from rest to the first of the `earlier` samples, m/s,
         as far as the high-pass that was undone remembers it; shape (channel,).
     events
@@ -99,11 +99,11 @@ class FreeDecay:
     rest: StaticBaseline
     faults: tuple[Fault, ...] = ()
     clocks: tuple[LoggerClock, ...] = ()
-    undone: tuple[float, ...] = ()
+    high_pass: tuple[float, ...] = ()
     rate_ratios: tuple[float, ...] = ()
-    velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    initial_velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     events: Events = field(default_factory=Events)
-    flight: FromFlight | None = None
+    flight: FlightLikelihood | None = None
 
     @cached_property
     def usable(self) -> NDArray[np.bool_]:
@@ -122,7 +122,7 @@ class FreeDecay:
         """Samples in each channel."""
         return int(self.values.shape[1])
 
-    def moved(self, samples: int) -> FreeDecay:
+    def shifted(self, samples: int) -> FreeDecay:
         """Give the decay with its start moved.
 
         Parameters
@@ -142,7 +142,7 @@ class FreeDecay:
         return self.start + (self.samples - 1) / self.rate
 
 
-def rounding(decays: Sequence[FreeDecay]) -> NDArray[np.float64]:
+def quantisation_variance(decays: Sequence[FreeDecay]) -> NDArray[np.float64]:
     """Give the mean square of rounding to each channel's resolution at its worst.
 
     Where a slow signal stays between two steps, the error is not spread evenly over a step but nearer to its ends.

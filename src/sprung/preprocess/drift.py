@@ -46,7 +46,7 @@ class _Stretch(NamedTuple):
     to_slope: float
 
 
-def steady(recording: Recording, release: Release | None, sensors: Sequence[Sensor]) -> Recording:
+def remove_drift(recording: Recording, release: Release | None, sensors: Sequence[Sensor]) -> Recording:
     """Take off the drift of sensors that feel gravity, and name what is none but looks like it.
 
     Parameters

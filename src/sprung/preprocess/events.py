@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import DropTest, Recording
-from sprung.preprocess.release import StaticBaseline, no_rest
+from sprung.preprocess.release import StaticBaseline, unknown_baseline
 from sprung.vehicle import Wheel
 
 
@@ -44,7 +44,7 @@ class Events:
     why_fit: str = ""
 
 
-class Mark(NamedTuple):
+class MarkedSamples(NamedTuple):
     """Samples of a channel with which something is the matter.
 
     Attributes
@@ -78,7 +78,7 @@ class DropObservation:
         What the sensors read before it.
     marks
         Samples with which something is the matter.
-    fell
+    dropped
         For each wheel with a sensor, as far as the release shows it: whether it lost its block.
     wheels
         Those that were dropped: as stated, or as far as the release contradicts that, as it shows.
@@ -87,13 +87,13 @@ class DropObservation:
     drop: DropTest
     recording: Recording
     release: int | None = None
-    rest: StaticBaseline = field(default_factory=lambda: no_rest(0))
-    marks: tuple[Mark, ...] = ()
-    fell: Mapping[Wheel, bool] = field(default_factory=dict)
+    rest: StaticBaseline = field(default_factory=lambda: unknown_baseline(0))
+    marks: tuple[MarkedSamples, ...] = ()
+    dropped: Mapping[Wheel, bool] = field(default_factory=dict)
     wheels: tuple[Wheel, ...] = ()
 
 
-def marked(code: str, samples: NDArray[np.bool_]) -> tuple[Mark, ...]:
+def marked(code: str, samples: NDArray[np.bool_]) -> tuple[MarkedSamples, ...]:
     """Give a mark for each channel that has any.
 
     Parameters
@@ -104,7 +104,7 @@ def marked(code: str, samples: NDArray[np.bool_]) -> tuple[Mark, ...]:
         Shape (channel, time).
     """
     some = np.flatnonzero(np.asarray(samples.any(axis=1))).tolist()
-    return tuple(Mark(code, channel, np.flatnonzero(samples[channel])) for channel in some)
+    return tuple(MarkedSamples(code, channel, np.flatnonzero(samples[channel])) for channel in some)
 
 
 def filled_in(before: Recording, after: Recording) -> NDArray[np.bool_]:

@@ -9,7 +9,7 @@ from sprung.errors import Fault
 from sprung.preprocess.prepare import Prepared
 
 
-def leave_out(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
+def exclude_drops(campaign: Campaign, prepared: Prepared, left_out: Mapping[str, Fault]) -> Prepared:
     """Leave drops out of what was prepared.
 
     Parameters

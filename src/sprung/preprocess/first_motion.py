@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
+from sprung.preprocess.dropped_wheels import detect_dropped_wheels
 from sprung.preprocess.prepare import Prepared
 from sprung.preprocess.release import Release
-from sprung.preprocess.stated import wheels_that_fell
 from sprung.vehicle import Wheel
 
 Real = NDArray[np.float64]
@@ -51,7 +51,7 @@ class FirstMotion:
         Positions of the body's sensors in the campaign.
     velocities
         What each gains in the first hundredths of a second, m/s, upward, shape (drop, channel); NaN where nothing tells.
-    fell
+    dropped
         For each drop the wheels' channels that show a fall, by the station where they are said to be: whether they fell.
     rises
         Whether what moves most, among the body's sensors or among those of the wheels, begins to rise after the releases
@@ -60,7 +60,7 @@ class FirstMotion:
 
     channels: tuple[int, ...]
     velocities: Real
-    fell: tuple[Mapping[Wheel, bool], ...]
+    dropped: tuple[Mapping[Wheel, bool], ...]
     rises: bool
 
     @classmethod
@@ -71,18 +71,18 @@ class FirstMotion:
         gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
         rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
         fell = tuple(
-            wheels_that_fell(
+            detect_dropped_wheels(
                 seen.recording, None if seen.release is None else Release(seen.release, seen.rest), campaign.sensors
             )
-            for seen in prepared.seen
+            for seen in prepared.observations
         )
         return cls(body, gained[:, list(body)], fell, rises)
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:
     """Give the velocity that each channel gains in some time after the release, m/s, shape (drop, channel)."""
-    gained = np.full((len(prepared.seen), channels), np.nan)
-    for drop, seen in enumerate(prepared.seen):
+    gained = np.full((len(prepared.observations), channels), np.nan)
+    for drop, seen in enumerate(prepared.observations):
         if seen.release is not None:
             count = max(round(span * seen.recording.rate), 2)
             first = seen.recording.values[:, seen.release : seen.release + count]
@@ -96,7 +96,7 @@ def _rises(gained: Real) -> bool:
     return bool((known * np.abs(known)).sum() > 0)
 
 
-def moves_as_stated(
+def is_first_motion_consistent(
     motion: FirstMotion, places: Sequence[tuple[float, float]], fallen: Sequence[Sequence[Wheel]], wheelbase: float
 ) -> bool | None:
     """Say whether the body moves first as bodies do, with its sensors at some places and some wheels fallen.

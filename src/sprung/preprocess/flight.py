@@ -41,7 +41,7 @@ class Flight(NamedTuple):
     since: float
 
 
-def flights(decays: Sequence[FreeDecay], seen: Sequence[DropObservation]) -> list[Flight | None]:
+def find_flights(decays: Sequence[FreeDecay], seen: Sequence[DropObservation]) -> list[Flight | None]:
     """Give drops from just after their releases on.
 
     Parameters

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Recording
 from sprung.errors import Fault
-from sprung.preprocess.coupling import SILENT
+from sprung.preprocess.high_pass import SILENT
 from sprung.preprocess.release import Release, StaticBaseline
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
 from sprung.vehicle import Sensor
@@ -57,7 +57,7 @@ class SignAndUnitCorrection(NamedTuple):
     sensors: tuple[Sensor, ...]
 
 
-def put_right(
+def check_gravity(
     recordings: Sequence[Recording], releases: Sequence[Release | None], sensors: Sequence[Sensor]
 ) -> SignAndUnitCorrection:
     """Put right the channels whose rest shows beyond doubt that their sign, unit or coupling is another one.

@@ -69,7 +69,7 @@ class Landing(NamedTuple):
     lifted: int | None = None
 
 
-def suspension_jump(
+def weigh_corners(
     values: Real, rate: float, release: Release, sensors: Sequence[Sensor], dropped: Sequence[Wheel]
 ) -> dict[Wheel, float]:
     """Weigh the corners by the release.
@@ -101,7 +101,7 @@ def suspension_jump(
     return jumps
 
 
-def find_decay(
+def detect_landing(
     values: Real,
     rate: float,
     release: Release,
@@ -123,7 +123,7 @@ def find_decay(
     sensors
         One for each channel.
     suspension
-        Static suspension force over unsprung mass, m/s², by wheel, as `suspension_jump` weighs it.
+        Static suspension force over unsprung mass, m/s², by wheel, as `weigh_corners` weighs it.
     dropped
         The wheels that fell.
     wheelbase

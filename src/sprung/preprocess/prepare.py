@@ -12,17 +12,22 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Campaign, Drop, DropTest, Recording, drop_names
 from sprung.errors import Fault
-from sprung.preprocess.alignment import align, lively
-from sprung.preprocess.clipping import clipped_samples, with_full_scale
-from sprung.preprocess.coupling import direct_coupled, velocities
+from sprung.preprocess.alignment import active_channels, align_loggers
+from sprung.preprocess.clipping import check_full_scale, detect_clipping
 from sprung.preprocess.decay import FreeDecay
-from sprung.preprocess.drift import steady
+from sprung.preprocess.drift import remove_drift
+from sprung.preprocess.dropped_wheels import (
+    detect_dropped_wheels,
+    dropped_wheels_fault,
+    find_contradicted_drops,
+    merge_dropped_wheels,
+)
 from sprung.preprocess.events import DropObservation, Events, filled_in, marked
-from sprung.preprocess.gravity import put_right
-from sprung.preprocess.landing import Landing, find_decay, suspension_jump
-from sprung.preprocess.release import Release, StaticBaseline, find_release, no_rest
-from sprung.preprocess.spikes import without_spikes
-from sprung.preprocess.stated import as_seen, contradicted, other_wheels, wheels_that_fell
+from sprung.preprocess.gravity import check_gravity
+from sprung.preprocess.high_pass import integrate_from_rest, undo_high_pass
+from sprung.preprocess.landing import Landing, detect_landing, weigh_corners
+from sprung.preprocess.release import Release, StaticBaseline, detect_release, unknown_baseline
+from sprung.preprocess.spikes import remove_spikes
 from sprung.progress import Progress, Step, counted, silent
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Wheel
@@ -64,13 +69,13 @@ class Prepared(NamedTuple):
         One for each drop that can be used, in the campaign's order.
     left_out
         For the other drops why.
-    seen
+    observations
         For every drop of the campaign, in its order, what its recording shows.
     """
 
     decays: tuple[FreeDecay, ...]
     left_out: tuple[tuple[DropTest, tuple[Fault, ...]], ...]
-    seen: tuple[DropObservation, ...] = ()
+    observations: tuple[DropObservation, ...] = ()
 
 
 def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
@@ -89,32 +94,32 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     """
     stated = campaign.drops
     smooth = [
-        without_spikes(one) for one in counted(progress, "looking for spikes in the recordings", campaign.recordings)
+        remove_spikes(one) for one in counted(progress, "looking for spikes in the recordings", campaign.recordings)
     ]
     spiked = [filled_in(*pair) for pair in zip(campaign.recordings, smooth, strict=True)]
-    whole = _alive([align(recording) for recording in smooth], campaign.drops)
+    whole = _alive([align_loggers(recording) for recording in smooth], campaign.drops)
     progress(Step("looking for wrong signs, units and saturation in the recordings"))
-    scaled = [with_full_scale(recording, campaign.sensors) for recording in whole]
-    righted = put_right(scaled, [_release(recording) for recording in scaled], campaign.sensors)
+    scaled = [check_full_scale(recording, campaign.sensors) for recording in whole]
+    righted = check_gravity(scaled, [_release(recording) for recording in scaled], campaign.sensors)
     releases, sensors = righted.releases, righted.sensors
     campaign = replace(campaign, sensors=sensors)
     # A sensor clips before its drift is taken off or its high-pass undone: what it read then is not within its range.
-    clipped = [clipped_samples(recording) for recording in righted.recordings]
+    clipped = [detect_clipping(recording) for recording in righted.recordings]
     recordings = [
-        recording if release is None else direct_coupled(steady(recording, release, sensors), release, sensors)
+        recording if release is None else undo_high_pass(remove_drift(recording, release, sensors), release, sensors)
         for recording, release in zip(
             counted(progress, "removing drift from the recordings", righted.recordings), releases, strict=True
         )
     ]
-    fell = [wheels_that_fell(one, release, sensors) for one, release in zip(recordings, releases, strict=True)]
+    fell = [detect_dropped_wheels(one, release, sensors) for one, release in zip(recordings, releases, strict=True)]
     drops = list(campaign.drops)
-    for i in contradicted(campaign.drops, fell):
-        fault = other_wheels(campaign.drops[i], fell[i], recordings[i].name)
+    for i in find_contradicted_drops(campaign.drops, fell):
+        fault = dropped_wheels_fault(campaign.drops[i], fell[i], recordings[i].name)
         recordings[i] = replace(recordings[i], faults=(*recordings[i].faults, fault))
-        drops[i] = replace(campaign.drops[i], wheels=as_seen(campaign.drops[i], fell[i]))
+        drops[i] = replace(campaign.drops[i], wheels=merge_dropped_wheels(campaign.drops[i], fell[i]))
     for i, drop in enumerate(drops):
         if not drop.wheels:
-            drops[i] = replace(drop, wheels=as_seen(drop, fell[i]))
+            drops[i] = replace(drop, wheels=merge_dropped_wheels(drop, fell[i]))
     campaign = replace(campaign, drops=tuple(drops)).with_recordings(recordings)
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
@@ -131,9 +136,9 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
             drop=as_stated,
             recording=drop.recording,
             release=None if release is None else release.sample,
-            rest=no_rest(len(sensors)) if release is None else release.rest,
+            rest=unknown_baseline(len(sensors)) if release is None else release.rest,
             marks=(*marked("clipped", over), *marked("spike", off)),
-            fell=told,
+            dropped=told,
             wheels=drop.wheels,
         )
         for as_stated, drop, release, over, off, told in zip(
@@ -177,8 +182,8 @@ def _alive(recordings: Sequence[Recording], drops: Sequence[Drop]) -> tuple[Reco
 def _release(recording: Recording) -> Release | None:
     if not recording.usable.any():
         return None
-    watched = lively(recording)[recording.usable]
-    found = find_release(recording.values[recording.usable], recording.rate, watched=watched)
+    watched = active_channels(recording)[recording.usable]
+    found = detect_release(recording.values[recording.usable], recording.rate, watched=watched)
     if found is None:
         return None
     level = np.full(len(recording.channels), np.nan)
@@ -194,7 +199,7 @@ def _weigh_corners(campaign: Campaign, releases: list[Release | None]) -> dict[W
     for drop, release in zip(campaign.drops, releases, strict=True):
         if release is not None:
             recording = drop.recording
-            found = suspension_jump(recording.values, recording.rate, release, campaign.sensors, drop.wheels)
+            found = weigh_corners(recording.values, recording.rate, release, campaign.sensors, drop.wheels)
             for station, jump in found.items():
                 if np.isfinite(jump):
                     jumps[station].append(jump)
@@ -234,7 +239,7 @@ def _decay(
             f"{max(length, 0.0):.2f} s of free vibration, at least {SHORTEST} s are needed; the drop is left out",
             "Record for at least three seconds after the release.",
         )
-    undone = tuple((release and sensor.high_pass) or 0.0 for sensor in campaign.sensors)
+    high_pass = tuple((release and sensor.high_pass) or 0.0 for sensor in campaign.sensors)
     return FreeDecay(
         name=name,
         file=recording.name,
@@ -243,12 +248,12 @@ def _decay(
         earlier=recording.values[:, landing.possible : first],
         rate=recording.rate,
         start=recording.start + first / recording.rate,
-        rest=no_rest(len(recording.channels)) if release is None else release.rest,
+        rest=unknown_baseline(len(recording.channels)) if release is None else release.rest,
         faults=tuple(faults),
         clocks=recording.clocks,
         rate_ratios=recording.rate_ratios,
-        undone=undone,
-        velocity=velocities(recording, release, undone, landing.possible),
+        high_pass=high_pass,
+        initial_velocity=integrate_from_rest(recording, release, high_pass, landing.possible),
         events=_events(recording, release, landing, first, why_end),
     )
 
@@ -309,7 +314,9 @@ def _landing(
     possible = release.sample + int(fall * recording.rate)
     guessed = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
-    found = find_decay(recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase)
+    found = detect_landing(
+        recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
+    )
     if found is None:
         placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.on == "body")
         found = Landing(possible, guessed, _ALLOWED_FOR if placed else _NOT_PLACED)

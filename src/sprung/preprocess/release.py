@@ -61,7 +61,7 @@ class Release(NamedTuple):
     rest: StaticBaseline
 
 
-def no_rest(channels: int) -> StaticBaseline:
+def unknown_baseline(channels: int) -> StaticBaseline:
     """Give the rest of a recording that shows none.
 
     Parameters
@@ -77,7 +77,7 @@ def no_rest(channels: int) -> StaticBaseline:
     return StaticBaseline(np.full(channels, np.nan), np.empty((channels, 0)), np.full(channels, np.nan))
 
 
-def find_release(
+def detect_release(
     values: Real, rate: float, stands_out: float = STANDS_OUT, watched: NDArray[np.bool_] | None = None
 ) -> Release | None:
     """Find the release.

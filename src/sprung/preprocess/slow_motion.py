@@ -127,7 +127,7 @@ class SlowMotion:
         return (period, growth) if by_mass else (float("nan"), float("nan"))
 
 
-def slower_drops(kinds: Sequence[Hashable], motions: Sequence[SlowMotion]) -> tuple[bool | None, ...]:
+def find_slower_drops(kinds: Sequence[Hashable], motions: Sequence[SlowMotion]) -> tuple[bool | None, ...]:
     """Tell two groups of drops that swing at different rates.
 
     Parameters

@@ -41,7 +41,7 @@ _ROUNDS = 4
 """How often it is looked again: the second of two spikes stands off once the first is filled in."""
 
 
-def without_spikes(recording: Recording) -> Recording:
+def remove_spikes(recording: Recording) -> Recording:
     """Fill in the spikes of a recording.
 
     Parameters
@@ -55,7 +55,7 @@ def without_spikes(recording: Recording) -> Recording:
         With a fault for each channel that had spikes; one that had too many is left out.
     """
     if recording.parts:
-        parts = tuple(without_spikes(part) for part in recording.parts)
+        parts = tuple(remove_spikes(part) for part in recording.parts)
         new = [
             fault for part, old in zip(parts, recording.parts, strict=True) for fault in part.faults[len(old.faults) :]
         ]

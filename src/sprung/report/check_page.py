@@ -11,7 +11,7 @@ from typing import NamedTuple
 from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
 
-from sprung.checking import Check, DropReport, Recorded
+from sprung.checking import Check, DropReport, PlottedRecording
 from sprung.errors import Fault
 from sprung.report.check import channels_table, drops_table, missing_items
 from sprung.report.palette import DARK, LIGHT
@@ -133,7 +133,7 @@ def _facts(check: Check) -> Iterator[tuple[str, str]]:
 
 
 def _drops(check: Check) -> Iterator[DropPart]:
-    recordings: list[Recorded | None] = [*check.recorded, *([None] * (len(check.drops) - len(check.recorded)))]
+    recordings: list[PlottedRecording | None] = [*check.recorded, *([None] * (len(check.drops) - len(check.recorded)))]
     for number, (drop, recorded) in enumerate(zip(check.drops, recordings, strict=True), 1):
         found = [] if recorded is None else [whole_picture(drop, recorded), near_picture(drop, recorded)]
         yield DropPart(

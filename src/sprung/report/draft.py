@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.drafting import Draft
+from sprung.drafting import DraftCampaign
 from sprung.report.layout import hanging, table
 
 _TOLD = 5
 """Events that are no drops which are told one by one."""
 
 
-def draft_view(draft: Draft) -> RenderableType:
+def draft_view(draft: DraftCampaign) -> RenderableType:
     """Show what a draft found and what it lacks.
 
     Parameters
@@ -37,7 +37,7 @@ def draft_view(draft: Draft) -> RenderableType:
     return Group(*parts)
 
 
-def _drops(draft: Draft) -> RenderableType:
+def _drops(draft: DraftCampaign) -> RenderableType:
     headers = ("recording", "release s", "until s", "length s", "load", "wheels", "drop")
     rows = [
         [
@@ -55,7 +55,7 @@ def _drops(draft: Draft) -> RenderableType:
     return table(f"{draft.name}: {count} found", headers, rows, headers[1:4], ("until s", "length s", "drop"))
 
 
-def _sensors(draft: Draft) -> RenderableType:
+def _sensors(draft: DraftCampaign) -> RenderableType:
     headers = ("channel", "on", "unit", "points", "coupling", "clips at")
     rows = [
         [
@@ -71,7 +71,7 @@ def _sensors(draft: Draft) -> RenderableType:
     return table("Sensors", headers, rows, ("clips at",), ("coupling", "clips at"))
 
 
-def _others(draft: Draft) -> Iterator[str]:
+def _others(draft: DraftCampaign) -> Iterator[str]:
     """Tell of everything that did not become part of the campaign."""
     for file in draft.files:
         if not file.drops and not file.refused:

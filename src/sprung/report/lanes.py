@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.checking import DropReport, Recorded
+from sprung.checking import DropReport, PlottedRecording
 from sprung.report.layout import figures
 
 Real = NDArray[np.float64]
@@ -64,7 +64,7 @@ class Lane:
             yield float(value), f"{value:g}".replace("-", "\N{MINUS SIGN}")
 
 
-def lanes_of(drop: DropReport, recorded: Recorded) -> list[Lane]:
+def lanes_of(drop: DropReport, recorded: PlottedRecording) -> list[Lane]:
     """Choose what to draw of each channel.
 
     Parameters
@@ -89,7 +89,7 @@ def lanes_of(drop: DropReport, recorded: Recorded) -> list[Lane]:
     ]
 
 
-def _lane(drop: DropReport, channel: int, recorded: Recorded) -> Lane:
+def _lane(drop: DropReport, channel: int, recorded: PlottedRecording) -> Lane:
     """Draw one channel, at a scale of its own."""
     report, values = drop.channels[channel], recorded.values[channel].astype(float)
     marks = [mark for mark in recorded.marks if mark.channel == channel]

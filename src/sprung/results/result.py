@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import Field
 
 from sprung.assessment import DropValidation, Verdict
-from sprung.checking import DropReport, Recorded
+from sprung.checking import DropReport, PlottedRecording
 from sprung.display import shown
 from sprung.errors import Fault
 from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
@@ -120,7 +120,7 @@ class Result:
     trace: tuple[TraceStep, ...] = ()
     omissions: tuple[str, ...] = ()
     series: Mapping[str, Series] = field(default_factory=dict, repr=False)
-    recordings: Mapping[str, Recorded] = field(default_factory=dict, repr=False)
+    recordings: Mapping[str, PlottedRecording] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
         for mapping in ("parameters", "derived", "modes", "validation", "series", "recordings"):

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.checking import Recorded
+from sprung.checking import PlottedRecording
 from sprung.display import shown
-from sprung.preprocess import Mark
+from sprung.preprocess import MarkedSamples
 
 Real = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -56,7 +56,7 @@ def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
     return buffer.getvalue()
 
 
-def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, Recorded]) -> dict[str, NDArray[Any]]:
+def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, PlottedRecording]) -> dict[str, NDArray[Any]]:
     """Return all series as arrays by name: ``drop/what``.
 
     Parameters
@@ -75,7 +75,7 @@ def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, Recorded]) 
     return arrays
 
 
-def series_from(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, Series], dict[str, Recorded]]:
+def series_from(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, Series], dict[str, PlottedRecording]]:
     """Return series and recordings by drop name, from the arrays that `arrays_of` makes.
 
     Parameters
@@ -106,7 +106,7 @@ def series_from(arrays: Mapping[str, NDArray[Any]]) -> tuple[dict[str, Series], 
     for drop, own in by_drop.items():
         if "clock" in own:
             start, rate = own["clock"].tolist()
-            recordings[drop] = Recorded(start, rate, own["recording"], tuple(_marks(own)))
+            recordings[drop] = PlottedRecording(start, rate, own["recording"], tuple(_marks(own)))
         if "channels" in own:
             channels = tuple(own["channels"].tolist())
             series[drop] = Series(channels, *(own[what] for what in _FITTED[1:]))
@@ -124,7 +124,7 @@ def _unknown_or_missing(arrays: Iterable[str]) -> set[str]:
     return present ^ complete
 
 
-def _marks(arrays: Mapping[str, NDArray[Any]]) -> Iterator[Mark]:
+def _marks(arrays: Mapping[str, NDArray[Any]]) -> Iterator[MarkedSamples]:
     for what, (channels, samples) in ((what, array) for what, array in arrays.items() if what.startswith(_MARKS)):
         code = what.removeprefix(_MARKS).partition(" ")[2]
-        yield Mark(code, int(channels[0]), samples.astype(np.int64))
+        yield MarkedSamples(code, int(channels[0]), samples.astype(np.int64))

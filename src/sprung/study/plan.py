@@ -16,7 +16,7 @@ import numpy as np
 from sprung.analysis import AnalysisOptions, analyse, result_of, to_design
 from sprung.campaign import Campaign, CampaignSource, Drop, Given, ModelChoice, campaign_from, read_vehicle
 from sprung.errors import InputError, Problems
-from sprung.planning import Plan, PlannedDrop, PlannedTest, Subject, draw_up, draw_up_rejected
+from sprung.planning import MeasurementSetup, Plan, PlannedDrop, PlannedTest, tabulate_alternatives, tabulate_rejected
 from sprung.progress import Progress, Step, silent
 from sprung.selection import choose_structure
 from sprung.simulation import DEFAULT_HEIGHT, Setup
@@ -138,10 +138,12 @@ def plan(
         setup.model.tracks or ("separate" if vehicle.tracks == "separate" else None),
         own if setup.model.extras is None else None,
     )
-    subject = Subject(vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration)
+    subject = MeasurementSetup(
+        vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration
+    )
     loaded = {load.name: load for load in setup.loads}
     planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
-    return draw_up(PlannedTest(subject, planned), wanted)
+    return tabulate_alternatives(PlannedTest(subject, planned), wanted)
 
 
 def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
@@ -150,9 +152,9 @@ def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan
     result = result_of(run)
     if result.verdict.state == "reject":
         rate = float(np.median([decay.rate for decay in run.decays]))
-        return draw_up_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
+        return tabulate_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
     progress(Step("computing the bounds of the alternatives"))
-    return draw_up(to_design(run), wanted)
+    return tabulate_alternatives(to_design(run), wanted)
 
 
 def _describes_vehicle(path: str | os.PathLike[str]) -> bool:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sprung.errors import Fault
-from sprung.faults.fault_scores import FaultScore
 from sprung.faults.consistency import score_faults_of
 from sprung.faults.correction import Correction, move_load_item
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolation import CandidateFit, FaultIsolation
 

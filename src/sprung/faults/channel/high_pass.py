@@ -9,12 +9,12 @@ from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import state_corners
 from sprung.faults.high_pass import corner_fault, stated_corner
-from sprung.preprocess import coupled
+from sprung.preprocess import is_ac_coupled
 
 
 def high_pass(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Estimate the corner frequency, where the reading at rest admits a high-pass."""
-    if not all(coupled(decay)[prediction.channel] for decay in prediction.decays):
+    if not all(is_ac_coupled(decay)[prediction.channel] for decay in prediction.decays):
         return
     estimate = prediction.corner()
 

@@ -17,7 +17,7 @@ from sprung.faults.statements.mirrored_positions import mirrored_positions
 from sprung.faults.statements.other_origin import other_origin
 from sprung.faults.statements.undeclared_load import undeclared_loads
 from sprung.faults.statements.upside_down import upside_down
-from sprung.preprocess import FirstMotion, Prepared, as_seen, moves_as_stated, prepare
+from sprung.preprocess import FirstMotion, Prepared, is_first_motion_consistent, merge_dropped_wheels, prepare
 from sprung.progress import Progress, silent
 
 _HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
@@ -122,10 +122,10 @@ def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> boo
     if motion.rises:
         return False
     places = [sensor.position[:2] for sensor in campaign.sensors if sensor.on == "body" and sensor.position is not None]
-    seen = [as_seen(*pair) for pair in zip(campaign.drops, motion.fell, strict=True)]
+    seen = [merge_dropped_wheels(*pair) for pair in zip(campaign.drops, motion.dropped, strict=True)]
     if any(set(drop.wheels) != set(wheels) for drop, wheels in zip(campaign.drops, seen, strict=True)):
         return False
-    return moves_as_stated(motion, places, seen, wheelbase)
+    return is_first_motion_consistent(motion, places, seen, wheelbase)
 
 
 def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool:
@@ -134,7 +134,10 @@ def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float)
     Such a drop is named and corrected on its own. A mistake with several sensors that agree among themselves is supposed only
     where several drops show it.
     """
-    seen = [as_seen(*pair) for pair in zip(campaign.drops, FirstMotion.of(campaign, prepared).fell, strict=True)]
+    seen = [
+        merge_dropped_wheels(*pair)
+        for pair in zip(campaign.drops, FirstMotion.of(campaign, prepared).dropped, strict=True)
+    ]
     pairs = list(zip(campaign.drops, seen, strict=True))
     if sum(set(drop.wheels) != set(wheels) for drop, wheels in pairs) != 1:
         return False

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
-from sprung.preprocess import Prepared, SlowMotion, slower_drops
+from sprung.preprocess import Prepared, SlowMotion, find_slower_drops
 
 
 def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]:
@@ -27,7 +27,7 @@ def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]
     body = [i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body"]
     rows = [
         (seen.drop.load, seen.wheels, seen.recording.name, seen)
-        for seen in prepared.seen
+        for seen in prepared.observations
         if seen.release is not None and seen.recording.name in usable
     ]
     spoilt: dict[str, Fault] = {}
@@ -39,7 +39,7 @@ def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]
             SlowMotion.of(seen.recording.values[body], seen.recording.rate, seen.release or 0, seen.rest.level[body])
             for _, _, seen in own
         ]
-        slower = slower_drops([kind for kind, *_ in own], motions)
+        slower = find_slower_drops([kind for kind, *_ in own], motions)
         if not slower:
             continue
         names = [

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
-from sprung.faults.changes import scaled
+from sprung.faults.correction import scale_channel
 from sprung.faults.statements.cause import CommonCause, told
 
 _GROUPS = (("all sensors", "body wheel"), ("all body sensors", "body"), ("all wheel sensors", "wheel"))
@@ -19,7 +19,7 @@ def upside_down(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]: 
         which = [i for i, one in enumerate(campaign.sensors) if ("body" if one.on == "body" else "wheel") in of.split()]
         changed = campaign
         for channel in which:
-            changed = scaled(channel, -1.0)(changed)
+            changed = scale_channel(channel, -1.0).of_campaign(changed)
         channels = tuple(campaign.sensors[i].channel for i in which)
         if not channels:
             continue

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from sprung.checking import DropReport, Recorded
+from sprung.checking import DropReport, PlottedRecording
 from sprung.report.axis import Axis
 from sprung.report.lanes import Lane, lanes_of
 from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
@@ -15,7 +15,7 @@ _LANE = 0.42
 """Height of a lane."""
 
 
-def whole_picture(drop: DropReport, recorded: Recorded) -> Picture:
+def whole_picture(drop: DropReport, recorded: PlottedRecording) -> Picture:
     """Show a recording from its first sample to its last.
 
     Parameters
@@ -34,7 +34,7 @@ def whole_picture(drop: DropReport, recorded: Recorded) -> Picture:
     return _picture("The whole recording", drop, recorded, (float(time[0]), float(time[-1])), False)
 
 
-def near_picture(drop: DropReport, recorded: Recorded) -> Picture | None:
+def near_picture(drop: DropReport, recorded: PlottedRecording) -> Picture | None:
     """Show what happened around release and landing.
 
     Parameters
@@ -58,7 +58,9 @@ def near_picture(drop: DropReport, recorded: Recorded) -> Picture | None:
     return _picture("Release and landing", drop, recorded, limits, True)
 
 
-def _picture(title: str, drop: DropReport, recorded: Recorded, limits: tuple[float, float], near: bool) -> Picture:
+def _picture(
+    title: str, drop: DropReport, recorded: PlottedRecording, limits: tuple[float, float], near: bool
+) -> Picture:
     time = recorded.time
     inside = (time >= limits[0]) & (time <= limits[1])
     events = tuple(_events(drop, labelled=near))

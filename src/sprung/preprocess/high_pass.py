@@ -25,7 +25,7 @@ SILENT = 0.5
 """m/s² at rest below which a sensor does not feel gravity, whatever its unit."""
 
 
-def direct_coupled(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> Recording:
+def undo_high_pass(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> Recording:
     """Give the recording as sensors without a high-pass would have made it.
 
     Parameters
@@ -52,7 +52,7 @@ def direct_coupled(recording: Recording, release: Release, sensors: Sequence[Sen
     return replace(recording, values=values, history=(*recording.history, *history)) if history else recording
 
 
-def velocities(recording: Recording, release: Release | None, undone: Sequence[float], sample: int) -> Real:
+def integrate_from_rest(recording: Recording, release: Release | None, high_pass: Sequence[float], sample: int) -> Real:
     """Integrate what each sensor read from rest up to a sample, forgetting as the high-pass does that was undone.
 
     Parameters
@@ -61,7 +61,7 @@ def velocities(recording: Recording, release: Release | None, undone: Sequence[f
         With every high-pass undone.
     release
         The release in it; without one nothing is integrated.
-    undone
+    high_pass
         Corner of the high-pass that was undone in each channel, Hz, 0 where none was.
     sample
         Up to which.
@@ -74,10 +74,10 @@ def velocities(recording: Recording, release: Release | None, undone: Sequence[f
     if release is None:
         return np.zeros(len(recording.values))
     moved = recording.values[:, : sample + 1] - release.rest.level[:, None]
-    return _integrated(moved, recording.rate, undone, np.zeros(len(moved)))[:, -1]
+    return _integrated(moved, recording.rate, high_pass, np.zeros(len(moved)))[:, -1]
 
 
-def by_corner(decay: FreeDecay) -> Real:
+def differentiate_by_cutoff(decay: FreeDecay) -> Real:
     """Give by how much a decay's samples change with the corner of their high-pass.
 
     Parameters
@@ -90,16 +90,18 @@ def by_corner(decay: FreeDecay) -> Real:
     ndarray
         m/s² per rad/s, shape (channel, time); 0 in channels that are left out or feel gravity, which no high-pass lets through.
     """
-    through = coupled(decay)
+    through = is_ac_coupled(decay)
     if not through.any():
         return np.zeros_like(decay.values)
     level = np.where(through, decay.rest.level, np.nan)
     whole = np.concatenate([decay.earlier, decay.values], axis=1) - level[:, None]
-    changes = _integrated(np.nan_to_num(whole), decay.rate, decay.undone or np.zeros(len(whole)), decay.velocity)
+    changes = _integrated(
+        np.nan_to_num(whole), decay.rate, decay.high_pass or np.zeros(len(whole)), decay.initial_velocity
+    )
     return np.where(np.isnan(whole).any(axis=1)[:, None], 0.0, changes)[:, decay.earlier.shape[1] :]
 
 
-def coupled(decay: FreeDecay) -> NDArray[np.bool_]:
+def is_ac_coupled(decay: FreeDecay) -> NDArray[np.bool_]:
     """Say of which channels the rest admits that they are AC-coupled.
 
     Parameters

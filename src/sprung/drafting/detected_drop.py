@@ -7,83 +7,29 @@ is told from all drops together, for a wheel that stands moves no more than the 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import kind_of
-from sprung.preprocess.slow_motion import SlowMotion
+from sprung.preprocess import DropFeatures, SlowMotion, detect_dropped_channels
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel
 
 Real = NDArray[np.float64]
 
-Place = Literal["body", "wheel", "fl", "fr", "rl", "rr"]
+SensorPlace = Literal["body", "wheel", "fl", "fr", "rl", "rr"]
 """Where a channel's sensor sits: on the body, on some wheel, or on that wheel."""
-
-SPEED = 0.2
-"""m/s downward that a wheel gains at least: blocks of 0.02 m give 0.3."""
 
 _A_WHEEL = 400.0
 """Of depth times peak over the square root of the swing, from which a channel sits on a wheel: a body stays below 290 in
 any drop from 0.02 to 0.15 m of vehicles from 400 to 16000 kg, and a wheel that falls stays above 530."""
 
-_AT_ONCE, _DEEP = 0.0067, 0.2
-"""Parts of what the wheel that fell most has of depth times onset, and of depth, from which another fell too. Over 1650 drops
-of 150 vehicles one that stood has 0.005 and 0.153 at most; one let go together with it has 0.009 at least, a later one more
-than 0.2 of the depth as a rule."""
-
 
 @dataclass(frozen=True, eq=False)
-class DropFeatures:
-    """What the channels read during a drop, shape (channel,) each, NaN where a recording has gaps.
-
-    Attributes
-    ----------
-    level, noise
-        At rest, and the standard deviation of it, m/s².
-    onset
-        Directly after the release, off the rest and in the channel's own direction, m/s².
-    depth
-        How far below rest during the fall, m/s².
-    speed
-        Gained downward, m/s.
-    peak
-        The largest off the rest within half a second of the release, m/s².
-    swing
-        The largest of the slow swinging that follows, m/s².
-    """
-
-    level: Real
-    noise: Real
-    onset: Real
-    depth: Real
-    speed: Real
-    peak: Real
-    swing: Real
-
-    def at(self, channels: Sequence[int | None]) -> DropFeatures:
-        """Give the readings of other channels, or in another order.
-
-        Parameters
-        ----------
-        channels
-            Index of each in these readings; None for one that they do not have.
-        """
-        index = np.array([-1 if channel is None else channel for channel in channels], dtype=int)
-        columns = {field.name: np.append(getattr(self, field.name), np.nan)[index] for field in fields(self)}
-        return DropFeatures(**columns)
-
-    def beside(self, other: DropFeatures) -> DropFeatures:
-        """Give these readings and after them those of other channels."""
-        both = {field.name: np.append(getattr(self, field.name), getattr(other, field.name)) for field in fields(self)}
-        return DropFeatures(**both)
-
-
-@dataclass(frozen=True, eq=False)
-class FoundDrop:
+class DetectedDrop:
     """One drop in a recording; times are s on the recording's own clock.
 
     Attributes
@@ -100,7 +46,7 @@ class FoundDrop:
         Why it ends there, in words.
     seen
         What the channels read.
-    fell
+    dropped_channels
         Channels that show the fall of a wheel, by their index.
     wheels
         Which wheels fell; none where the channels' wheels are not known.
@@ -116,7 +62,7 @@ class FoundDrop:
     end: float
     ended: str
     seen: DropFeatures
-    fell: tuple[int, ...] = ()
+    dropped_channels: tuple[int, ...] = ()
     wheels: tuple[Wheel, ...] = ()
     slow: SlowMotion | None = None
 
@@ -130,7 +76,7 @@ class FoundDrop:
         """What such a drop is called; None where the wheels are not known."""
         return kind_of(self.wheels) if self.wheels else None
 
-    def on_clock(self, clock: Callable[[float], float]) -> FoundDrop:
+    def on_clock(self, clock: Callable[[float], float]) -> DetectedDrop:
         """Give the same with its times on another clock.
 
         Parameters
@@ -157,10 +103,14 @@ class FoundDrop:
         """
         seen = self.seen
         names = channels or [f"channel {i + 1}" for i in range(seen.level.size)]
-        shown = list(self.fell) or np.flatnonzero(seen.depth >= 0.5 * np.nanmax(seen.depth)).tolist()
+        shown = list(self.dropped_channels) or np.flatnonzero(seen.depth >= 0.5 * np.nanmax(seen.depth)).tolist()
         depth, speed = np.nanmax(seen.depth[shown]) / STANDARD_GRAVITY, np.nanmax(seen.speed[shown])
         s = "" if len(shown) > 1 else "s"
-        whose = "as only a wheel can that its spring pushes down" if self.fell else "as a body whose springs slacken"
+        whose = (
+            "as only a wheel can that its spring pushes down"
+            if self.dropped_channels
+            else "as a body whose springs slacken"
+        )
         fall = f"read{s} {depth:.1f} g below rest and gain{s} {speed:.2g} m/s downward, {whose}"
         return (
             f"everything rests for {self.release - self.begin:.2f} s",
@@ -170,7 +120,7 @@ class FoundDrop:
         )
 
 
-def wheel_score(drops: Sequence[FoundDrop]) -> Real:
+def wheel_score(drops: Sequence[DetectedDrop]) -> Real:
     """Give how much each channel moves like a wheel; one that fell in none of the drops does not.
 
     Parameters
@@ -192,7 +142,7 @@ def wheel_score(drops: Sequence[FoundDrop]) -> Real:
     return np.asarray(depth * peak / np.sqrt(np.maximum(swing, 0.02)) / _A_WHEEL)
 
 
-def on_wheels(drops: Sequence[FoundDrop], places: Sequence[Place | None] | None = None) -> NDArray[np.bool_]:
+def is_on_wheel(drops: Sequence[DetectedDrop], places: Sequence[SensorPlace | None] | None = None) -> NDArray[np.bool_]:
     """Say which channels sit on wheels: those that are known to, and of the unknown ones those that move like it.
 
     Parameters
@@ -214,7 +164,9 @@ def on_wheels(drops: Sequence[FoundDrop], places: Sequence[Place | None] | None 
     return seen
 
 
-def tell_wheels(drops: Sequence[FoundDrop], places: Sequence[Place | None] | None = None) -> tuple[FoundDrop, ...]:
+def assign_dropped_wheels(
+    drops: Sequence[DetectedDrop], places: Sequence[SensorPlace | None] | None = None
+) -> tuple[DetectedDrop, ...]:
     """Tell which wheels fell, from all drops that the same channels recorded.
 
     Parameters
@@ -227,35 +179,16 @@ def tell_wheels(drops: Sequence[FoundDrop], places: Sequence[Place | None] | Non
     Returns
     -------
     tuple of FoundDrop
-        The same with `fell` and `wheels` told anew.
+        The same with `dropped_channels` and `wheels` told anew.
     """
-    sit = on_wheels(drops, places)
+    sit = is_on_wheel(drops, places)
     return tuple(_told(drop, sit, places or (None,) * sit.size) for drop in drops)
 
 
-def channels_that_fell(seen: DropFeatures, sit: NDArray[np.bool_]) -> tuple[int, ...]:
-    """Say which channels show the fall of a wheel; none where no wheel with a sensor fell.
-
-    Parameters
-    ----------
-    seen
-        What the channels read during the drop.
-    sit
-        Which of them sit on wheels, shape (channel,).
-    """
-    depth, speed = (np.where(sit, np.nan_to_num(each), 0.0) for each in (seen.depth, seen.speed))
-    over = np.abs(np.nan_to_num(seen.level)) < STANDARD_GRAVITY / 2  # an AC-coupled sensor may point down
-    over &= np.nan_to_num(seen.onset) > 0
-    at_once = depth * np.maximum(np.nan_to_num(np.where(over, seen.onset, -seen.onset)), 0.0)
-    falls = (depth > _DEEP * depth.max()) | (at_once > _AT_ONCE * at_once.max())
-    any_fell = bool(((depth > STANDARD_GRAVITY) & (speed > SPEED)).any())
-    return tuple(np.flatnonzero(falls & sit).tolist()) if any_fell else ()
-
-
-def _told(drop: FoundDrop, sit: NDArray[np.bool_], places: Sequence[Place | None]) -> FoundDrop:
-    fell = channels_that_fell(drop.seen, sit)
+def _told(drop: DetectedDrop, sit: NDArray[np.bool_], places: Sequence[SensorPlace | None]) -> DetectedDrop:
+    fell = detect_dropped_channels(drop.seen, sit)
     stations = {places[i] for i in fell}
     wheels = tuple(wheel for wheel in WHEELS if wheel in stations) if stations <= set(WHEELS) else ()
     if not wheels and len(fell) == sit.sum() == len(WHEELS):
         wheels = WHEELS  # whichever is which, all of them fell
-    return replace(drop, fell=fell, wheels=wheels)
+    return replace(drop, dropped_channels=fell, wheels=wheels)

@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 import sprung
-from sprung.assessment import moments, sensor_noise
 from sprung.campaign import Campaign
-from sprung.preprocess import FreeDecay, prepare
+from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments, prepare
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import TABLE_1_CAR
 
@@ -47,8 +46,8 @@ def test_the_variance_of_coloured_noise_is_found_in_short_rests(decays: tuple[Fr
     found = []
     for _ in range(40):
         own = [rested(one, process((8, RESTED), rho, random)) for one in decays]
-        left = moments(process((len(decays), 8, COUNT), rho, random))
-        found.append(sensor_noise(own, left))
+        left = pool_moments(process((len(decays), 8, COUNT), rho, random))
+        found.append(estimate_sensor_noise(own, left))
     # Of neighbours correlated by rho as many samples make one independent variance (Bartlett 1946).
     worth = (1 + rho**2) / (1 - rho**2)
     assert np.mean([one.per_independent for one in found]) == pytest.approx(worth, rel=0.1)
@@ -61,7 +60,7 @@ def test_a_quiet_rest_does_not_take_the_colour_of_what_moves(decays: tuple[FreeD
     """Residuals of a wrong model are coloured; sensors that are white at rest are so in motion."""
     random = np.random.default_rng(4)
     own = [rested(one, random.standard_normal((8, RESTED))) for one in decays]
-    found = sensor_noise(own, moments(5 * process((len(decays), 8, COUNT), 0.99, random)))
+    found = estimate_sensor_noise(own, pool_moments(5 * process((len(decays), 8, COUNT), 0.99, random)))
     assert np.all(found.per_independent < 1.2)
     assert found.variance == pytest.approx(np.ones(8), abs=0.3)
 
@@ -78,4 +77,4 @@ def test_steps_are_known_though_a_high_pass_was_undone() -> None:
     campaign = rounded(replace(clean.with_recordings(centred), sensors=sensors), step)
     for decay in prepare(campaign).decays:
         assert decay.resolution == pytest.approx(np.full(8, step))
-        assert decay.undone == (0.1,) * 8
+        assert decay.high_pass == (0.1,) * 8

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment.bodies import MOTIONS, BodyMotion
-from sprung.assessment.whiteness import Remainder, noise_of_sensors, remainders
+from sprung.assessment.body_motion import MOTIONS, BodyMotion
+from sprung.assessment.residuals import ResidualStatistics, describe_residuals, estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitResult, FitStatistics, Prediction, predictions
 from sprung.preprocess import FreeDecay
@@ -65,11 +65,11 @@ class DropValidation:
     predicted_residual: float | None
     unexpected: float
     apart: float | None
-    whiteness: Mapping[str, Remainder] = field(default_factory=dict)
+    whiteness: Mapping[str, ResidualStatistics] = field(default_factory=dict)
     over_noise: Mapping[str, float | None] = field(default_factory=dict)
 
 
-def validate_drops(
+def cross_validate_drops(
     optimum: FitResult,
     fit: FitStatistics,
     decays: Sequence[FreeDecay],
@@ -100,9 +100,9 @@ def validate_drops(
     weights, found = optimum.weights, {}
     # Coloured noise tells less; that drops disagree is what is to be seen here.
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
-    noise = noise_of_sensors(fit, decays)
+    noise = estimate_noise_level(fit, decays)
     free = 2 * len(coordinates(fit.names))  # a drop's initial state takes up as many samples of noise
-    of_drops = zip(decays, motions, predicted, fit.residual, remainders(fit, decays, noise), strict=True)
+    of_drops = zip(decays, motions, predicted, fit.residual, describe_residuals(fit, decays, noise), strict=True)
     for decay, motion, foretold, residual, left in of_drops:
         values = np.nan_to_num(decay.values)
         energy = max(float(values.var(axis=1) @ weights) * decay.samples, np.finfo(float).tiny)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimation import Coordinates, Likelihood, PriorsAndConstraints
-from sprung.preprocess import FreeDecay, no_rest
+from sprung.preprocess import FreeDecay, unknown_baseline
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     LOAD_MASS,
@@ -62,7 +62,7 @@ class PlannedDrop(NamedTuple):
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Subject:
+class MeasurementSetup:
     """A vehicle to test, what is known of it beforehand, and how it will be measured.
 
     Attributes
@@ -199,7 +199,7 @@ class Subject:
             earlier=np.zeros((len(rows), 0)),
             rate=rate,
             start=first / rate,
-            rest=no_rest(len(rows)),
+            rest=unknown_baseline(len(rows)),
         )
 
 
@@ -218,7 +218,7 @@ class PlannedTest:
         What they have told already, if they are done: information, dimensionless, shape (direction, direction).
     """
 
-    subject: Subject
+    subject: MeasurementSetup
     drops: tuple[PlannedDrop, ...]
     recorded: Real | None = field(default=None, repr=False)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from days import DISTURBANCES, Day, Disturbance, day, disturbed
-from sprung.preprocess import Found, drops_in, find_drops, wheel_score
+from sprung.drafting import Detection, detect_drops, drops_in, wheel_score
 from sprung.simulation import simulate
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Vehicle, Wheel
 from strategies import make_vehicle
@@ -39,10 +39,10 @@ def some_vehicle(random: np.random.Generator) -> Vehicle:
     )
 
 
-def in_pieces(one: Day, length: int, known: bool) -> Found:
+def in_pieces(one: Day, length: int, known: bool) -> Detection:
     values = one.values
     pieces = ((first, values[:, first : first + length]) for first in range(0, values.shape[1], length))
-    return find_drops(pieces, one.rate, [sensor.on for sensor in one.sensors] if known else None)
+    return detect_drops(pieces, one.rate, [sensor.on for sensor in one.sensors] if known else None)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -62,7 +62,7 @@ def test_all_drops_of_a_random_day_are_found_and_none_is_invented(seed: int) -> 
     found = in_pieces(one, int(random.integers(1000, 20000)), known)
     assert [drop.release for drop in found.drops] == pytest.approx(one.releases, abs=max(0.012, 2.5 / rate))
     for drop, wheels in zip(found.drops, one.wheels, strict=True):
-        assert {one.sensors[channel].on for channel in drop.fell} == set(wheels)
+        assert {one.sensors[channel].on for channel in drop.dropped_channels} == set(wheels)
         assert not known or drop.wheels == tuple(wheel for wheel in WHEELS if wheel in wheels)
         assert drop.begin < drop.release < drop.landing < drop.faded <= drop.end
 
@@ -70,17 +70,17 @@ def test_all_drops_of_a_random_day_are_found_and_none_is_invented(seed: int) -> 
 @pytest.mark.parametrize("what", DISTURBANCES)
 def test_nothing_else_is_taken_for_a_drop(what: Disturbance) -> None:
     random = np.random.default_rng(DISTURBANCES.index(what))
-    on_wheels = np.repeat([False, True], 4)
-    happened = [disturbed(what, random, 500.0, on_wheels, (4.0, 6.0)) for _ in range(12)]
+    is_on_wheel = np.repeat([False, True], 4)
+    happened = [disturbed(what, random, 500.0, is_on_wheel, (4.0, 6.0)) for _ in range(12)]
     values = np.concatenate(happened, axis=1)
-    found = find_drops([(0, values + 9.8 + 0.02 * random.standard_normal(values.shape))], 500.0)
+    found = detect_drops([(0, values + 9.8 + 0.02 * random.standard_normal(values.shape))], 500.0)
     assert not found.drops
     assert all(refusal.why for refusal in found.refused)
 
 
 def test_where_pieces_are_cut_does_not_matter() -> None:
     one = day(TABLE_1_CAR, (BOUNCE, FRONT, REAR), np.random.default_rng(3), rate=200.0)
-    whole = find_drops([(0, one.values)], one.rate)
+    whole = detect_drops([(0, one.values)], one.rate)
     for length in (37, 999, 4096, 12345):
         cut = in_pieces(one, length, known=False)
         assert [drop.window for drop in cut.drops] == [drop.window for drop in whole.drops]
@@ -93,7 +93,7 @@ def test_memory_does_not_grow_with_the_length() -> None:
     peaks = []
     for days in (2, 20):
         tracemalloc.start()
-        found = find_drops(((i * length, one.values) for i in range(days)), one.rate)
+        found = detect_drops(((i * length, one.values) for i in range(days)), one.rate)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
         assert len(found.drops) == days
@@ -114,7 +114,7 @@ def test_wheels_and_kind_of_the_papers_drops(vehicle: Vehicle, height: float) ->
         assert (found.wheels, found.kind) == (drop.wheels, kind)
         assert found.release == pytest.approx(0.4, abs=1.5 / recording.rate)
         (anonymous,) = drops_in(recording.values, recording.rate, start=100.0)
-        assert {campaign.sensors[channel].on for channel in anonymous.fell} == set(drop.wheels)
+        assert {campaign.sensors[channel].on for channel in anonymous.dropped_channels} == set(drop.wheels)
         assert anonymous.kind == ("bounce" if kind == "bounce" else None)
         assert anonymous.release == pytest.approx(100.4, abs=1.5 / recording.rate)
 
@@ -132,9 +132,9 @@ def test_wheels_are_told_from_the_body_by_how_they_move() -> None:
 def test_a_drop_shows_without_sensors_on_wheels() -> None:
     one = day(TABLE_1_CAR, (BOUNCE, FRONT, LEFT), np.random.default_rng(5))
     body = [i for i, sensor in enumerate(one.sensors) if sensor.on == "body"]
-    found = find_drops([(0, one.values[body])], one.rate, ["body"] * 4)
+    found = detect_drops([(0, one.values[body])], one.rate, ["body"] * 4)
     assert [drop.release for drop in found.drops] == pytest.approx(one.releases, abs=0.01)
-    assert all(drop.fell == () and drop.wheels == () and drop.kind is None for drop in found.drops)
+    assert all(drop.dropped_channels == () and drop.wheels == () and drop.kind is None for drop in found.drops)
 
 
 def test_the_use_ends_before_the_next_disturbance() -> None:
@@ -162,7 +162,7 @@ def test_gaps_and_channels_without_samples_do_no_harm() -> None:
     values = one.values.copy()
     values[0] = np.nan
     values[:, ::97] = np.nan
-    found = find_drops([(0, values)], one.rate)
+    found = detect_drops([(0, values)], one.rate)
     assert [drop.release for drop in found.drops] == pytest.approx(one.releases, abs=0.01)
     assert np.isnan(found.drops[0].seen.level[0])
 
@@ -181,11 +181,11 @@ def test_progress_ends_at_one() -> None:
     one = day(TABLE_1_CAR, (BOUNCE,), np.random.default_rng(10), rate=200.0)
     told: list[float] = []
     pieces = ((first, one.values[:, first : first + 5000]) for first in range(0, one.values.shape[1], 5000))
-    find_drops(pieces, one.rate, samples=one.values.shape[1], progress=told.append)
+    detect_drops(pieces, one.rate, samples=one.values.shape[1], progress=told.append)
     assert told == sorted(told)
     assert told[-1] == 1.0
 
 
 def test_nothing_in_a_recording_of_nothing() -> None:
     assert drops_in(np.full((4, 5000), 9.81), 500.0) == ()
-    assert find_drops([], 500.0) == Found(())
+    assert detect_drops([], 500.0) == Detection(())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sprung.assessment.sliding import follow_mode
+from sprung.assessment.mode_tracking import follow_mode
 from sprung.vehicle import Vehicle
 from sprung.vibration import Mode, compute_modes
 

@@ -14,9 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from sprung.preprocess.fallen import SPEED, DropFeatures
-from sprung.preprocess.falls import IMPACT, RING, RING_TO, look_at
-from sprung.preprocess.release import Release, find_release
+from sprung.preprocess import IMPACT, RING, RING_TO, SPEED, DropFeatures, Release, detect_release, look_at
 from sprung.units import STANDARD_GRAVITY
 
 Real = NDArray[np.float64]
@@ -97,7 +95,7 @@ class Fall:
     ended: str
 
 
-def judge(values: Real, rate: float, event: int, wheels: NDArray[np.bool_] | None) -> Fall | str:
+def classify_event(values: Real, rate: float, event: int, wheels: NDArray[np.bool_] | None) -> Fall | str:
     """Say whether an event is a drop.
 
     Parameters
@@ -123,7 +121,7 @@ def judge(values: Real, rate: float, event: int, wheels: NDArray[np.bool_] | Non
     if not whole.any():
         return "every channel has gaps here"
     values = _bridged(values, whole & (missing > 0))
-    found = find_release(values[whole, begin:end], rate)
+    found = detect_release(values[whole, begin:end], rate)
     if found is None or begin + found.sample > event + int(IMPACT * rate):
         return "nothing rests before it, so it is no release"
     release = begin + found.sample

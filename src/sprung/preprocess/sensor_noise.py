@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.preprocess import FreeDecay, rounding
+from sprung.preprocess.decay import FreeDecay, quantisation_variance
 
 Real = NDArray[np.float64]
 
@@ -71,7 +71,7 @@ class SensorNoise(NamedTuple):
     per_independent: Real
 
 
-def moments(records: Iterable[Real]) -> Moments:
+def pool_moments(records: Iterable[Real]) -> Moments:
     """Pool variance and covariance of neighbouring samples over records, by channel; NaN channels count nothing.
 
     Parameters
@@ -93,7 +93,7 @@ def moments(records: Iterable[Real]) -> Moments:
     return Moments(variance / count, neighbour / count, samples)
 
 
-def sensor_noise(decays: Sequence[FreeDecay], left: Moments) -> SensorNoise:
+def estimate_sensor_noise(decays: Sequence[FreeDecay], left: Moments) -> SensorNoise:
     """Tell what the sensors read without any motion.
 
     Parameters
@@ -118,8 +118,8 @@ def sensor_noise(decays: Sequence[FreeDecay], left: Moments) -> SensorNoise:
     rests = [decay.rest.noise for decay in decays if decay.rest.noise.shape[1] >= _SHORTEST_REST]
     if not rests:
         nothing = np.zeros(len(left.variance))
-        return SensorNoise(nothing, nothing, nothing, rounding(decays), np.ones_like(nothing))
-    seen = moments(rests)
+        return SensorNoise(nothing, nothing, nothing, quantisation_variance(decays), np.ones_like(nothing))
+    seen = pool_moments(rests)
     samples = np.maximum(seen.samples, 1.0)
     of_rest = np.clip(seen.colour, 0.0, 1.0)
     admitted = of_rest + _MAY_BE * np.sqrt((1 - of_rest**2) / samples)
@@ -132,7 +132,7 @@ def sensor_noise(decays: Sequence[FreeDecay], left: Moments) -> SensorNoise:
         np.where(known, seen.variance + more, 0.0),
         np.where(known, seen.neighbour + more, 0.0),
         seen.samples,
-        rounding(decays) + _CHANCE**2 * _walk(decays) * of_means * (seen.variance + more),
+        quantisation_variance(decays) + _CHANCE**2 * _walk(decays) * of_means * (seen.variance + more),
         (1 + colour**2) / (1 - colour**2),
     )
 
@@ -145,8 +145,8 @@ def _walk(decays: Sequence[FreeDecay]) -> Real:
     """
     most = np.zeros(len(decays[0].values))
     for decay in decays:
-        if decay.undone and decay.rest.noise.shape[1]:
+        if decay.high_pass and decay.rest.noise.shape[1]:
             lasts, rested = decay.samples / decay.rate, decay.rest.noise.shape[1]
             grown = lasts**2 / (12 * rested) + lasts / (6 * decay.rate)
-            most = np.maximum(most, (2 * np.pi * np.array(decay.undone)) ** 2 * grown)
+            most = np.maximum(most, (2 * np.pi * np.array(decay.high_pass)) ** 2 * grown)
     return most

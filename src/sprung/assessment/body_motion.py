@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment.whiteness import noise_of_sensors
+from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
@@ -104,7 +104,7 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
     tuple of BodyMotion
         One for each drop.
     """
-    rows, noise = body_rows(fit, sensors), noise_of_sensors(fit, decays)
+    rows, noise = body_rows(fit, sensors), estimate_noise_level(fit, decays)
     at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
     known_from = float(at_rest or sum(decay.samples for decay in decays))
     found = []

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.estimation import NO_INFORMATION, RANK, FitStatistics, Unidentifiable, canonical_basis, to_estimates
-from sprung.planning.subject import Subject
+from sprung.planning.setup import MeasurementSetup
 from sprung.vehicle import LOAD_MASS
 
 Real = NDArray[np.float64]
@@ -39,7 +39,7 @@ class Bound:
         percent of the front spring or damper rate; None where there is no bound below the value itself.
     """
 
-    subject: Subject
+    subject: MeasurementSetup
     information: Real = field(repr=False)
 
     @cached_property

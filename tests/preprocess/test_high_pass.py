@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sprung.campaign import Campaign
-from sprung.preprocess import FreeDecay, by_corner, coupled, no_rest, prepare
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff, is_ac_coupled, prepare, unknown_baseline
 from sprung.simulation import simulate
 from sprung.vehicle import TABLE_1_CAR
 
@@ -41,18 +41,18 @@ def test_what_a_corner_changes_is_its_derivative(corner: float | None) -> None:
     for one, other in zip(here, there, strict=True):
         expected = (other.values - one.values) / (2 * np.pi * step)
         # The integral that forgets is the other one in steps of a trapezoid: to the second order of a step of time.
-        np.testing.assert_allclose(by_corner(one), expected, atol=2e-4 * np.abs(expected).max())
+        np.testing.assert_allclose(differentiate_by_cutoff(one), expected, atol=2e-4 * np.abs(expected).max())
 
 
 def test_a_sensor_that_feels_gravity_is_not_coupled() -> None:
     (first, *_) = prepare(CLEAN).decays
-    assert not coupled(first).any()
-    assert not by_corner(first).any()
-    assert all(coupled(one).all() for one in decays(None))
+    assert not is_ac_coupled(first).any()
+    assert not differentiate_by_cutoff(first).any()
+    assert all(is_ac_coupled(one).all() for one in decays(None))
 
 
 def test_without_a_rest_nobody_knows() -> None:
     for one in decays(None):
-        blind = replace(one, rest=no_rest(len(one.values)))
-        assert not coupled(blind).any()
-        assert not by_corner(blind).any()
+        blind = replace(one, rest=unknown_baseline(len(one.values)))
+        assert not is_ac_coupled(blind).any()
+        assert not differentiate_by_cutoff(blind).any()

@@ -12,10 +12,11 @@ import numpy as np
 
 from sprung.campaign import Recording, files_named_after
 from sprung.drafting.channel import Channel
+from sprung.drafting.detection import detect_drops
 from sprung.drafting.look import Look
 from sprung.drafting.names import load_named, wheels_named
 from sprung.formats import read_table
-from sprung.preprocess import align, find_drops
+from sprung.preprocess import align_loggers
 
 _FEW = 2
 """Channels of a recording that is no campaign's without others; it would take three on the body."""
@@ -32,7 +33,7 @@ Groups = Mapping[str, Mapping[str, Look]]
 """Looks by what is common to the names of a drop's files, and by the logger."""
 
 
-def put_together(looks: Sequence[Look], folder: Path) -> tuple[Look, ...]:
+def join_single_channel_loggers(looks: Sequence[Look], folder: Path) -> tuple[Look, ...]:
     """Look at the recordings of such loggers together, in place of each by itself.
 
     Parameters
@@ -100,8 +101,8 @@ def _together(group: Mapping[str, Look], folder: Path) -> Look:
     whole = Recording(
         "", tuple(channel.name for channel in channels), np.empty((len(channels), 0)), 0.0, 1.0, parts=recordings
     )
-    joined = align(whole)
-    found = find_drops([(0, joined.values)], joined.rate, start=joined.start)
+    joined = align_loggers(whole)
+    found = detect_drops([(0, joined.values)], joined.rate, start=joined.start)
     first = next(iter(group.values()))
     scales = {f"{logger} {name}": size for logger, one in group.items() for name, size in one.full_scale.items()}
     file = replace(first.file, drops=len(found.drops), refused=found.refused, events=found.events)

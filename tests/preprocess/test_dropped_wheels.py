@@ -12,7 +12,7 @@ import sprung
 from sprung.campaign import Campaign, Drop
 from sprung.errors import Fault
 from sprung.preprocess import prepare
-from sprung.preprocess.stated import contradicted
+from sprung.preprocess.dropped_wheels import find_contradicted_drops
 from sprung.simulation import simulate
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Wheel
 
@@ -53,7 +53,7 @@ def test_other_wheels_are_named_and_taken_as_they_fell(number: int, wheels: tupl
     assert fault.where == campaign.drops[number].file
     assert f"shows {', '.join(fell)} to have fallen, where the campaign says {', '.join(wheels)}" in fault.what
     assert f'wheels = ["{fell[0]}", "{fell[1]}"' in fault.do
-    assert set(prepare(wrong).seen[number].wheels) == set(fell)
+    assert set(prepare(wrong).observations[number].wheels) == set(fell)
     # Where a wheel's landing is not waited for, the decay would begin before it.
     for one, right in zip(prepare(wrong).decays, prepare(campaign).decays, strict=True):
         assert (one.start, one.end) == (right.start, right.end)
@@ -90,4 +90,4 @@ def test_exchanged_channels_and_a_weak_one_are_not_wheels_that_fell_otherwise() 
     ],
 )  # fmt: skip
 def test_what_is_taken_for_another_drop(fell: list[Mapping[Wheel, bool]], expected: tuple[int, ...]) -> None:
-    assert contradicted([Drop(), Drop(wheels=FRONT)], fell) == expected
+    assert find_contradicted_drops([Drop(), Drop(wheels=FRONT)], fell) == expected

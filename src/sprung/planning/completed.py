@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from sprung.estimation import FitStatistics
-from sprung.planning.subject import PlannedDrop, PlannedTest, Subject
+from sprung.planning.setup import MeasurementSetup, PlannedDrop, PlannedTest
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LEVEL, Heights, Sensor, Tracks, Vehicle
 
 
-def subject_of_fit(
+def setup_from_fit(
     fit: FitStatistics,
     tracks: Tracks,
     extras: tuple[str, ...],
@@ -23,7 +23,7 @@ def subject_of_fit(
     duration: float,
     heights: Heights = LEVEL,
     name: str = "vehicle",
-) -> Subject:
+) -> MeasurementSetup:
     """Take the vehicle that a fit has found, and its noise, for further tests.
 
     Parameters
@@ -45,16 +45,16 @@ def subject_of_fit(
     """
     found = dict(zip(fit.names, fit.values.tolist(), strict=True))
     vehicle = Vehicle.nearest(found, name=name, **heights.by_key)
-    return Subject(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
+    return MeasurementSetup(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
 
 
-def campaign_of_fit(subject: Subject, fit: FitStatistics, drops: Sequence[PlannedDrop]) -> PlannedTest:
+def completed_test(subject: MeasurementSetup, fit: FitStatistics, drops: Sequence[PlannedDrop]) -> PlannedTest:
     """Take the drops that a fit has used, with what they have told.
 
     Parameters
     ----------
     subject
-        From `subject_of_fit`.
+        From `setup_from_fit`.
     fit
         The fit.
     drops

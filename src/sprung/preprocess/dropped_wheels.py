@@ -9,8 +9,7 @@ import numpy as np
 
 from sprung.campaign import KINDS, Drop, Recording
 from sprung.errors import Fault
-from sprung.preprocess.fallen import channels_that_fell
-from sprung.preprocess.falls import read_fall
+from sprung.preprocess.drop_features import detect_dropped_channels, read_fall
 from sprung.preprocess.release import Release
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Sensor, Wheel
@@ -19,7 +18,7 @@ Fell = Mapping[Wheel, bool]
 """For each wheel of which the release tells it: whether it lost its block."""
 
 
-def wheels_that_fell(recording: Recording, release: Release | None, sensors: Sequence[Sensor]) -> Fell:
+def detect_dropped_wheels(recording: Recording, release: Release | None, sensors: Sequence[Sensor]) -> Fell:
     """Say of every wheel, as far as one drop's release tells it, whether it lost its block.
 
     Parameters
@@ -40,7 +39,7 @@ def wheels_that_fell(recording: Recording, release: Release | None, sensors: Seq
     if release is None or not on_wheels.any():
         return {}
     seen = read_fall(recording.values, recording.rate, release, on_wheels)
-    channels = channels_that_fell(seen, on_wheels)
+    channels = detect_dropped_channels(seen, on_wheels)
     if not channels:
         return {}
     fell: dict[Wheel, bool] = {}
@@ -55,7 +54,7 @@ def wheels_that_fell(recording: Recording, release: Release | None, sensors: Seq
     return {station: fell[station] for station in WHEELS if station in fell and station not in unclear}
 
 
-def contradicted(drops: Sequence[Drop], fell: Sequence[Fell]) -> tuple[int, ...]:
+def find_contradicted_drops(drops: Sequence[Drop], fell: Sequence[Fell]) -> tuple[int, ...]:
     """Say in which drops other wheels fell than the campaign says, where nothing else explains what is seen.
 
     Parameters
@@ -82,7 +81,7 @@ def contradicted(drops: Sequence[Drop], fell: Sequence[Fell]) -> tuple[int, ...]
         exchanged = [{swap.get(wheel, wheel): falls for wheel, falls in told.items()} for told in fell]
         if not any(_otherwise(drop, told) for drop, told in zip(drops, exchanged, strict=True)):
             return ()
-    return tuple(i for i in wrong if frozenset(as_seen(drops[i], fell[i])) in KINDS)
+    return tuple(i for i in wrong if frozenset(merge_dropped_wheels(drops[i], fell[i])) in KINDS)
 
 
 def _otherwise(drop: Drop, fell: Fell) -> set[Wheel]:
@@ -92,7 +91,7 @@ def _otherwise(drop: Drop, fell: Fell) -> set[Wheel]:
     return {wheel for wheel, falls in fell.items() if falls != (wheel in drop.wheels)}
 
 
-def as_seen(drop: Drop, fell: Fell) -> tuple[Wheel, ...]:
+def merge_dropped_wheels(drop: Drop, fell: Fell) -> tuple[Wheel, ...]:
     """Return the wheels that fell: as the release tells it, of the others as the campaign says.
 
     Parameters
@@ -110,7 +109,7 @@ def as_seen(drop: Drop, fell: Fell) -> tuple[Wheel, ...]:
     return tuple(wheel for wheel in WHEELS if fell.get(wheel, wheel in drop.wheels))
 
 
-def other_wheels(drop: Drop, fell: Fell, where: str) -> Fault:
+def dropped_wheels_fault(drop: Drop, fell: Fell, where: str) -> Fault:
     """Say that other wheels fell than the campaign says.
 
     Parameters
@@ -122,7 +121,7 @@ def other_wheels(drop: Drop, fell: Fell, where: str) -> Fault:
     where
         Its recording.
     """
-    seen = as_seen(drop, fell)
+    seen = merge_dropped_wheels(drop, fell)
     what = (
         f"the release shows {', '.join(seen)} to have fallen, where the campaign says {', '.join(drop.wheels)}; what fell is "
         "taken from the release"

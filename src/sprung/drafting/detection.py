@@ -1,7 +1,7 @@
 """Finding the drops in a long recording: hours of quiet, of people at work around the vehicle, and now and then a drop.
 
 The recording is taken piece by piece, and only its last seconds are kept. Averages over some milliseconds tell where
-anything begins to move; there, and only there, the samples themselves are looked at (`sprung.preprocess.judging`).
+anything begins to move; there, and only there, the samples themselves are looked at (`sprung.drafting.classification`).
 """
 
 from __future__ import annotations
@@ -12,10 +12,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.preprocess.fallen import FoundDrop, Place, on_wheels, tell_wheels
-from sprung.preprocess.falls import BLOW
-from sprung.preprocess.judging import AFTER, BEFORE, Fall, judge
-from sprung.preprocess.slow_motion import SlowMotion
+from sprung.drafting.classification import AFTER, BEFORE, Fall, classify_event
+from sprung.drafting.detected_drop import DetectedDrop, SensorPlace, assign_dropped_wheels, is_on_wheel
+from sprung.preprocess import BLOW, SlowMotion
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Sensor
 
@@ -44,7 +43,7 @@ _TOLD = 100
 
 
 @dataclass(frozen=True)
-class Refusal:
+class RejectedEvent:
     """An event that is no drop.
 
     Attributes
@@ -60,7 +59,7 @@ class Refusal:
 
 
 @dataclass(frozen=True)
-class Found:
+class Detection:
     """What a recording holds.
 
     Attributes
@@ -73,14 +72,14 @@ class Found:
         How many other events there were.
     """
 
-    drops: tuple[FoundDrop, ...]
-    refused: tuple[Refusal, ...] = ()
+    drops: tuple[DetectedDrop, ...]
+    refused: tuple[RejectedEvent, ...] = ()
     events: int = 0
 
 
 def drops_in(
     values: Real, rate: float, sensors: Sequence[Sensor | None] | None = None, start: float = 0.0
-) -> tuple[FoundDrop, ...]:
+) -> tuple[DetectedDrop, ...]:
     """Find the drops in a recording that is in memory.
 
     Parameters
@@ -99,18 +98,18 @@ def drops_in(
     tuple of FoundDrop
     """
     places = None if sensors is None else [None if sensor is None else sensor.on for sensor in sensors]
-    return find_drops([(0, values)], rate, places, start=start, samples=values.shape[1]).drops
+    return detect_drops([(0, values)], rate, places, start=start, samples=values.shape[1]).drops
 
 
-def find_drops(
+def detect_drops(
     pieces: Iterable[tuple[int, Real]],
     rate: float,
-    places: Sequence[Place | None] | None = None,
+    places: Sequence[SensorPlace | None] | None = None,
     *,
     start: float = 0.0,
     samples: int | None = None,
     progress: Callable[[float], None] | None = None,
-) -> Found:
+) -> Detection:
     """Find the drops in a recording of any length.
 
     Parameters
@@ -138,7 +137,7 @@ def find_drops(
     Memory does not grow with the length of the recording: some fifteen seconds and one piece are kept.
     """
     wheels = None if places is None or None in places else np.array([place != "body" for place in places])
-    drops: list[FoundDrop] = []
+    drops: list[DetectedDrop] = []
     refused = _Refused()
     searched = clear = 0
     for origin, buffer, final in _stretches(pieces, rate):
@@ -147,7 +146,7 @@ def find_drops(
             if not searched <= event < end:
                 continue
             first = max(clear, origin)
-            judged = judge(buffer[:, first - origin :], rate, event - first, wheels)
+            judged = classify_event(buffer[:, first - origin :], rate, event - first, wheels)
             if isinstance(judged, Fall):
                 drops.append(_drop(judged, first, start, rate, buffer[:, first - origin :]))
                 searched, clear = (
@@ -155,32 +154,32 @@ def find_drops(
                     first + min(judged.landing + int(_LANDED * rate), judged.last),
                 )
             else:
-                refused.add(Refusal(start + event / rate, judged), _size(buffer, event - origin, rate))
+                refused.add(RejectedEvent(start + event / rate, judged), _size(buffer, event - origin, rate))
         searched = max(searched, end)
         if progress is not None and samples:
             progress(min(1.0, (origin + buffer.shape[1]) / samples))
-    told = tell_wheels(drops, places)
-    kept = tuple(_without_a_fall(told, on_wheels(told, places), refused))
-    return Found(kept, refused.largest, refused.count)
+    told = assign_dropped_wheels(drops, places)
+    kept = tuple(_without_a_fall(told, is_on_wheel(told, places), refused))
+    return Detection(kept, refused.largest, refused.count)
 
 
-def _drop(fall: Fall, first: int, start: float, rate: float, values: Real) -> FoundDrop:
+def _drop(fall: Fall, first: int, start: float, rate: float, values: Real) -> DetectedDrop:
     begin, release, landing, faded, end = (
         start + (first + sample) / rate for sample in (fall.first, fall.release, fall.landing, fall.faded, fall.last)
     )
     slow = SlowMotion.of(values[:, : fall.last + 1], rate, fall.release, fall.seen.level)
-    return FoundDrop(begin, release, landing, faded, end, fall.ended, fall.seen, slow=slow)
+    return DetectedDrop(begin, release, landing, faded, end, fall.ended, fall.seen, slow=slow)
 
 
-def _without_a_fall(drops: Sequence[FoundDrop], sit: NDArray[np.bool_], refused: _Refused) -> Iterator[FoundDrop]:
+def _without_a_fall(drops: Sequence[DetectedDrop], sit: NDArray[np.bool_], refused: _Refused) -> Iterator[DetectedDrop]:
     """Take out the drops in which only the body moved, though there are sensors on wheels."""
     for drop in drops:
-        if drop.fell or not sit.any():
+        if drop.dropped_channels or not sit.any():
             yield drop
             continue
         deepest = np.nanmax(drop.seen.depth[sit], initial=0.0) / STANDARD_GRAVITY
         why = f"the body moves and no wheel falls: the deepest reading of a wheel is {deepest:.2g} g below rest"
-        refused.add(Refusal(drop.release, why), float(np.nanmax(drop.seen.peak)))
+        refused.add(RejectedEvent(drop.release, why), float(np.nanmax(drop.seen.peak)))
 
 
 def _stretches(pieces: Iterable[tuple[int, Real]], rate: float) -> Iterator[tuple[int, Real, bool]]:
@@ -244,10 +243,10 @@ class _Refused:
     """Collects what is no drop: events close together are one, and only the largest are kept."""
 
     count: int = 0
-    kept: list[tuple[float, Refusal]] = field(default_factory=list)
+    kept: list[tuple[float, RejectedEvent]] = field(default_factory=list)
     until: float = -np.inf
 
-    def add(self, refusal: Refusal, size: float) -> None:
+    def add(self, refusal: RejectedEvent, size: float) -> None:
         near = refusal.time - self.until <= _TOGETHER
         self.until = max(self.until, refusal.time)
         if near and self.kept:
@@ -259,10 +258,10 @@ class _Refused:
         if len(self.kept) > 2 * _TOLD:
             self.kept = self._largest()
 
-    def _largest(self) -> list[tuple[float, Refusal]]:
+    def _largest(self) -> list[tuple[float, RejectedEvent]]:
         ranked = sorted(self.kept, key=lambda one: one[0], reverse=True)[:_TOLD]
         return sorted(ranked, key=lambda one: one[1].time)
 
     @property
-    def largest(self) -> tuple[Refusal, ...]:
+    def largest(self) -> tuple[RejectedEvent, ...]:
         return tuple(refusal for _, refusal in self._largest())
