@@ -26,7 +26,8 @@ def long(session: nox.Session) -> None:
 def lowest(session: nox.Session) -> None:
     """Run the tests with the oldest NumPy, SciPy and pandas that pyproject.toml admits."""
     project = nox.project.load_toml("pyproject.toml")["project"]
-    bounds = {one.partition(">=")[0]: one for one in project["dependencies"]}
+    declared = (*project["dependencies"], *project["optional-dependencies"]["pandas"])
+    bounds = {requirement.partition(">=")[0]: requirement for requirement in declared}
     session.install(".[dev,all]")
     session.install(*(bounds[name].replace(">=", "==") for name in ("numpy", "scipy", "pandas")))
     session.run("pytest", *session.posargs)

@@ -1,6 +1,6 @@
-"""How the documentation is built: `nox -s docs`, or `sphinx-build -W docs DIR`.
+"""Configuration of the documentation: `nox -s docs`, or `sphinx-build -W docs DIR`.
 
-Nothing is fetched, neither while it is built nor by who reads it.
+Neither the build nor the pages load anything from a network.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ release = version = version_of("sprung")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "formulas", "reference"]
 exclude_patterns = ["extensions"]
-suppress_warnings = ["ref.python"]  # names of fields, which several records share, are no links
+suppress_warnings = ["ref.python"]  # field names that several records share cannot be links
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
-# In docstrings a name between single backticks is code, and text between bars is no substitution.
+# In docstrings a name between single backticks is code, and text between bars is not a substitution.
 default_role = "code"
 napoleon_google_docstring = False
 napoleon_use_rtype = False

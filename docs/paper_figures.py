@@ -1,4 +1,4 @@
-"""Draw what the paper's figures 4 to 9 show, of drops that are simulated: the paper's recordings are not published.
+"""Draw figures 4 to 9 of the paper from simulated drops: the paper's recordings are not published.
 
 Needs matplotlib. Figures 4 to 6: the linear bus of Tables 4 and 5. Figures 7 to 9: the same bus with dry friction in its
 springs, once fitted by the linear model as in the paper, once with friction.
@@ -23,11 +23,11 @@ MOTIONS = {
     "pitch": (("rl", "rr"), "rad/s²"),
     "roll": (("fl", "rl"), "rad/s²"),
 }
-"""The motion shown, by the drop that excites it."""
+"""Channels and unit of the motion shown, by the drop that excites it."""
 
 DRAWN = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "sprung", "axes.spines.top": False}
 
-RUBBING = Vehicle.from_parameters(
+BUS_WITH_FRICTION = Vehicle.from_parameters(
     SCHOOL_BUS.parameters | {"t_f1": 0.5, "t_r1": 0.5, "t_f2": 0.5, "t_r2": 0.5}
     | {"F_f": 1000.0, "F_r": 1500.0, "s_f": 2e6, "s_r": 3e6},
     name="school bus with friction",
@@ -41,13 +41,13 @@ def main() -> None:
     known = {"total_mass": SCHOOL_BUS.total_mass, "a": SCHOOL_BUS.a, "b": SCHOOL_BUS.b}
     usual: dict[str, Any] = {"drops": drops, "noise": 0.02, "seed": 1, "duration": 4.0, "rate": 250}
     spectra(sprung.simulate(SCHOOL_BUS, **usual, known=known))
-    decays(sprung.simulate(RUBBING, **usual, known=known))
+    decays(sprung.simulate(BUS_WITH_FRICTION, **usual, known=known))
 
 
 def motion(
     campaign: Campaign, values: np.ndarray[Any, Any], channels: tuple[str, ...], of: str
 ) -> np.ndarray[Any, Any]:
-    """Give vertical, pitch or roll acceleration of the body at its centre of gravity from its corners, shape (time,)."""
+    """Return vertical, pitch or roll acceleration of the body at its centre of gravity, from its corners; shape (time,)."""
     placed = {sensor.channel: sensor.position for sensor in campaign.sensors if sensor.position is not None}
     rows = np.array([(1.0, -(x + SCHOOL_BUS.a), y) for x, y, _ in placed.values()])
     body = np.linalg.pinv(rows) @ values[[channels.index(name) for name in placed]]
@@ -81,7 +81,7 @@ def decays(campaign: Campaign) -> None:
         "with friction": sprung.identify(campaign, tracks="shared", extras=("friction",), fall=False),
     }
     for name, fit in fits.items():
-        print(name, fit.verdict.state, max(fit.fit.misfit.values()))  # noqa: T201 (for whoever draws)
+        print(name, fit.verdict.state, max(fit.fit.misfit.values()))  # noqa: T201 (progress)
     figure, panels = plt.subplots(2, 3, figsize=(11, 5.0), layout="constrained", sharex=True)
     for row, (name, fit) in zip(panels, fits.items(), strict=True):
         for axes, (of, (_, unit)), series in zip(row, MOTIONS.items(), fit.series.values(), strict=True):

@@ -1,4 +1,4 @@
-"""Draw the README's picture: one drop of the demo, measured and fitted, and what came out. Needs matplotlib."""
+"""Draw the README's picture: one drop of the demo, measured and fitted, and the estimates. Needs matplotlib."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from rich.console import Console, Group, RenderableType
 
 from sprung.report import text_of
-from sprung.report.layout import Fitting
+from sprung.report.terminal.layout import Fitting
 from sprung.tables import Table
 
 WIDTHS = (40, 60, 80, 100, 120, 200)

@@ -9,16 +9,16 @@ from typing import Any
 
 import tomli_w
 
-from sprung.campaign.keys import EXAMPLES, UNIT
-from sprung.campaign.published import campaign_schema
+from sprung.campaign.json_schema import campaign_schema
+from sprung.campaign.key_examples import EXAMPLES, UNIT
 from sprung.campaign.schema import VehicleFileSchema
 from sprung.report import drawing_svg, vehicle_sketch
-from sprung.report.style import alone_style
+from sprung.report.drawing.style import alone_style
 from sprung.study import demo_campaign
 from sprung.vehicle import PARAMETERS
 
 FILE = "campaign"
-"""Mark of the keys that stand above all sections."""
+"""Name of the table of keys before the first section."""
 
 
 @cache
@@ -27,12 +27,12 @@ def _schema() -> Any:
 
 
 def sections() -> tuple[str, ...]:
-    """Name the models whose keys the reference has to show."""
+    """Return the names of the models whose keys the reference lists."""
     return (FILE, *_schema()["$defs"])
 
 
 def key_table(model: str) -> str:
-    """Write the keys of one section: type, unit, default, example, meaning.
+    """Return a table of the keys of one section: type, unit, default, example, meaning.
 
     Parameters
     ----------
@@ -59,22 +59,22 @@ def _rows(entry: Mapping[str, Any], names: Iterable[str]) -> Iterator[list[str]]
 
 
 def known_table() -> str:
-    """Write what ``[known]`` may hold: name, unit, meaning."""
+    """Return a table of the keys of ``[known]``: name, unit, meaning."""
     rows = []
     for name, one in _schema()["properties"]["known"]["properties"].items():
         meaning, _, unit = one["description"].removesuffix(".").rpartition(", ")
         rows.append([f"`{name}`", unit, _text(meaning)])
-    return _table(rows, ("key", "unit", "what it is"))
+    return _table(rows, ("key", "unit", "meaning"))
 
 
 def parameter_rows() -> str:
-    """Write what ``[parameters]`` of a vehicle file may hold: name, unit, meaning."""
+    """Return a table of the keys of ``[parameters]`` of a vehicle file: name, unit, meaning."""
     rows = [[f"`{name}`", one.unit.replace("^2", "²"), _text(one.meaning)] for name, one in PARAMETERS.items()]
-    return _table(rows, ("key", "unit", "what it is"))
+    return _table(rows, ("key", "unit", "meaning"))
 
 
 def kind_of(one: Mapping[str, Any]) -> str:
-    """Say in words what a key takes.
+    """Return a description of the values that a key accepts.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def _plural(kind: str) -> str:
 
 
 def _toml(value: Any) -> str:
-    """Write a value as TOML on one line."""
+    """Return a value as TOML on one line."""
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{name} = {_toml(one)}" for name, one in value.items()) + " }"
     if isinstance(value, list):
@@ -114,7 +114,7 @@ def _text(text: str) -> str:
 
 
 def _table(
-    rows: Iterable[list[str]], head: tuple[str, ...] = ("key", "takes", "unit", "default", "example", "what it is")
+    rows: Iterable[list[str]], head: tuple[str, ...] = ("key", "value", "unit", "default", "example", "meaning")
 ) -> str:
     lines = [head, ["---"] * len(head), *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)

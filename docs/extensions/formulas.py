@@ -1,4 +1,4 @@
-"""Equations as MathML, which browsers set by themselves: no script, no font and no picture is fetched."""
+"""Equations as MathML, which browsers render without a script, a font or a picture."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _displayed(writer: Any, node: nodes.math_block) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Make it the builder's way to write equations."""
+    """Register MathML as the renderer of equations."""
     app.add_html_math_renderer("mathml", (_inline, None), (_displayed, None))
     app.config.html_math_renderer = "mathml"
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,4 +1,4 @@
-"""The paper's tables beside ours, computed while the documentation is built."""
+"""The paper's tables with computed values, made when the documentation is built."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def table_2() -> str:
-    """Table 2: the simulated car."""
+    """Return Table 2: the simulated car."""
     rows = [
         [
             f"`{row.name}`",
@@ -32,11 +32,11 @@ def table_2() -> str:
         ]
         for row in _reproduced().table2
     ]
-    return _table(("parameter", "known", "paper", "its error, %", "ours", "our error, %"), rows)
+    return _table(("parameter", "true value", "paper", "error of the paper, %", "computed", "error, %"), rows)
 
 
 def table_3() -> str:
-    """Table 3: modes of the school bus."""
+    """Return Table 3: modes of the school bus."""
 
     def three(values: ModalValues) -> list[str]:
         return [f"{value:.4f}" for value in (values.damped_frequency, values.natural_frequency, values.damping_ratio)]
@@ -50,25 +50,25 @@ def table_3() -> str:
 
 
 def table_5() -> str:
-    """Table 5: the school bus identified back."""
+    """Return Table 5: parameters of the school bus, recovered from simulated recordings."""
     rows = [
         (f"`{row.name}`", f"{row.known:g}", "given" if row.given else f"{row.error_percent:+.0e}")
         for row in _reproduced().bus
     ]
-    return _table(("parameter", "Tables 4 and 5", "error when identified back, %"), rows)
+    return _table(("parameter", "Tables 4 and 5", "error of recovery, %"), rows)
 
 
 def noise() -> str:
-    """Give what noise does to the paper's method."""
+    """Return a table of the errors of the paper's method over the noise level."""
     rows = [
         (f"{point.noise:g}", f"{point.paper_method:.2g}", "-" if point.joint_fit is None else f"{point.joint_fit:.2g}")
         for point in _reproduced().noise
     ]
-    return _table(("noise, m/s² rms", "the paper's method, worst error, %", "joint fit, worst error, %"), rows)
+    return _table(("noise, m/s² rms", "paper's method, worst error, %", "maximum likelihood, worst error, %"), rows)
 
 
 def misprints() -> str:
-    """List the misprints, each with its reason."""
+    """Return the list of misprints, each with its reason."""
 
     def text(words: str) -> str:
         return words.replace("*", "\\*").replace("|", "\\|").replace("_", "\\_")

@@ -1,4 +1,4 @@
-"""The references that are not written but generated: every command from itself, every public name from its docstring."""
+"""Generated references: commands from their help texts, public names from their docstrings."""
 
 from __future__ import annotations
 
@@ -54,29 +54,33 @@ ROOMS = (
 
 
 def command_reference() -> str:
-    """Write one section for each command: what it does, how it is called, its arguments and options, an example."""
+    """Return one section for each command: description, usage, arguments, options and an example."""
     group: Any = typer.main.get_command(commands)
     return "\n\n".join("\n\n".join(_command(name, group.commands[name])) for name in group.list_commands(None))
 
 
 def _command(name: str, command: Any) -> Iterator[str]:
-    arguments = [one for one in command.params if one.param_type_name == "argument"]
-    options = [one for one in command.params if one.param_type_name == "option"]
-    usage = " ".join(one.metavar if one.required else f"[{one.metavar}]" for one in arguments)
+    arguments = [parameter for parameter in command.params if parameter.param_type_name == "argument"]
+    options = [parameter for parameter in command.params if parameter.param_type_name == "option"]
+    usage = " ".join(parameter.metavar if parameter.required else f"[{parameter.metavar}]" for parameter in arguments)
     text, example = _plain(command.help), re.sub(r"\[/?bold\]", "", command.epilog or "").removeprefix("Example: ")
     yield f"## sprung {name}"
     yield text
     yield f"```text\nsprung {name} [OPTIONS] {usage}".rstrip() + "\n```"
-    for one in (*arguments, *options):
-        flags = [one.metavar] if one in arguments else [*one.opts, *one.secondary_opts]
-        value = f" {one.metavar or one.name.upper()}" if one in options and not _is_flag(one) else ""
+    for parameter in (*arguments, *options):
+        flags = [parameter.metavar] if parameter in arguments else [*parameter.opts, *parameter.secondary_opts]
+        value = (
+            f" {parameter.metavar or parameter.name.upper()}"
+            if parameter in options and not _is_flag(parameter)
+            else ""
+        )
         shown = (
             ""
-            if one.default in (None, False, (), []) or not isinstance(one.default, int | float | str)
-            else one.default
+            if parameter.default in (None, False, (), []) or not isinstance(parameter.default, int | float | str)
+            else parameter.default
         )
-        default = f" (default: {shown})" if shown != "" and not _is_flag(one) else ""
-        yield f"`{', '.join(flags)}{value}`\n: {_plain(one.help)}{default}"
+        default = f" (default: {shown})" if shown != "" and not _is_flag(parameter) else ""
+        yield f"`{', '.join(flags)}{value}`\n: {_plain(parameter.help)}{default}"
     yield f"Example: `{example}`"
 
 
@@ -85,39 +89,46 @@ def _is_flag(option: Any) -> bool:
 
 
 def _plain(text: str | None) -> str:
-    """Give a help text as Markdown: angle brackets and stars of its own are text."""
+    """Return a help text as Markdown, with its own angle brackets and asterisks escaped."""
     return re.sub(r"([*_<>\[\]])", r"\\\1", re.sub(r"\[/?bold\]", "", text or "")).strip()
 
 
 def parameter_table() -> str:
-    """Write every parameter with its unit and meaning, and the extra that brings it."""
-    extra_of = {name: extra for extra, names in EXTRA_PARAMETERS.items() for name in names}
-    rows = [f"| `{name}` | {one.unit} | {one.meaning} | {extra_of.get(name, '')} |" for name, one in PARAMETERS.items()]
-    return "\n".join(("| name | unit | what it is | extra |", "| --- | --- | --- | --- |", *rows))
+    """Return a table of all parameters: unit, meaning and model term."""
+    term_of = {name: term for term, names in EXTRA_PARAMETERS.items() for name in names}
+    rows = [
+        f"| `{name}` | {parameter.unit} | {parameter.meaning} | {term_of.get(name, '')} |"
+        for name, parameter in PARAMETERS.items()
+    ]
+    return "\n".join(("| name | unit | meaning | model term |", "| --- | --- | --- | --- |", *rows))
 
 
 def api_reference() -> str:
-    """Write the directives for what the package itself exports."""
+    """Return the directives for the names that the package exports."""
     names = [name for name in sprung.__all__ if not inspect.ismodule(getattr(sprung, name))]
     return _listed("sprung", names)
 
 
 def rooms_reference() -> str:
-    """Write the directives for what each room exports."""
+    """Return the directives for the names that each room exports."""
     return "\n\n".join(_room(importlib.import_module(f"sprung.{name}")) for name in ROOMS)
 
 
 def exported(room: ModuleType) -> list[str]:
-    """Name what a room exports: what it lists, or what a room of one file defines."""
+    """Return the names that a room exports: its `__all__`, or the public names of a room of one file."""
     own = [name for name, value in vars(room).items() if getattr(value, "__module__", None) == room.__name__]
     return list(getattr(room, "__all__", [name for name in own if not name.startswith("_")]))
 
 
 def _room(room: ModuleType) -> str:
-    # What the package itself hands on is described there.
+    # Names that the package exports are described on the page of the package.
     here = [name for name in exported(room) if getattr(sprung, name, None) is not getattr(room, name)]
-    handed_on = ", ".join(f"`{name}`" for name in exported(room) if name not in here)
-    also = f"\n\nHanded on by the package itself, and [described there](api.md): {handed_on}." if handed_on else ""
+    exported_by_package = ", ".join(f"`{name}`" for name in exported(room) if name not in here)
+    also = (
+        f"\n\nExported by the package, and described on the page [Python](api.md): {exported_by_package}."
+        if exported_by_package
+        else ""
+    )
     return f"## {room.__name__}\n\n{inspect.getdoc(room)}{also}\n\n{_listed(room.__name__, here)}"
 
 
@@ -137,7 +148,7 @@ def _directive(module: str, name: str) -> str:
 
 
 def text_of_constant(module: str, name: str) -> str:
-    """Give what stands below a constant where it is defined; nothing where nothing does."""
+    """Return the text below the definition of a constant; empty if there is none."""
     room = importlib.import_module(module)
     inside = [found.name for found in pkgutil.walk_packages(getattr(room, "__path__", []), f"{module}.")]
     for place in (module, *inside):
@@ -171,17 +182,17 @@ _UNDERLINE = re.compile(r"-{3,}")
 
 
 def _prepare(_app: Sphinx, what: str, _name: str, _value: object, _options: object, lines: list[str]) -> None:
-    """Turn a docstring into what Napoleon and reStructuredText take for the same."""
-    # |pole| is a size, not a substitution.
+    """Convert a docstring to a form that Napoleon and reStructuredText interpret as intended."""
+    # |pole| is a magnitude, not a substitution.
     lines[:] = [re.sub(r"(?<!\\)\|", r"\\|", line) for line in lines]
     if what in ("attribute", "property"):
-        lines[:0] = ["..", ""]  # a comment that is empty, or what stands before a colon is taken for a type
+        lines[:0] = ["..", ""]  # an empty comment: otherwise the text before a colon is interpreted as a type
     elif any(map(_UNDERLINE.fullmatch, lines)):
-        lines[:] = _apart(lines)
+        lines[:] = _repeat_descriptions(lines)
 
 
-def _apart(lines: list[str]) -> list[str]:
-    """Describe names that share one description each by itself: they would be taken for one name and its type."""
+def _repeat_descriptions(lines: list[str]) -> list[str]:
+    """Repeat a description that several names share: Napoleon would interpret them as one name and its type."""
     found: list[str] = []
     place = 0
     while place < len(lines):
@@ -199,7 +210,7 @@ def _apart(lines: list[str]) -> list[str]:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Write the generated parts while pages are read."""
+    """Connect the generated parts to the reading of pages."""
     app.connect("source-read", _fill)
     app.connect("autodoc-process-docstring", _prepare, priority=400)  # before Napoleon
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,4 +1,4 @@
-"""Does the joint fit reach the Cramér-Rao bound? Noisy campaigns of four vehicles; writes at-the-bound.md.
+"""Are errors at the Cramér-Rao bound? Noisy campaigns of four vehicles; writes at-the-bound.md.
 
 Run with `python docs/studies/at_the_bound.py --campaigns 2000 --processes 2`, or `nox -s studies` for all studies.
 """
@@ -126,65 +126,76 @@ def page(headline: Sequence[Summary], others: Sequence[Summary], drawn: bool) ->
     )
     error = f"{100 / np.sqrt(2 * many):.1f} and {100 / np.sqrt(2 * each):.1f} %"
     mean_error = f"{1 / np.sqrt(many):.2f} and {1 / np.sqrt(each):.2f} bounds"
-    return f"""# At the bound
+    return f"""# Accuracy relative to the Cramér-Rao bound
 
-No unbiased estimate can be better than the Cramér-Rao bound allows: the inverse of the information that the records,
-and what was weighed, hold of the parameters. How near does `sprung.identify` come, is it biased, and do its 95 %
-intervals hold the truth as often as they say?
+No unbiased estimator has a smaller variance than the {{term}}`Cramér-Rao bound`: the inverse of the Fisher information of the
+recordings and the weighed masses about the parameters. How close does `sprung.identify` come to this bound, is it biased, and
+do its 95 % intervals have the stated coverage?
 
-## How it was done
+## Method
 
 Every campaign is simulated drop by drop: blocks of 5 cm under all, the front, rear, left and right wheels, release,
-flight, landing, free vibration for {DURATION:g} s, eight sensors at {RATE:g} Hz with white noise. *Ten drops* are these five
-without and five more with a load of {100 * LOAD:g} % of the vehicle's mass, off centre. What is *weighed* - the total mass, or
-both axles - has an uncertainty of {100 * WEIGHING:g} % of the vehicle's mass, and what the scales show is drawn anew in every
-campaign. Each campaign goes through the whole of `sprung.identify`, with nothing else known than the wheelbase: it finds
-release and landing, chooses the model, and starts without a guess. The fall before the landing is left out: what it tells
-is not in the bound ([the fall](fall.md)).
+flight phase, landing, free decay for {DURATION:g} s, eight sensors at {RATE:g} Hz with white noise. *Ten drops* are these five
+without a load and the same five with a load of {100 * LOAD:g} % of the vehicle's mass, off centre. The *weighed* quantity, the
+total mass or both axle masses, has a standard uncertainty of {100 * WEIGHING:g} % of the vehicle's mass; its error is drawn
+for every campaign. Each campaign is analysed by the complete `sprung.identify` and only the wheelbase is known: the program
+detects release and landing, selects the model and computes its own start values. The flight phase is not used, because its
+information is not in the bound ([the flight phase](fall.md)).
 
-The bound is computed by `sprung.planning` at the true parameters, from the drops that were used, each decay beginning
-where the last tyre last touches the ground. Errors are relative, and counted in units of the bound. *Error* is the
-root-mean-square error over the bound, in the mean over the parameters and in the worst of them; *bias* is the largest
-mean error; *stated* is what the results say of their own uncertainty, in the mean over the parameters; *covered* is
-the part of all 95 % intervals that hold the truth. Without load or scales nothing tells masses and rates absolutely,
-so there they are judged per total mass.
+The bound is computed by `sprung.planning` at the true parameters, from the drops that were used. Each free decay begins
+at the last contact of the last tyre. Errors are relative, in units of the bound. *Error* is the root-mean-square error
+divided by the bound, as the mean over the parameters and for the worst parameter; *bias* is the largest mean error;
+*stated* is the standard uncertainty in the results, as the mean over the parameters; *covered* is the fraction of all 95
+% intervals that contain the true value. Without a load or a weighing the recordings do not determine the absolute scale;
+masses and rates are then evaluated per total mass.
 
-The figures are themselves uncertain: a root-mean-square error from {many} or from {each} campaigns by {error}, a
-mean error by {mean_error}. The worst of fifteen parameters is the one that chance has treated worst.
-Where the load alone tells the scale, the errors of all masses and rates are nearly one and the same error, so that
-their mean is no more certain than any of them.
+These figures have statistical uncertainties: a root-mean-square error from {many} or from {each} campaigns {error}, a
+mean error {mean_error}. The worst of fifteen parameters is a maximum and therefore biased upwards.
+If only the load determines the scale, the errors of all masses and rates are almost fully correlated, so that
+their mean is as uncertain as each of them.
 
 ## The paper's car
 
-The car of Table 1, {many} campaigns in every row. Wanted are at most {MEAN:g} in the mean over the parameters and {WORST:g}
-in the worst, and {low:g} to {high:g} % of the intervals holding the truth; {met} of {len(headline)} rows are as wanted.
+The car of Table 1, {many} campaigns in every row. The requirements are at most {MEAN:g} as the mean over the parameters and
+{WORST:g} for the worst, and {low:g} to {high:g} % of the intervals containing the true value; {met} of {len(headline)} rows
+meet them.
 
 {_headline(headline)}
 
 {picture}## Other vehicles
 
-A small car, a van, and the paper's school bus, whose springs and dampers do not share their half-distances; {each}
-campaigns for every test and noise. In each column are error in the mean, error in the worst parameter, and covered; the
-verdicts are those of the whole row.
+A small car, a van, and the paper's school bus, whose springs and dampers have different half-distances; {each}
+campaigns for every test and noise level. Each column contains the mean error, the error of the worst parameter, and the
+coverage; the verdicts are those of the whole row.
 
 {sections}
 
-## Everything else
+## Remaining figures
 
-Of all campaigns on this page, {wrong} took half-distances wrongly to be shared, or to be separate, and {incomplete} left a drop
-out. What a campaign leaves undetermined counts neither as an error nor as an interval; how often that was is in
-[at-the-bound.json](at-the-bound.json), with every parameter of every case.
+Of all campaigns on this page, {wrong} used a wrong model of the half-distances (shared or separate), and {incomplete}
+excluded a drop. A parameter that a campaign does not determine counts neither as an error nor as an interval; the number
+of such cases is in [at-the-bound.json](at-the-bound.json), with every parameter of every case.
 
-## To run it again
+## Reproduction
 
     python docs/studies/at_the_bound.py --campaigns {many} --each {each} --processes 2
 
-Seeds follow from the case and the number of the campaign: the same campaigns come out in any number of processes.
+The seeds depend on the case and the number of the campaign: the campaigns are the same for any number of processes.
 """
 
 
 def _headline(summaries: Sequence[Summary]) -> str:
-    head = ["test", "noise, m/s²", "error, mean", "error, worst", "bias", "stated", "covered, %", VERDICT, "as wanted"]
+    head = [
+        "test",
+        "noise, m/s²",
+        "error, mean",
+        "error, worst",
+        "bias",
+        "stated",
+        "covered, %",
+        VERDICT,
+        "requirement met",
+    ]
     rows = []
     for one in summaries:
         (error, of), (bias, whose) = one.worst(one.rmse), one.worst(one.bias)

@@ -1,4 +1,4 @@
-"""Do the error bars hold where the noise is not white? Writes coloured.md.
+"""Are the stated uncertainties correct if the noise is not white? Writes coloured.md.
 
 Run with `python docs/studies/coloured.py --campaigns 500 --processes 2`, or `nox -s studies` for all studies.
 """
@@ -93,41 +93,42 @@ def page(summaries: Sequence[Summary]) -> str:
         ]
         for one in summaries
     ]
-    head = ["noise", "test", "error", "stated", "inflation", "enlarged, %", "covered, %", " / ".join(VERDICTS)]
+    head = ["noise", "test", "error", "stated", "inflation", "inflated, %", "covered, %", " / ".join(VERDICTS)]
     low = min(summaries, key=lambda one: one.coverage)
-    met = "so it is in every row" if low.coverage >= WANTED else "which is missed where the table says less"
+    met = "every row meets this" if low.coverage >= WANTED else "rows below this do not"
     kept, milliseconds = np.exp(-1 / (RATE * TIME_CONSTANT)), 1000 * TIME_CONSTANT
-    return f"""# Noise that is not white
+    return f"""# Coloured noise
 
-The likelihood takes the noise for white. Real noise is coloured by filters, drifts with temperature, and comes in the
-steps of a converter; then the estimates lose a little, but error bars computed as if nothing had happened promise far
-too much. `sprung.identify` looks for colour in what is left of the records, and for drops that contradict each other,
-and enlarges every variance accordingly. Is that enough?
+The likelihood assumes white noise. Real noise is coloured by filters, drifts with temperature, and is quantised by
+converters. The estimates then lose some accuracy, but standard uncertainties computed for white noise are far
+too small. `sprung.identify` tests the residuals for autocorrelation and for disagreement between drops, and multiplies every
+variance by the {{term}}`overdispersion`. Is that sufficient?
 
-## How it was done
+## Method
 
 The paper's car (Table 1) is dropped from blocks of 5 cm, with {NOISE:g} m/s² of noise in every channel at {RATE:g} Hz. Each
-row has {many} campaigns, simulated, drawn and identified as in [at the bound](at-the-bound.md). The noise is
+row has {many} campaigns, simulated and identified as in the [study of accuracy](at-the-bound.md). The noise is
 
 - white;
-- behind a first-order low-pass of {milliseconds:g} ms, of the same power: neighbouring samples are correlated to {kept:.2f};
-- white, while every channel drifts by {DRIFT:g} m/s² over the record, up or down by chance;
-- white, and rounded to twelve bits over ±10 g, steps of {STEP:.3f} m/s²: {STEP / NOISE:.1f} times the noise.
+- filtered by a first-order low-pass of {milliseconds:g} ms, with the same power: the correlation of successive samples is
+  {kept:.2f};
+- white, with a drift of {DRIFT:g} m/s² of every channel over the recording, of random sign;
+- white, with quantisation to twelve bits over ±10 g, steps of {STEP:.3f} m/s²: {STEP / NOISE:.1f} times the noise.
 
-*Error* and *stated* are the root-mean-square error and the stated uncertainty over the Cramér-Rao bound of white
-noise, in the mean over the parameters; *inflation* is the mean factor on the variances, *enlarged* the part of the
-campaigns in which there was any; *covered* is the part of all 95 % intervals that hold the truth.
+*Error* and *stated* are the root-mean-square error and the stated uncertainty divided by the Cramér-Rao bound of white
+noise, as means over the parameters; *inflation* is the mean factor on the variances, *inflated* the fraction of the
+campaigns with a factor above 1; *covered* is the fraction of all 95 % intervals that contain the true value.
 
-## What came out
+## Results
 
-Wanted are {WANTED:g} % of the intervals holding the truth, or more; {met}. The least is {low.coverage:.1f} %
-({KINDS[low.case.measure]}; {low.case.test}).
+At least {WANTED:g} % of the intervals are required to contain the true value; {met}. The lowest coverage is
+{low.coverage:.1f} % ({KINDS[low.case.measure]}; {low.case.test}).
 
 {table(head, rows)}
 
 Every parameter of every row is in [coloured.json](coloured.json).
 
-## To run it again
+## Reproduction
 
     python docs/studies/coloured.py --campaigns {many} --processes 2
 """

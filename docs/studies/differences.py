@@ -1,4 +1,4 @@
-"""Are the differences that `sprung compare` calls likely or certain real ones? Writes differences.md.
+"""Are the differences that `sprung compare` reports as likely or certain real? Writes differences.md.
 
 Run with `python docs/studies/differences.py --processes 2`, or `nox -s studies` for all studies.
 """
@@ -118,7 +118,7 @@ def page(cases: Sequence[dict[str, Any]]) -> str:
     same = [one for one in cases if one["change"] == 0]
     changed = [one for one in cases if one["change"] > 0]
     first = table(
-        ("scale", "pairs", "RMS of z", "z beyond ±1.96", "joint p < 0.05", "parameter seen", "mode seen"),
+        ("scale", "pairs", "RMS of z", "z beyond ±1.96", "joint p < 0.05", "parameter detected", "mode detected"),
         [
             (
                 "weighed" if one["weighed"] else "unknown, per total mass",
@@ -133,7 +133,15 @@ def page(cases: Sequence[dict[str, Any]]) -> str:
         ],
     )
     second = table(
-        ("front dampers weaker by", "scale", "pairs", "seen in c_sf", "seen in another", "joint p < 0.05", "mode seen"),
+        (
+            "front dampers weaker by",
+            "scale",
+            "pairs",
+            "detected in c_sf",
+            "detected in another",
+            "joint p < 0.05",
+            "mode detected",
+        ),
         [
             (
                 f"{100 * one['change']:g} %",
@@ -149,29 +157,30 @@ def page(cases: Sequence[dict[str, Any]]) -> str:
     )
     return f"""# Differences between two results
 
-`sprung compare` calls a difference *likely* or *certain* where chance alone would hardly make one as large anywhere in its
-table. How often does it say so of a vehicle that nobody touched, and how small a change does it find?
+`sprung compare` reports a difference as *likely* or *certain* if a difference as large anywhere in the table would be
+improbable by chance. How often does this happen for an unchanged vehicle, and how small a change is detected?
 
-## How it was done
+## Method
 
 The paper's car, four drops (all, front, rear, left wheels), empty, with the usual eight sensors and noise of {NOISE:g} m/s².
-Two campaigns, each with noise of its own, identified with the model that the car has, and compared. Once the car was weighed
-anew for each campaign, with a standard uncertainty of 2 kg; once nothing told the scale, so that parts of the total mass were
+Two campaigns with independent noise were identified with the correct model and compared. In one series the car was weighed
+for each campaign, with a standard uncertainty of 2 kg; in the other the scale was unknown, so that values per total mass were
 compared.
 
-## Of a vehicle that nobody touched
+## Unchanged vehicle
 
 {first}
 
-*RMS of z*: root-mean-square difference in standard uncertainties, 1 where these are right. *z beyond ±1.96*: single parameters,
-5 % where they are right. *Joint p < 0.05*: all estimated parameters at once, 5 % (of an unknown scale, lengths alone). *Seen*:
-tables in which any parameter, or any mode, was called likely or certain; at most 5 % is what Holm's correction promises.
+*RMS of z*: root-mean-square difference in standard uncertainties; 1 if these are correct. *z beyond ±1.96*: single
+parameters; 5 % if the uncertainties are correct. *Joint p < 0.05*: all estimated parameters together; 5 % (with an
+unknown scale, lengths only). *Detected*: tables in which any parameter, or any mode, was reported as likely or certain;
+at most 5 % with Holm's correction.
 
-## Of a vehicle with weaker front dampers
+## Vehicle with weaker front dampers
 
 {second}
 
-## To run it again
+## Reproduction
 
     python docs/studies/differences.py --processes 2
 """

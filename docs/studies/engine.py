@@ -1,4 +1,4 @@
-"""An engine on its mounts, which no sensor feels: is it found, and how well? Writes engine.md.
+"""An engine on its mounts, without a sensor: is it detected, and how accurately? Writes engine.md.
 
 Run with `python docs/studies/engine.py --processes 2`, or `nox -s studies` for all studies.
 """
@@ -26,8 +26,8 @@ RATE, DURATION, NOISE = 500.0, 3.2, 0.02
 VEHICLES: tuple[tuple[Vehicle, float], ...] = ((TABLE_1_CAR, 0.0), (SCHOOL_BUS, -1.1))
 """What is dropped, and where its engine is: in wheelbases forward of the front axle."""
 
-RUBS = 60.0
-"""N of dry friction in each suspension of the car that rubs."""
+FRICTION = 60.0
+"""N of dry friction in each suspension of the car with friction."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,12 @@ class Trial:
 def main() -> None:
     """Run the study."""
     told = arguments("An engine on its mounts.", campaigns=40).parse_args()
-    kinds = [(which, rubs) for which in range(len(VEHICLES)) for rubs in (False, True)][:3]
-    tasks = [(which, rubs, seed) for which, rubs in kinds for seed in range(told.campaigns // (4 if rubs else 1))]
+    kinds = [(which, with_friction) for which in range(len(VEHICLES)) for with_friction in (False, True)][:3]
+    tasks = [
+        (which, with_friction, seed)
+        for which, with_friction in kinds
+        for seed in range(told.campaigns // (4 if with_friction else 1))
+    ]
     trials: list[Trial] = []
     for trial in run(attempt, tasks, told.processes, 1):
         trials.append(trial)
@@ -65,7 +69,7 @@ def main() -> None:
         write(told.to, "engine", page(trials), {"campaigns": [_document(one) for one in trials]})
 
 
-def attempt(which: int, rubs: bool, seed: int) -> Trial:
+def attempt(which: int, with_friction: bool, seed: int) -> Trial:
     """Give a vehicle an engine of any usual kind, and identify it without saying so."""
     plain, place = VEHICLES[which]
     random = np.random.default_rng([seed, which])
@@ -78,13 +82,13 @@ def attempt(which: int, rubs: bool, seed: int) -> Trial:
         c_e=2 * random.uniform(0.03, 0.15) * mass * turning,
         x_e=plain.wheelbase * (place + random.uniform(-0.1, 0.2)),
     )
-    if rubs:
-        vehicle = replace(vehicle, F_f=RUBS, F_r=RUBS, s_f=3e5, s_r=3e5)
+    if with_friction:
+        vehicle = replace(vehicle, F_f=FRICTION, F_r=FRICTION, s_f=3e5, s_r=3e5)
     campaign = sprung.simulate(
         vehicle, loads=[ballast(plain)], rate=RATE, duration=DURATION, rest=0.4, noise=NOISE, seed=seed
     )
     result = sprung.identify(campaign)
-    forced = "" if rubs or seed % 4 else sprung.identify(campaign, extras=[]).verdict.state
+    forced = "" if with_friction or seed % 4 else sprung.identify(campaign, extras=[]).verdict.state
     errors = {}
     for name, truth in vehicle.parameters.items():
         found = result.parameters.get(name)
@@ -93,7 +97,7 @@ def attempt(which: int, rubs: bool, seed: int) -> Trial:
             holds = (low is None or low <= truth) and (high is None or truth <= high)
             size = truth if name != "x_e" else vehicle.wheelbase
             errors[name] = ((found.value - truth) / abs(size), (found.value - truth) / found.std, holds)
-    kind = plain.name + (", rubbing" if rubs else "")
+    kind = plain.name + (" with friction" if with_friction else "")
     return Trial(kind, result.fit.model, result.verdict.state, forced, errors)
 
 
@@ -104,38 +108,48 @@ def _document(trial: Trial) -> dict[str, Any]:
 
 def page(trials: Sequence[Trial]) -> str:
     """Write the page."""
-    head = ["vehicle", "campaigns", "found", " / ".join(VERDICTS[:3]), "engine's mass to", "worst parameter to"]
-    head += ["error over stated", "covered", "without it: " + " / ".join(VERDICTS[:3])]
+    head = [
+        "vehicle",
+        "campaigns",
+        "correct model",
+        " / ".join(VERDICTS[:3]),
+        "error of the engine's mass",
+        "worst parameter",
+    ]
+    head += ["error over stated", "covered", "without the term: " + " / ".join(VERDICTS[:3])]
     kinds = list(dict.fromkeys(one.kind for one in trials))
     rows = [_row(kind, [one for one in trials if one.kind == kind]) for kind in kinds]
     return f"""# An engine on its mounts
 
-Eight accelerometers sit on the body and the wheels, none on the engine, and ten percent of the body is one. Is it found from
-what it does to the body, where in the vehicle is it, and what are the other numbers worth?
+Eight accelerometers are mounted on the body and the wheels, none on the engine, which has about ten percent of the sprung
+mass. Is the engine detected from its effect on the body, how accurately is it located, and how accurate are the other
+parameters?
 
-## How it was done
+## Method
 
-The paper's car and school bus, and the car with {RUBS:g} N of dry friction in each suspension. Each time the engine was
-drawn: 6 to 18 % of the sprung mass, 6 to 15 Hz on its mounts with the body held, 3 to 15 % of critical damping, near the front
-axle (the bus's near the rear one). Ten drops, five with a load; {RATE:g} samples per second, noise {NOISE:g} m/s². Nobody said
-that there was an engine. Every fourth campaign without friction was identified once more with `extras = []`.
+The paper's car and school bus, and the car with {FRICTION:g} N of dry friction in each suspension. The engine was drawn
+at random for each campaign: 6 to 18 % of the sprung mass, 6 to 15 Hz on its mounts with the body fixed, 3 to 15 % of
+critical damping, near the front axle (of the bus near the rear axle). Ten drops, five with a load; {RATE:g} samples per
+second, noise {NOISE:g} m/s². The campaign file does not mention an engine. Every fourth campaign without friction was
+identified once more with `extras = []`.
 
-## What came out
+## Results
 
 {table(head, rows)}
 
-*Found*: the model had an engine, and friction where there was some, and nothing else. *To*: root-mean-square error, the
-place of the engine counted in wheelbases. *Error over stated*: root-mean-square error over the standard uncertainty told
-with it, over all parameters; *covered*: 95 % intervals that hold the truth.
+*Correct model*: the selected model has an engine, friction if the vehicle has friction, and nothing else. Errors are
+root-mean-square errors; that of the engine's position is relative to the wheelbase. *Error over stated*: root-mean-square
+error divided by the stated standard uncertainty, over all parameters; *covered*: 95 % intervals that contain the true
+value.
 
-## To run it again
+## Reproduction
 
     python docs/studies/engine.py --processes 2
 """
 
 
 def _row(kind: str, trials: Sequence[Trial]) -> list[str]:
-    asked = {"engine", "friction"} if "rubbing" in kind else {"engine"}
+    asked = {"engine", "friction"} if "friction" in kind else {"engine"}
     right = [one for one in trials if set(one.model) == asked and one.verdict != "reject"]
     names = [name for name in (right[0].errors if right else {}) if all(name in one.errors for one in right)]
     told = np.array([[one.errors[name] for name in names] for one in right], dtype=float).reshape(-1, len(names), 3)

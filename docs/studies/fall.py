@@ -1,4 +1,4 @@
-"""What does the fall before the landing tell? Writes fall.md.
+"""How much information does the flight phase before the landing contain? Writes fall.md.
 
 Run with `python docs/studies/fall.py --processes 2`, or `nox -s studies` for all studies.
 """
@@ -22,10 +22,10 @@ from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 RATE, DURATION, HEIGHT, NOISE = 250.0, 2.0, 0.05, 0.1
 WHEELS = (("fl", "fr"), ("fl", "rl"))
 
-RUBBING = Vehicle.from_parameters(
-    TABLE_1_CAR.parameters | {"F_f": 60.0, "F_r": 80.0, "s_f": 1.5e5, "s_r": 2e5}, name="Table 1 car, rubbing"
+CAR_WITH_FRICTION = Vehicle.from_parameters(
+    TABLE_1_CAR.parameters | {"F_f": 60.0, "F_r": 80.0, "s_f": 1.5e5, "s_r": 2e5}, name="Table 1 car with friction"
 )
-VEHICLES = (TABLE_1_CAR, SCHOOL_BUS, RUBBING)
+VEHICLES = (TABLE_1_CAR, SCHOOL_BUS, CAR_WITH_FRICTION)
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Trial:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("What the fall tells.", campaigns=40).parse_args()
+    told = arguments("Information in the flight phase.", campaigns=40).parse_args()
     tasks = [(which, seed) for which in range(len(VEHICLES)) for seed in range(told.campaigns)]
     trials: list[Trial] = []
     for trial in run(attempt, tasks, told.processes, 1):
@@ -98,29 +98,30 @@ def _document(trial: Trial) -> dict[str, Any]:
 
 def page(trials: Sequence[Trial]) -> str:
     """Write the page."""
-    head = ["vehicle", "campaigns", "fall used", "accepted", "error over error without", "error over stated", "covered"]
+    head = ["vehicle", "campaigns", "flight used", "accepted", "error ratio", "error over stated", "covered"]
     rows = [_row(vehicle.name, [one for one in trials if one.vehicle == vehicle.name]) for vehicle in VEHICLES]
-    return f"""# The fall before the landing
+    return f"""# The flight phase before the landing
 
-From its release on a drop is a known experiment: wheels in the air, whose tyres do nothing, then wheels that land.
-`sprung.identify(campaign, fall=True)` uses that too. What does it tell, and do intervals hold what they promise?
+From the release on a drop is a known experiment: first the tyres of the dropped wheels carry no force, then the wheels
+land. `sprung.identify(campaign, fall=True)` uses this {{term}}`flight phase` as well. How much information does it
+contain, and do the intervals have the stated coverage?
 
-## How it was done
+## Method
 
 The paper's car and school bus, and the car with dry friction; two drops from {100 * HEIGHT:g} cm (front, left), each with
-and without a load of a tenth of the body; {DURATION:g} s at {RATE:g} samples per second, noise {NOISE:g} m/s²; total mass
-weighed to 0.1 %. Every campaign was identified twice, from the landing and from the release on, with the model that the
-vehicle has.
+and without a load of a tenth of the sprung mass; {DURATION:g} s at {RATE:g} samples per second, noise {NOISE:g} m/s²;
+total mass weighed to 0.1 %. Every campaign was identified twice, from the landing on and from the release on, with the
+correct model.
 
-## What came out
+## Results
 
 {table(head, [row for row in rows if row])}
 
-*Error over error without*: root-mean-square error from the release on, over that from the landing on, in the middle of the
-parameters. *Error over stated*: root-mean-square error over the standard uncertainty told with it, over all parameters.
-*Covered*: 95 % intervals that hold the truth, from the landing on and from the release on.
+*Error ratio*: root-mean-square error from the release on, divided by that from the landing on, median over the
+parameters. *Error over stated*: root-mean-square error divided by the stated standard uncertainty, over all parameters,
+from the landing on and from the release on. *Covered*: 95 % intervals that contain the true value, likewise.
 
-## To run it again
+## Reproduction
 
     python docs/studies/fall.py --processes 2
 """

@@ -1,4 +1,4 @@
-"""What is noticed when something is wrong, and what comes of it? Writes faults.md.
+"""Which faults are detected, and what are the consequences? Writes faults.md.
 
 Run with `python docs/studies/faults.py --processes 2`, or `nox -s studies` for all studies.
 """
@@ -49,7 +49,7 @@ def main() -> None:
     outcomes: list[Outcome] = []
     for (number, seed, _), done in zip(tasks, run(try_all, tasks, told.processes, 1), strict=True):
         outcomes += done
-        tell(f"{FLEET[number].vehicle.name}, {seed}: {sum(one.named for one in done)} of {len(done)} named rightly")
+        tell(f"{FLEET[number].vehicle.name}, {seed}: {sum(one.named for one in done)} of {len(done)} identified")
         # It takes an hour: whoever interrupts it has what was found so far.
         write(told.to, "faults", page(outcomes, cleans), numbers(outcomes, cleans))
 
@@ -114,12 +114,12 @@ def page(outcomes: Sequence[Outcome], cleans: Sequence[Clean]) -> str:
         "fault",
         "campaigns",
         "noticed",
-        "named rightly",
-        "put right",
-        "left out",
+        "identified",
+        "corrected",
+        "excluded",
         " / ".join(VERDICTS),
-        "off, rms",
-        "off, worst",
+        "deviation, rms",
+        "deviation, worst",
         "harm",
     ]
     rows = [_row(name, each) for name, each in sorted_out.items()]
@@ -133,41 +133,42 @@ def page(outcomes: Sequence[Outcome], cleans: Sequence[Clean]) -> str:
     done = "\n".join(f"- {name}: {INJURIES[name].what}." for name in sorted_out)
     return f"""# Faults
 
-What is noticed when a sensor, a logger, the campaign file or the test itself is at fault, and what comes of it?
+Which faults of sensors, loggers, the campaign file or the test are detected, and what are the consequences for the result?
 
-## How it was done
+## Method
 
-Vehicles, each tested in its own way:
+The vehicles, each with a different test:
 
 {tests}
 
-Sensors that feel gravity read {OFFSET:g} m/s² too much or too little at rest (root-mean-square), anew in every drop. To
-each of the vehicles' campaigns every fault was done, one at a time; where and how much was drawn at random, within
+Sensors that measure gravity have an offset of {OFFSET:g} m/s² root-mean-square, drawn for every drop. Every fault was
+introduced into the campaigns of each vehicle, one at a time. Place and size were drawn at random within these limits:
 
 {done}
 
-A fault is *noticed* if a fault of the result, which the sound campaign's has not, has its code or names the channel,
-recording or load that was spoilt; it is *named rightly* if one has its code and names all of these, or where the
-campaign is to be refused, if the refusal names them and says what is wrong. *Left out* counts the
-campaigns of which a channel or drop was not used, *put right* those in which it was noticed, and everything used and
-accepted all the same. *Off* are the parameters' distances from those of the sound campaign, in that one's standard
-uncertainties, of the campaigns that were accepted; *harm* counts those accepted with a parameter that is off by more than
-{FAR:g} of its own, and in brackets those of them in which nothing was noticed.
+A fault is *noticed* if the result reports a fault that the result of the sound campaign does not report, and this has the
+correct code or names the affected channel, recording or load. It is *identified* if one reported fault has the correct
+code and names all of these; if the campaign is to be refused, the refusal must name them and state the reason. *Excluded*
+counts the campaigns in which a channel or drop was not used. *Corrected* counts those in which the fault was noticed and
+all data were used and accepted. The *deviation* is the difference of a parameter from that of the sound campaign, in
+standard uncertainties of the latter, for the campaigns that were accepted. *Harm* counts the accepted campaigns with a
+parameter that deviates by more than {FAR:g} of its own standard uncertainties, and in brackets those of them in which
+nothing was noticed.
 
-{len(cleans)} campaigns were identified as they were, half of them with white noise, a quarter with noise behind a first-order
-low-pass of {1000 * TIME_CONSTANT:g} ms and a quarter rounded to twelve bits over ±10 g; a drift is no noise here but a
-fault. Any fault reported of them, and any verdict but accept, is a false alarm.
+{len(cleans)} sound campaigns were identified, half of them with white noise, a quarter with noise filtered by a first-order
+low-pass of {1000 * TIME_CONSTANT:g} ms and a quarter quantised to twelve bits over ±10 g; drift is not noise here but a
+fault. Any reported fault, and any verdict other than accept, is a false alarm.
 
-## What came out
+## Results
 
-Of {everything} faults {noticed} were noticed ({_percent(noticed, everything)}) and {named} named rightly
-({_percent(named, everything)}); of those not noticed {doubted} were doubted, rejected or refused all the same. Numbers far
-off were accepted {harm} times, {unseen} times without a word. Of {len(cleans)} sound campaigns {len(alarms)} gave a false
-alarm.
+Of {everything} faults {noticed} were noticed ({_percent(noticed, everything)}) and {named} identified
+({_percent(named, everything)}). Of those not noticed {doubted} had the verdict doubtful or reject, or were refused. Wrong
+numbers were accepted {harm} times, {unseen} times without a reported fault. Of {len(cleans)} sound campaigns
+{len(alarms)} gave a false alarm.
 
 {table(head, rows)}
 
-What was said where a fault was not named rightly, most often first:
+Reports for faults that were not identified, most frequent first:
 
 {_missed(sorted_out)}
 
@@ -175,9 +176,9 @@ False alarms:
 
 {_alarms(cleans)}
 
-Every fault that was not named, and every false alarm, is in [faults.json](faults.json).
+Every fault that was not identified, and every false alarm, is in [faults.json](faults.json).
 
-## To run it again
+## Reproduction
 
     python docs/studies/faults.py --processes 2
 """
@@ -210,7 +211,7 @@ def _missed(sorted_out: Mapping[str, Sequence[Outcome]]) -> str:
         if missed:
             said = "; ".join(f"{count} × {what}" for what, count in missed.most_common(4))
             rows.append([name, f"{sum(missed.values())} of {len(each)}", said])
-    return table(["fault", "missed", "said instead"], rows) if rows else "Nothing was missed."
+    return table(["fault", "missed", "reported instead"], rows) if rows else "Nothing was missed."
 
 
 def _alarms(cleans: Sequence[Clean]) -> str:
@@ -221,7 +222,7 @@ def _alarms(cleans: Sequence[Clean]) -> str:
             text = "; ".join(f"{count} × {what}" for what, count in said.most_common(4)) or "-"
             yield [kind, f"{len(each)}", f"{sum(said.values())}", text]
 
-    return table(["noise", "campaigns", "false alarms", "said"], rows())
+    return table(["noise", "campaigns", "false alarms", "reported"], rows())
 
 
 def _codes(one: Clean | Outcome) -> str:

@@ -1,4 +1,4 @@
-"""What comes of vehicles with dry friction, and of ones without any? Writes friction.md.
+"""Is dry friction detected, and is none reported for vehicles without it? Writes friction.md.
 
 Run with `python docs/studies/friction.py --processes 2`, or `nox -s studies` for all studies.
 """
@@ -61,7 +61,7 @@ class Trial:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("What comes of dry friction.", campaigns=100).parse_args()
+    told = arguments("Vehicles with dry friction.", campaigns=100).parse_args()
     tasks: list[tuple[Kind, int]] = [("none", seed) for seed in range(told.campaigns)]
     tasks += [("friction", seed) for seed in range(told.campaigns)]
     tasks += [("another law", seed) for seed in range(max(told.campaigns // 10, 1))]
@@ -79,7 +79,7 @@ def attempt(kind: Kind, seed: int) -> Trial:
     if kind == "none":
         test = FLEET[seed % len(FLEET)]
         return _judged(kind, test.vehicle, test.campaign(seed))
-    vehicle = _rubbing((TABLE_1_CAR, SCHOOL_BUS)[seed % 2], random, uneven=kind == "another law")
+    vehicle = _with_friction((TABLE_1_CAR, SCHOOL_BUS)[seed % 2], random, uneven=kind == "another law")
     law: Law = "dahl" if kind == "friction" else "bouc-wen"
     loads = loads_of(vehicle)
     drops = [{"wheels": wheels, "height": HEIGHT, "load": name} for name in ("empty", "ballast") for wheels in WHEELS]
@@ -87,7 +87,7 @@ def attempt(kind: Kind, seed: int) -> Trial:
     return _judged(kind, vehicle, campaign)
 
 
-def _rubbing(vehicle: Vehicle, random: np.random.Generator, uneven: bool) -> Vehicle:
+def _with_friction(vehicle: Vehicle, random: np.random.Generator, uneven: bool) -> Vehicle:
     """Give a vehicle friction of half a percent to three of a wheel's load, and for another law uneven dampers as well."""
     weight = 9.81 * vehicle.m_s / 4
     friction = {f"F_{axle}": float(weight * random.uniform(0.005, 0.03)) for axle in "fr"}
@@ -95,7 +95,7 @@ def _rubbing(vehicle: Vehicle, random: np.random.Generator, uneven: bool) -> Veh
     if uneven:
         friction, stiff = {"F_f": 100.0, "F_r": 100.0}, {"s_f": 2e5, "s_r": 2e5}
         friction |= {"r_f": 2.0, "r_r": 2.0}
-    return Vehicle.from_parameters(vehicle.parameters | friction | stiff, name=f"{vehicle.name}, rubbing")
+    return Vehicle.from_parameters(vehicle.parameters | friction | stiff, name=f"{vehicle.name} with friction")
 
 
 def _judged(kind: Kind, vehicle: Vehicle, campaign: sprung.Campaign) -> Trial:
@@ -130,27 +130,30 @@ def page(trials: Sequence[Trial]) -> str:
     ]
     sound = [one for one in trials if one.kind == "none"]
     added = sum(bool(one.extras) for one in sound)
-    return f"""# Friction
+    return f"""# Dry friction
 
-What comes of vehicles with dry friction when nobody says that there is any, and of vehicles without?
+Is dry friction detected if the campaign file does not mention it, and how accurate are the results? Is friction reported for
+vehicles without it?
 
-## How it was done
+## Method
 
-*Friction*: the paper's car and school bus, with friction of 0.5 to 3 % of a wheel's load on each spring, built up within 0.3
-to 0.8 mm (drawn at random), dropped from {100 * HEIGHT:g} cm, four ways, with and without a load of a tenth of the body;
-{RATE:g} samples per second, noise 0.02 m/s². The drops were followed by equations and a solver of their own
-(`hysteresis.py`: Runge and Kutta, 0.2 ms; Dahl's law). *Another law*: the same with 100 N, dampers that resist twice as
-much in rebound, and hysteresis after Bouc and Wen, which is not what is fitted. *None*: the linear vehicles of the study of
-faults. Everything was identified as it comes: `sprung.identify(campaign)`.
+*Friction*: the paper's car and school bus, with friction of 0.5 to 3 % of a wheel's load on each spring and a presliding
+deflection of 0.3 to 0.8 mm (drawn at random), dropped from {100 * HEIGHT:g} cm in four ways, with and without a load of a
+tenth of the sprung mass; {RATE:g} samples per second, noise 0.02 m/s². The drops were simulated with separately written
+equations and a separate solver (`hysteresis.py`: Runge-Kutta, step 0.2 ms; {{term}}`Dahl's model <Dahl model>`). *Another
+law*: the same with 100 N, dampers with twice the rate in rebound, and hysteresis after Bouc and Wen, which is not the
+model of the fit. *None*: the linear vehicles of the study of faults. Every campaign was identified with default options:
+`sprung.identify(campaign)`.
 
-## What came out
+## Results
 
 {table(head, [row for row in rows if row])}
 
-Errors are those of all parameters but the stiffness of friction at rest, in percent of the truth; *covered* are the 95 %
-intervals that hold it. Of {len(sound)} campaigns without friction {added} were given an extra that is not there.
+Errors are those of all parameters except the presliding stiffness, in percent of the true value; *covered* is the
+percentage of 95 % intervals that contain it. Of {len(sound)} campaigns without friction {added} were given a model term
+that the vehicle does not have.
 
-## To run it again
+## Reproduction
 
     python docs/studies/friction.py --processes 2
 """

@@ -30,7 +30,7 @@ from damage import spoilt
 from readers import LONGEST, READERS, Broken, Reader, sound_files, tried
 
 import sprung
-from sprung.formats.refusals import allowance
+from sprung.formats.reading_errors import memory_limit
 
 Arc: TypeAlias = tuple[CodeType, int, int]
 
@@ -115,7 +115,7 @@ def fuzz(reader: Reader, folder: Path, seconds: float, seed: int) -> None:
             with following:
                 read = tried(reader, place, data)
             grown = _resident() - peak
-            if number > len(ahead) and grown > allowance(len(data)):
+            if number > len(ahead) and grown > memory_limit(len(data)):
                 raise Broken(f"{grown / 1e6:.0f} MB outside of Python for a file of {len(data)} bytes")
         except Broken as broken:
             _say("broken", _keep(folder, data, "broken"), f"{_where(broken)}: {broken}")

@@ -1,4 +1,4 @@
-"""Eight loggers with clocks of their own: how well the fit sets them, and what not knowing them costs."""
+"""Eight loggers with independent clocks: accuracy of their synchronisation, and loss of accuracy of the parameters."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
         "worst",
         "stated",
         "covered, %",
-        "clocks told, %",
+        "clocks determined, %",
         "rms, ms",
         "within 0.3 ms, %",
     ]
@@ -152,39 +152,40 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
         for row in rows
     ]
     missing = [row["kind"] for row in rows if row["worst_rmse_over_bound"] > WANTED]
-    met = f"which is missed by: {'; '.join(missing)}" if missing else "which is kept"
+    met = f"which is not met by: {'; '.join(missing)}" if missing else "which all meet"
     return f"""# Several loggers
 
-Eight wireless loggers, one for each sensor, are a legitimate instrument: their clocks know nothing of each other. The
-release is one moment for all of them, and how the vehicle moves between the release and the landing follows from the
-vehicle alone; so each logger that shows the release tells when it was on its own clock, and the joint fit finds one delay
-per logger and drop along with the vehicle. The same samples tell of the vehicle too, whatever the clocks: where the flight
-is explained down to the noise, that is used.
+Eight wireless loggers, one for each sensor, have clocks without a common origin. The release is one instant for all of
+them, and the motion of the vehicle between the release and the landing follows from the vehicle alone. Each logger that
+records the release therefore determines its time on its own clock, and the fit estimates one delay per logger and drop
+together with the vehicle parameters. The same samples contain information about the vehicle; it is used if the residuals
+of the flight phase are at the noise level.
 
-## How it was done
+## Method
 
-Ten drops of the paper's car (Table 1), empty and with a load, total mass weighed, {NOISE:g} m/s² of noise. Every sensor is a
-logger of its own, started within {APART:g} s of the others; its clock shows anything, and is fast or slow by up to what
-the table says. All from `sprung.identify`.
+Ten drops of the paper's car (Table 1), empty and with a load, total mass weighed, {NOISE:g} m/s² of noise. Every sensor
+has its own logger, started within {APART:g} s of the others. The clock offsets are arbitrary; the rate error of each
+clock is up to the value in the table. All figures are from `sprung.identify`.
 
-*Error* is the root-mean-square error over the Cramér-Rao bound of the same drops with one clock for all, in the mean over
-the parameters, and for the *worst* of them; *stated* is the stated uncertainty over that bound. Clocks are *told* where
-their stated uncertainty is below 0.1 ms; the others belong to wheels and corners that hardly move in a drop of the other
-axle, and for them the table has the error over the stated uncertainty.
+*Error* is the root-mean-square error divided by the Cramér-Rao bound of the same drops with one common clock, as the mean
+over the parameters, and for the *worst* of them; *stated* is the stated uncertainty divided by that bound. A clock counts
+as *determined* if its stated uncertainty is below 0.1 ms. The others belong to wheels and corners that hardly move in a
+drop of the other axle; for them the table contains the error divided by the stated uncertainty.
 
-## What came out
+## Results
 
-Wanted are clocks within 0.3 ms, and errors of at most {WANTED:g} times the bound, in the worst of all parameters,
-{met}. Where fewer than 95 % are covered, error bars are too small.
+The requirements are clocks within 0.3 ms, and errors of at most {WANTED:g} times the bound for the worst parameter,
+{met}. If fewer than 95 % of the intervals are covered, the stated uncertainties are too small.
 
 {table(head, body)}
 
-Every parameter of every row is in [loggers.json](loggers.json). What is lost against one clock is lost to delays that are
-parameters too, seventy of them; flights give some of it back, for some parameters all of it and more, as the bound is that of
-the decays alone. Slower loggers are interpolated to the rate of the fastest, and begin four of their own samples later, so that
-nothing of the landing is in theirs. Drift within a record is not modelled: it is in the stated uncertainty of the clocks.
+Every parameter of every row is in [loggers.json](loggers.json). The loss relative to one clock is due to the seventy
+delays, which are additional unknowns. The flight phases compensate part of the loss, for some parameters more than all of
+it, as the bound is that of the free decays alone. Slower loggers are interpolated to the rate of the fastest, and begin
+four of their own samples later, so that the interpolation contains no part of the landing. Clock drift within a recording
+is not modelled; it is included in the stated uncertainty of the clocks.
 
-## To run it again
+## Reproduction
 
     python docs/studies/loggers.py --campaigns {rows[0]["campaigns"]} --processes 2
 """

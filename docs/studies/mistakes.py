@@ -144,18 +144,21 @@ def forward(place: Place, random: np.random.Generator) -> Place:
 
 
 OF_TESTS: Sequence[Injury] = (
-    Injury("position, mirrored", ("position",), "a body's sensor is stated left for right", placed(mirrored)),
-    Injury("position, 0.3 m", ("position",), "a body's sensor is stated 0.3 m forward or back", placed(forward)),
-    Injury("position, figures", ("position",), "two figures of a body's sensor's y are swapped", placed(swapped_digits)),
-    Injury("wrong wheel", ("wrong-wheel",), "a wheel's sensor is stated on another wheel", described("wheel", other_wheel)),
+    Injury("position, mirrored", ("position",), "the lateral position of a body sensor has the wrong sign", placed(mirrored)),
+    Injury("position, 0.3 m", ("position",),
+           "the stated position of a body sensor is 0.3 m too far forward or back", placed(forward)),
+    Injury("position, figures", ("position",),
+           "two digits of the lateral position of a body sensor are exchanged", placed(swapped_digits)),
+    Injury("wrong wheel", ("wrong-wheel",), "a wheel sensor is stated on another wheel", described("wheel", other_wheel)),
     Injury("load exchanged, one", ("load-exchanged",),
-           "a loaded drop is taken for an empty one, which is taken for it", loads_exchanged(False)),
+           "the recordings of a loaded and an empty drop are exchanged", loads_exchanged(False)),
     Injury("load exchanged, all", ("load-exchanged",),
-           "all loaded drops are taken for empty ones, and these for them", loads_exchanged(True)),
-    Injury("load position", ("load-position",), "an item of the load is stated 0.2 m off", load_moved),
+           "the recordings of all loaded and empty drops are exchanged", loads_exchanged(True)),
+    Injury("load position", ("load-position",), "the stated position of an item of the load has an error of 0.2 m", load_moved),
     Injury("brake", ("brake", "unlike-repeats"),
-           "in one drop an axle's dampers are 1.6 times as strong, its springs 1.15 times as stiff", one_drop(brake)),
+           "in one drop the dampers of an axle have 1.6 times, its springs 1.15 times their rate", one_drop(brake)),
     Injury("passenger", ("unlike-repeats",), "in one drop the body has 15 % more mass", one_drop(passenger)),
-    Injury("other wheels", ("wheels", "unlike-repeats"), "in one drop other wheels fell than stated", one_drop(fewer_wheels)),
+    Injury("other wheels", ("wheels", "unlike-repeats"),
+           "in one drop other wheels were dropped than stated", one_drop(fewer_wheels)),
 )  # fmt: skip
 """Of the test and the campaign file."""

@@ -1,4 +1,4 @@
-"""How good is modal identification? The default method at the bound, every method beside it, other programs.
+"""Accuracy of modal identification: the default method at the bound, the other methods, other programs.
 
 Writes modal.md. Run with `python docs/studies/modal.py --campaigns 1000 --processes 2`, or `nox -s studies` for all studies.
 Other programs are set beside ours where they are installed (`python -m pip install "sprung[peers]"`). `--hammer
@@ -278,61 +278,62 @@ def page(
         if fastest == OWN
         else f"Run in turns, {TURNS} times each at {HEADLINE:g} dB, the default took {times[OWN]:.3g} ms and the fastest other "
         f"program that takes several drops, {fastest}, {times[fastest]:.3g} ms, in the median: "
-        f"{times[OWN] / times[fastest]:.2f} of its time (wanted is at most {WANTED_TIME:g})."
+        f"{times[OWN] / times[fastest]:.2f} of its time (requirement: at most {WANTED_TIME:g})."
     )
     low, high = COVERAGE
-    return f"""# Modes, at the bound
+    return f"""# Accuracy of modal identification
 
-How near do the modes that `sprung modal` finds come to what the records can tell at all, do their intervals hold the
-truth as often as they say, and how do the other methods and other programs get on with the same records?
+How close are the errors of the modes of `sprung modal` to the {{term}}`Cramér-Rao bound`, do their intervals have the stated
+coverage, and how do other methods and other programs perform with the same recordings?
 
-## How it was done
+## Method
 
 The car of the paper's Table 1 is driven over the paper's half-sine bump, {HEIGHT:g} m high and passed in {PASSAGE:g} s,
-once with its left wheels, with all, with the front ones and with two diagonal ones: four records of the accelerations of
-its seven degrees of freedom, {RATE:g} Hz, {SECONDS:g} s from the end of the bump on. White noise is {HEADLINE:g} dB below
-the root-mean-square of each channel in the left-wheel record, the same in all four. No vehicle model is used, the number
-of modes is not told, and an offset of each channel in each record is taken to be unknown.
+once each with the left wheels, with all, with the front wheels and with two diagonal wheels: four recordings of the
+accelerations of its seven degrees of freedom, {RATE:g} Hz, {SECONDS:g} s from the end of the bump on. White noise is
+{HEADLINE:g} dB below the root-mean-square of each channel in the left-wheel recording, the same in all four. No vehicle
+model is used, the number of modes is not given, and the offset of each channel in each recording is unknown.
 
-The bound is that of Cramér and Rao for poles, shapes, amplitudes and offsets, all unknown, noise known. Errors of
-frequencies and damping ratios are in units of it; *covered* is the part of the 95 % intervals that hold the truth. The
+The Cramér-Rao bound is that for unknown poles, shapes, amplitudes and offsets and known noise. Errors of frequencies and
+damping ratios are in units of the bound; *covered* is the fraction of the 95 % intervals that contain the true value. The
 last two columns are the median errors in percent.
 
 ## The default method
 
-{every["with_all_modes"]} of {every["sets"]} sets gave exactly seven modes. Over everything the root-mean-square error is
-{every["rmse_over_bound"]:.3f} of the bound, in the worst of the fourteen numbers {every["worst_rmse_over_bound"]:.3f}
-(wanted is at most {WANTED_RMSE:g}), and {every["covered"]:.1f} % of all intervals hold the truth (wanted are {low:g} to
-{high:g} %). The worst of the three body modes is off by {every["body_percent"][0]:.3f} % in frequency and
-{every["body_percent"][1]:.3f} % in damping, in the median (wanted are {WANTED_FREQUENCY:g} and {WANTED_DAMPING:g} %). A
-root-mean-square error from {every["sets"]} sets is itself uncertain by {100 / np.sqrt(2 * every["sets"]):.1f} %.
+{every["with_all_modes"]} of {every["sets"]} sets gave exactly seven modes. The overall root-mean-square error is
+{every["rmse_over_bound"]:.3f} of the bound, that of the worst of the fourteen numbers {every["worst_rmse_over_bound"]:.3f}
+(requirement: at most {WANTED_RMSE:g}), and {every["covered"]:.1f} % of all intervals contain the true value (requirement:
+{low:g} to {high:g} %). The median error of the worst of the three body modes is {every["body_percent"][0]:.3f} % in
+frequency and {every["body_percent"][1]:.3f} % in damping (requirements: {WANTED_FREQUENCY:g} and {WANTED_DAMPING:g} %).
+The statistical uncertainty of a root-mean-square error from {every["sets"]} sets is
+{100 / np.sqrt(2 * every["sets"]):.1f} %.
 
 {table(head, lines)}
 
 ## Every method, and other programs
 
-The same records without noise, and with three levels of it, {SEEDS} seeds each: how many of the seven poles are found
-(within {100 * FOUND:g} % of the true one, no pole counted twice), and the largest error among the three body modes and
-among the four wheel modes, in percent, medians over the seeds; a dash where one of them is not found. The wheel hops are
-in pairs 0.003 Hz apart: to be found is no feat, to be told apart is. Times are medians at {HEADLINE:g} dB of one thread
-on a shared machine. All our methods choose their order themselves; the other programs were told to look for fourteen
-poles, on records thinned out to a tenth. {speed}
+The same recordings without noise, and with three noise levels, {SEEDS} seeds each. The table contains the number of the
+seven poles found (within {100 * FOUND:g} % of the true pole, no pole counted twice), and the largest error among the
+three body modes and among the four wheel modes, in percent, as medians over the seeds; a dash means that one of them is
+not found. The wheel-hop modes are pairs 0.003 Hz apart: finding a pole is easy, separating a pair is not. Times are
+medians at {HEADLINE:g} dB of one thread on a shared machine. All our methods select their order themselves; the other
+programs were given an order of fourteen poles, and recordings decimated by a factor of ten. {speed}
 
 {_methods(rows)}
 
-The method as printed, from sample to sample, finds hardly anything once there is noise: its regressor holds as much of it
-as what it explains. Frequency-domain methods without a likelihood suffer from damping, as the paper says. `peaks` and
-`emd` are not exact even without noise.
+The method as printed, with a lag of one sample, finds few modes in the presence of noise: its regressor contains as much
+noise as the dependent variable. Frequency-domain methods without a likelihood lose accuracy with damping, as the paper
+states. `peaks` and `emd` are not exact even without noise.
 
 ## One drop
 
-With the left-wheel record alone the bound for each of the wheel hops is about 100 %: no method can tell the four apart,
-whatever it prints. The default finds as many modes as the record holds, and `sprung modal` says that each may stand for
-several.
+With the left-wheel recording alone the bound for each of the wheel-hop modes is about 100 %: no method can separate the
+four, whatever it prints. The default method finds as many modes as the recording supports, and `sprung modal` states that
+each may represent several.
 
 {_methods(one)}
 
-{_beam(hammer)}## To run it again
+{_beam(hammer)}## Reproduction
 
     python -m pip install ".[peers]"
     python docs/studies/modal.py --campaigns {every["sets"]} --processes 2 --hammer HammerImpact.mat
@@ -371,8 +372,8 @@ def _beam(rows: Sequence[dict[str, Any]]) -> str:
         "f, Hz",
         "ζ",
         "amplitude, m/s²",
-        "f there, Hz",
-        "ζ there",
+        "f at these, Hz",
+        "ζ at these",
         "f per decade, %",
         "ζ per decade",
     ]
@@ -393,9 +394,9 @@ def _beam(rows: Sequence[dict[str, Any]]) -> str:
         )
     return f"""## A bolted beam
 
-Two steel halves joined by bolts, struck by a hammer (github.com/mattiacenedese/BRBtesting, three accelerometers, 12.8 kHz): the
-first two bending modes from 20 ms on, and in windows in which they fall by a factor of e^0.5. Joints that slide are softer and
-damp more: with larger amplitude frequencies must fall and damping must rise.
+Two steel halves joined by bolts and excited by a hammer (github.com/mattiacenedese/BRBtesting, three accelerometers, 12.8
+kHz): the first two bending modes from 20 ms on, and in windows in which they decay by a factor of e^0.5. Sliding joints
+are less stiff and have more damping: with increasing amplitude frequencies must decrease and damping must increase.
 
 {table(head, lines)}
 

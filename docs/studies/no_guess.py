@@ -1,4 +1,4 @@
-"""Is the optimum found without a guess, whatever the vehicle? Writes no-guess.md.
+"""Is the global optimum found without given start values? Writes no-guess.md.
 
 Run with `python docs/studies/no_guess.py --campaigns 500 --processes 2`, or `nox -s studies` for all studies.
 """
@@ -184,35 +184,36 @@ def page(cases: Sequence[Case], searches: Sequence[Search]) -> str:
     masses = f"{MASS[0]:g} kg to {MASS[1] / 1000:g} t"
     body, hop = f"{BODY[0]:g} and {BODY[1]:g} Hz", f"{HOP[0]:g} and {HOP[1]:g} Hz"
     damping = f"{DAMPING[0]:g} to {DAMPING[1]:g}"
-    return f"""# Without a guess
+    return f"""# Start values
 
-The joint fit climbs from starts of its own, a small catalogue of usual vehicles; nobody is asked for a first guess. A
-likelihood may have more than one summit. Is the one that is found the highest, whatever the vehicle?
+The optimisation computes its own start values: modulating function estimates, and a grid of usual vehicles. No start
+value is asked of the user. A likelihood may have several local maxima. Is the optimum found the global one for every
+vehicle?
 
-## How it was done
+## Method
 
-{many} two-axle vehicles were drawn at random: the body's mass from {masses}, its modes between {body},
+{many} two-axle vehicles were drawn at random: sprung mass from {masses}, body modes between {body},
 wheel hop between {hop} (undamped frequencies of the whole vehicle), and damping ratios from {damping} of each
 end of the body on its springs; {
         real.sum()
-    } of the vehicles have real poles. Each was dropped from blocks of 5 cm, on all,
-front, rear, left and right wheels, with {
-        NOISE:g} m/s² of white noise of its own, and either weighed - its total mass or both
-axles, drawn from an uncertainty of {
-        100 * WEIGHING:g} % of its mass - or dropped again with a load. The wheelbase is known,
-nothing else.
+    } of the vehicles have real poles. Each was dropped from blocks of 5 cm, with all,
+front, rear, left and right wheels, with {NOISE:g} m/s² of white noise, and was either weighed (total mass or both
+axles, with an error drawn from an uncertainty of {
+        100 * WEIGHING:g} % of its mass) or dropped again with a load. Only the wheelbase is
+known.
 
-The whole of `sprung.identify` went over every campaign. Then the same decays were fitted once more, from a start at the
-true parameters, which ends on the summit that belongs to the truth. *Gain* is the log-likelihood of the fit without a
-guess less that of the fit from the truth; the optimum counts as missed where it is below -{SAME:g}.
+Every campaign was analysed by the complete `sprung.identify`. Then the same free decays were fitted once more, from a
+start at the true parameters, which converges to the maximum nearest to them. *Gain* is the log-likelihood of the fit
+without given start values minus that of the fit from the true values; the optimum counts as missed if it is below
+-{SAME:g}.
 
-## What came out
+## Results
 
 The optimum was missed {_times(missed)}; the fit from the truth ended lower than the one without a guess {
         _times(beaten)
     }.
-How many of its refined starts ended where the fit ended: {ended}.
-Of all 95 % intervals {covered:.1f} % hold the truth.
+Number of optimised starts that reached the same optimum: {ended}.
+Of all 95 % intervals {covered:.1f} % contain the true value.
 
 {table(head, rows)}
 {
@@ -224,9 +225,9 @@ Where it was missed:
         if told
         else ""
     }
-The verdict judges the records, not the search. Every vehicle, with its verdict, is in [no-guess.json](no-guess.json).
+The verdict refers to the data, not to the search. Every vehicle, with its verdict, is in [no-guess.json](no-guess.json).
 
-## To run it again
+## Reproduction
 
     python docs/studies/no_guess.py --campaigns {many} --processes 2
 """

@@ -38,10 +38,10 @@ from every_format import (
 from scipy.io import savemat
 
 from sprung.campaign import read, read_vehicle
-from sprung.campaign.signals import column_of, recording_of
+from sprung.campaign.signals import find_column, make_recording
 from sprung.errors import InputError
 from sprung.formats import Table, from_sep005, read_table
-from sprung.formats.refusals import allowance
+from sprung.formats.reading_errors import memory_limit
 from sprung.vehicle import Sensor
 
 LONGEST = 5.0
@@ -103,9 +103,9 @@ def used(table: Table, name: str) -> None:
     for column in range(min(len(table.channels), 3)):
         if not np.array_equal(table.take([column], first, last)[0], values[column, first:last], equal_nan=True):
             raise Broken("other numbers in a part than in the whole")
-        table.spoilt(column)
-    wanted = [name for name in table.channels[:6] if name and len(column_of(table, name)) == 1] or ["a"]
-    recording_of(table, [Sensor(channel=name, on="body", position=(0, 0, 0)) for name in wanted], name)
+        table.find_non_number(column)
+    wanted = [name for name in table.channels[:6] if name and len(find_column(table, name)) == 1] or ["a"]
+    make_recording(table, [Sensor(channel=name, on="body", position=(0, 0, 0)) for name in wanted], name)
 
 
 def tried(reader: Reader, folder: Path, data: bytes) -> bool:
@@ -139,7 +139,7 @@ def tried(reader: Reader, folder: Path, data: bytes) -> bool:
         raise Broken(f"{type(error).__name__}: {error}"[:300]) from error
     finally:
         took = tracemalloc.get_traced_memory()[1] - before
-    if took > allowance(size):
+    if took > memory_limit(size):
         raise Broken(f"{took / 1e6:.0f} MB for a file of {size} bytes")
     return True
 

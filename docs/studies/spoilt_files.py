@@ -137,16 +137,18 @@ def fast_clock(_: DropTest, campaign: sprung.Campaign, random: np.random.Generat
 
 
 OF_RECORDINGS: Sequence[Injury] = (
-    Injury("missing column", ("missing",), "a column is not in one file", column_gone),
+    Injury("missing column", ("missing",), "a column is missing in one file", column_gone),
     Injury("missing, 5 samples", ("missing",), "five cells of a column are empty", gap(None, 5)),
     Injury("missing, 0.3 s", ("missing",), "cells of a column are empty for 0.3 s", gap(0.3)),
-    Injury("clock, jitter", ("clock",), "one file's times, not its samples, are 30 % of a step off", lines_of_one(jittered)),
-    Injury("clock, uneven", ("clock",), "one file's samples are 30 % of a step off, as its times say", uneven),
-    Injury("clock, lines lost", ("clock", "missing"), "three lines of one file are gone", lines_of_one(lines_lost)),
-    Injury("rate", ("rate",), "one file has 50 samples a second", lines_of_one(too_slow), "50 samples per second"),
+    Injury("clock, jitter", ("clock",),
+           "the time stamps of one file, not its samples, have an error of 30 % of an interval", lines_of_one(jittered)),
+    Injury("clock, uneven", ("clock",),
+           "the samples of one file are irregular by 30 % of an interval, as its time stamps state", uneven),
+    Injury("clock, lines lost", ("clock", "missing"), "three lines of one file are missing", lines_of_one(lines_lost)),
+    Injury("rate", ("rate",), "one file has 50 samples per second", lines_of_one(too_slow), "50 samples per second"),
     Injury("no release", ("no-release",), "one recording begins 0.03 to 0.1 s after the release", cut(just_after, True)),
     Injury("no decay", ("no-decay",), "one recording ends 0.3 s after the release", cut(lambda _: 0.3, False)),
-    Injury("clock, too fast", ("clock",), "one recording's clock runs 2 to 5 % fast or slow", fast_clock),
+    Injury("clock, too fast", ("clock",), "the clock of one recording is 2 to 5 % fast or slow", fast_clock),
     Injury("copy", ("copy",), "one drop has the recording of another", copied),
 )  # fmt: skip
 """Of recordings and their files."""

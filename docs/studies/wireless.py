@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
-from sprung.campaign import Campaign, Recording, merged
+from sprung.campaign import Campaign, Recording, merge_loggers
 from sprung.simulation import default_sensors
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, parse_record
@@ -109,7 +109,7 @@ def wireless(
             parts.append(Recording(name, (one.channels[channel],), values[None], float(shown[channel]), rates[channel]))
         ahead.append(shown - begins * fast)
         whole = Recording(f"{drop.label}*", one.channels, np.empty((len(S), 0)), 0.0, 1.0, parts=tuple(parts))
-        recording = merged(whole, [part.start for part in parts])
+        recording = merge_loggers(whole, [part.start for part in parts])
         drops.append(replace(drop, file=None, files=tuple(part.name for part in parts), recording=recording))
     campaign = replace(together, drops=tuple(drops), known={"total_mass": KnownValue(vehicle.total_mass)})
     return Wireless(campaign, np.array(ahead), together)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import sprung
-from sprung.campaign import Campaign, Recording, merged
+from sprung.campaign import Campaign, Recording, merge_loggers
 from sprung.vehicle import TABLE_1_CAR, WHEELS
 
 
@@ -31,7 +31,7 @@ def by_two_loggers(campaign: Campaign) -> Campaign:
             )
         )
         whole = Recording(f"{drop.label}*", one.channels, np.empty((len(one.channels), 0)), 0.0, 1.0, parts=parts)
-        recording = merged(whole, [part.start for part in parts])
+        recording = merge_loggers(whole, [part.start for part in parts])
         drops.append(replace(drop, file=None, files=tuple(part.name for part in parts), recording=recording))
     return replace(campaign, drops=tuple(drops))
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sprung.campaign import Drop, Recording, drop_names, merged, read, recording_names
+from sprung.campaign import Drop, Recording, merge_loggers, read, unique_drop_names, unique_recording_names
 from sprung.errors import InputError
 
 SENSORS = """
@@ -149,8 +149,8 @@ def test_drops_and_their_recordings_are_called_by_names_of_their_own(
     files: list[tuple[str, ...]], recordings: list[str], names: list[str]
 ) -> None:
     drops = [Drop(file=own[0]) if len(own) == 1 else Drop(files=own) for own in files]
-    assert list(recording_names(drops)) == recordings
-    assert list(drop_names(drops)) == names
+    assert list(unique_recording_names(drops)) == recordings
+    assert list(unique_drop_names(drops)) == names
 
 
 def part(name: str, rate: float, start: float, delay: float, samples: int) -> Recording:
@@ -165,7 +165,7 @@ def test_loggers_are_put_on_one_clock_by_a_moment_they_share(rate: float) -> Non
     parts = (part("a", 500, 100.0, 0.2, 900), part("b", rate, -7.0, 0.1003, int(2 * rate)))
     whole = Recording("drop", ("a", "b"), np.empty((2, 0)), 0.0, 1.0, parts=parts)
     # The moment 0.5 s of true time, on both clocks.
-    together = merged(whole, [100.3, -7.0 + 0.3997])
+    together = merge_loggers(whole, [100.3, -7.0 + 0.3997])
     true = together.time - 99.8
     clock = together.clocks[1]
     assert clock.offset - together.clocks[0].offset == pytest.approx(-7 + 0.3997 - 100.3, abs=0.5 / rate + 1e-9)
@@ -180,7 +180,7 @@ def test_loggers_are_put_on_one_clock_by_a_moment_they_share(rate: float) -> Non
 def test_a_logger_of_which_no_moment_is_known_is_left_out() -> None:
     parts = (part("a", 500, 0.0, 0.0, 900), part("b", 500, 0.0, 0.0, 900))
     whole = Recording("drop", ("a", "b"), np.empty((2, 0)), 0.0, 1.0, parts=parts)
-    together = merged(whole, [0.1, None])
+    together = merge_loggers(whole, [0.1, None])
     assert together.usable.tolist() == [True, False]
 
 
@@ -193,6 +193,6 @@ def test_no_channel_is_lost_to_rounding_where_its_logger_begins_last_or_ends_fir
             parts.append(Recording(name, (name,), values, float(random.uniform(-1000, 1000)), rate))
         whole = Recording("drop", ("fast", "slow"), np.empty((2, 0)), 0.0, 1.0, parts=tuple(parts))
         moments = [part.start + float(random.uniform(0.3, 0.6)) for part in parts]
-        together = merged(whole, moments)
+        together = merge_loggers(whole, moments)
         assert together.values.shape[1] > 500
         assert together.usable.all()

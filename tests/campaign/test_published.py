@@ -14,8 +14,8 @@ from jsonschema import Draft202012Validator
 
 import sprung
 from sprung.campaign import SCHEMA_FILE, SCHEMA_LINE, schema_text
-from sprung.campaign.keys import KEYS, without_example
-from sprung.campaign.published import campaign_schema
+from sprung.campaign.json_schema import campaign_schema
+from sprung.campaign.key_examples import KEYS, without_example
 from sprung.errors import InputError
 
 DATA = Path(__file__).resolve().parents[1] / "data"

@@ -47,7 +47,7 @@ def test_signals_at_two_rates_are_read_at_that_of_the_most() -> None:
     table = from_sep005([signal("a"), signal("b"), signal("c", fs=500), signal("d", fs=20)])
     assert table.clock == 2000.0
     assert table.resampled[2].rate_ratio == pytest.approx(0.25)
-    assert [table.spoilt(column) is not None for column in range(4)] == [False, False, False, True]
+    assert [table.find_non_number(column) is not None for column in range(4)] == [False, False, False, True]
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sprung.campaign import Campaign, Drop, DropTest, ModelChoice, Recording, read, write
-from sprung.campaign.comments import SECTIONS, meaning
+from sprung.campaign.comments import SECTIONS, describe_key
 from sprung.errors import InputError
 from sprung.files import atomic_write
 from sprung.files.ownership import MANIFEST
@@ -202,8 +202,8 @@ def test_comments_say_what_every_section_and_key_is_for(tmp_path: Path) -> None:
         ("load", "items"),
         ("drop", "wheels"),
     ):
-        assert meaning(section, key)
-        assert text.count(f"# {meaning(section, key)}\n") == 1
+        assert describe_key(section, key)
+        assert text.count(f"# {describe_key(section, key)}\n") == 1
     assert {load.name: load for load in read(path).loads} == {load.name: load for load in campaign.loads}
     assert read(path).known == campaign.known
 

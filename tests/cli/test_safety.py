@@ -85,7 +85,7 @@ def test_a_decoration_that_fails_is_named_and_costs_nothing_else(
 ) -> None:
     """The amplitude curves, a part of the report: on the terminal, in the report and in results.json."""
     monkeypatch.setattr(IDENTIFY, "amplitudes_of", failing)
-    monkeypatch.setattr("sprung.report.sections.spectra", failing)
+    monkeypatch.setattr("sprung.report.page.sections.spectra", failing)
     said = run("identify", one_drop_folder.path)
     why = "could not be drawn: Residuals are not finite in the initial point. (ValueError)."
     sentences = [f"The amplitude curves {why}", f'The part "Spectra" of the report {why}']

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import sprung
-from sprung.campaign.keys import KEYS
+from sprung.campaign.key_examples import KEYS
 from sprung.campaign.schema import KNOWABLE
 from sprung.vehicle import PARAMETERS
 
@@ -88,7 +88,13 @@ def test_the_public_names_are_described(built: Path) -> None:
     text = page(built, "api") + page(built, "rooms")
     for name in sprung.__all__:
         assert f'id="sprung.{name}"' in text
-    for name in ("vehicle.PARAMETERS", "identification.Fit", "modal.Modes", "study.Comparison", "errors.InputError"):
+    for name in (
+        "vehicle.PARAMETERS",
+        "estimation.FitResult",
+        "vibration.Modes",
+        "study.Comparison",
+        "errors.InputError",
+    ):
         assert f'id="sprung.{name}"' in text or f'id="sprung.{name.split(".")[1]}"' in text
 
 

@@ -128,7 +128,7 @@ def test_no_guess(tmp_path: Path) -> None:
 @pytest.mark.long
 def test_differences(tmp_path: Path) -> None:
     page, numbers = study("differences.py", tmp_path, "--campaigns", "1")
-    assert "Of a vehicle that nobody touched" in page
+    assert "## Unchanged vehicle" in page
     assert len(numbers["cases"]) == 10
     for case in numbers["cases"]:
         assert 0.2 < case["z_rms"] < (3 if case["change"] == 0 else 30)

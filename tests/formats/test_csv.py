@@ -112,8 +112,8 @@ def test_blank_lines_keep_the_line_numbers(tmp_path: Path) -> None:
 def test_text_among_numbers_is_noted_per_channel_and_named_by_line(tmp_path: Path, text: Text) -> None:
     content = text("time,a,b,c").replace("0.0100,9,11.5", "0.0100,OVLD,11.5").replace("0.0120,10", "0.0120,OVLD")
     table = table_of(tmp_path, content)
-    assert [table.spoilt(column) is not None for column in range(3)] == [True, False, False]
-    assert str(table.spoilt(0)).startswith(
+    assert [table.find_non_number(column) is not None for column in range(3)] == [True, False, False]
+    assert str(table.find_non_number(0)).startswith(
         "x.csv: line 7, column 'a': found 'OVLD' (the first of 2 such cells); expected a number."
     )
     assert np.isfinite(table.take([1, 2])).all()
@@ -146,6 +146,6 @@ def test_a_file_that_is_no_table_is_refused_with_its_reason(tmp_path: Path, cont
 def test_what_stands_in_a_file_does_not_steer_the_terminal(tmp_path: Path) -> None:
     path = tmp_path / "x.csv"
     path.write_text("time,a\n0,1\n1,\x1b[2J\n2,1\xa0000\n", encoding="utf-8")
-    said = str(read_table(path).spoilt(0))
+    said = str(read_table(path).find_non_number(0))
     assert r"found '\x1b[2J'" in said
     assert said.isprintable()

@@ -172,7 +172,7 @@ def test_the_rate_tells_the_unit_of_time(tmp_path: Path) -> None:
 def test_columns_of_words_and_dates_do_no_harm(tmp_path: Path) -> None:
     table = read(tmp_path, "Date;Time;state;a\n" + "".join(f"11.04.26;10:00:0{i},5;ok;{i}\n" for i in range(9)))
     assert table.channels == ("Date", "state", "a")
-    assert [table.spoilt(column) is not None for column in range(3)] == [True, True, False]
+    assert [table.find_non_number(column) is not None for column in range(3)] == [True, True, False]
     assert table.time.tolist() == list(range(9))
 
 
@@ -195,7 +195,7 @@ REFUSED = {
 def test_what_may_be_read_in_two_ways_is_not_read(tmp_path: Path, content: str | bytes, words: str) -> None:
     try:
         table = read(tmp_path, content)
-        problems = [table.spoilt(column) for column in range(len(table.channels))]
+        problems = [table.find_non_number(column) for column in range(len(table.channels))]
     except InputError as error:
         problems = list(error.problems)
     assert words in " ".join(map(str, problems))

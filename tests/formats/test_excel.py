@@ -12,7 +12,7 @@ import pytest
 import sprung
 from command_line import copy_sedan
 from sprung.errors import InputError
-from sprung.formats import Table, optional, read_table
+from sprung.formats import Table, libraries, read_table
 from sprung.formats.excel import ExcelFormat
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -121,7 +121,7 @@ def test_what_is_no_recording(tmp_path: Path, rows: list[Sequence[object]], word
         ),
         ("x.ods", b"PK\x03\x04" + bytes(100), "a workbook of another kind (.ods)"),
         ("x.xlsx", b"\x01\x00" * 100, "a file that is no workbook (.xlsx)"),
-        ("x.xlsx", b"PK\x03\x04" + bytes(100), "content that cannot be read"),
+        ("x.xlsx", b"PK\x03\x04" + bytes(100), "a damaged file"),
     ],
 )
 def test_other_files_are_refused_by_name(tmp_path: Path, name: str, content: bytes, words: str) -> None:
@@ -134,7 +134,7 @@ def test_other_files_are_refused_by_name(tmp_path: Path, name: str, content: byt
 def test_a_file_that_is_cut_off(tmp_path: Path, share: float) -> None:
     whole = written(tmp_path / "x.xlsx", data=[HEAD, *COLUMNS]).read_bytes()
     (tmp_path / "x.xlsx").write_bytes(whole[: int(share * len(whole))])
-    assert "content that cannot be read" in refusal(tmp_path / "x.xlsx")
+    assert "a damaged file" in refusal(tmp_path / "x.xlsx")
 
 
 def test_without_the_library_it_says_how_to_install_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -143,7 +143,7 @@ def test_without_the_library_it_says_how_to_install_it(tmp_path: Path, monkeypat
     def missing(name: str) -> None:
         raise ImportError(f"No module named '{name}'")
 
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     assert 'pip install "sprung[excel]"' in refusal(path)
 
 

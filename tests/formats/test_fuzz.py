@@ -18,7 +18,7 @@ from readers import READERS, SMALL, Broken, Reader, sound_files, tried, used
 
 from sprung.errors import InputError, Problem
 from sprung.formats import Table
-from sprung.formats.store import holding
+from sprung.formats.sample_store import store_in_memory
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -108,7 +108,7 @@ def test_what_is_broken_is_seen(tmp_path: Path, reader: Reader, message: str) ->
 
 
 def lying(**changes: Any) -> Table:
-    return replace(Table(SMALL.names, ("g", "g"), holding(SMALL.values), 500.0), **changes)
+    return replace(Table(SMALL.names, ("g", "g"), store_in_memory(SMALL.values), 500.0), **changes)
 
 
 def test_a_sound_refusal_is_none_of_it(tmp_path: Path) -> None:

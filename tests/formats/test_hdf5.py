@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.errors import InputError
-from sprung.formats import Table, optional
+from sprung.formats import Table, libraries
 from sprung.formats.hdf5 import Hdf5Format
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def test_without_its_library_it_says_what_to_install(tmp_path: Path, monkeypatch
         raise ImportError(f"No module named '{module}'")
 
     path = written(tmp_path, plain)
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'h5py.*not installed.*pip install "sprung\[hdf5\]"'):
         read(path)
 

@@ -48,7 +48,7 @@ def read(folder: Path, *channels: str | bytes, named: str = "test.mme") -> Table
 def test_a_test_is_read_exactly(tmp_path: Path, named: str) -> None:
     table = read(tmp_path, channel([1.5, -2e-3, "NOVALUE"], "a"), channel([4, 5, 6], "Stoß"), named=named)
     assert (table.channels, table.units) == (("a", "Stoß"), ("m/s²", "m/s²"))
-    assert table.spoilt(0) is table.spoilt(1) is None
+    assert table.find_non_number(0) is table.find_non_number(1) is None
     np.testing.assert_array_equal(table.take(), [[1.5, -2e-3, np.nan], [4, 5, 6]])
     np.testing.assert_allclose(table.time, [-0.01, -0.008, -0.006], rtol=1e-12)
 
@@ -70,14 +70,14 @@ def test_a_channel_of_times_is_the_clock_of_those_that_refer_to_it(tmp_path: Pat
 @pytest.mark.parametrize("other", [channel([1, 2, 3], "z", interval="0.001"), channel([1, 2], "z")])
 def test_a_channel_with_another_clock_is_left_out_and_named(tmp_path: Path, other: str) -> None:
     table = read(tmp_path, channel([1, 2, 3], "a"), channel([4, 5, 6], "b"), other)
-    assert table.spoilt(0) is table.spoilt(1) is None
-    assert str(table.spoilt(2)).startswith("test.003: z: found")
+    assert table.find_non_number(0) is table.find_non_number(1) is None
+    assert str(table.find_non_number(2)).startswith("test.003: z: found")
     assert np.isnan(table.take()[2]).all()
 
 
 def test_text_among_the_samples_spoils_its_channel(tmp_path: Path) -> None:
     table = read(tmp_path, channel([1, "oops", 3], "a"), channel([4, 5, 6], "b"))
-    assert str(table.spoilt(0)).startswith("test.001: line 11: found 'oops'; expected a number.")
+    assert str(table.find_non_number(0)).startswith("test.001: line 11: found 'oops'; expected a number.")
 
 
 @pytest.mark.parametrize(

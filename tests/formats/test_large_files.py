@@ -14,8 +14,8 @@ from scipy.io import savemat, wavfile
 
 from sprung.formats import Table, read_table
 from sprung.formats import csv as csv_format
-from sprung.formats.blocks import blocks, encoding_of
-from sprung.formats.store import BUDGET, Samples, by_ranges, holding, in_steps, joined
+from sprung.formats.sample_store import BUDGET, Samples, join_samples, regroup, store_by_ranges, store_in_memory
+from sprung.formats.text_blocks import detect_encoding, read_blocks
 
 Write = Callable[[Path, NDArray[np.float64]], Path]
 CHANNELS, SAMPLES = 200, 8192
@@ -195,15 +195,15 @@ def test_pieces_and_ranges_are_parts_of_the_whole(path: Path) -> None:
 def test_steps_cut_and_join(step: int) -> None:
     values = np.arange(46.0).reshape(2, 23)
     pieces = np.split(values, [0, 1, 1, 5, 6, 20], axis=1)
-    found = list(in_steps(pieces, step))
+    found = list(regroup(pieces, step))
     np.testing.assert_array_equal(np.hstack(found), values)
     assert all(piece.shape[1] == step for piece in found[:-1])
     assert 1 <= found[-1].shape[1] <= step
 
 
 def test_columns_of_several_stores_are_one() -> None:
-    first, second = holding(np.arange(12.0).reshape(3, 4)), holding(np.arange(20, 24)[None])
-    whole = joined([Samples(first, 2), Samples(second, 0), Samples(first, 0)])
+    first, second = store_in_memory(np.arange(12.0).reshape(3, 4)), store_in_memory(np.arange(20, 24)[None])
+    whole = join_samples([Samples(first, 2), Samples(second, 0), Samples(first, 0)])
     [values] = whole.read([2, 1, 0, 1], 1, 3, 5)
     np.testing.assert_array_equal(values, [[1, 2], [21, 22], [9, 10], [21, 22]])
 
@@ -215,7 +215,7 @@ def test_pieces_read_no_more_at_once_than_is_worth_it() -> None:
         asked.append(8 * len(columns) * (last - first))
         return np.zeros((len(columns), last - first))
 
-    table = Table(("a",) * 100, (None,) * 100, by_ranges(100, 10**6, get), 1000.0)  # type: ignore[arg-type]
+    table = Table(("a",) * 100, (None,) * 100, store_by_ranges(100, 10**6, get), 1000.0)  # type: ignore[arg-type]
     assert sum(piece.shape[1] for _, piece in table.pieces(samples=4096)) == 10**6
     assert max(asked) <= BUDGET < 0.1 * sum(asked)
 
@@ -233,9 +233,9 @@ def test_text_far_down_is_found_where_somebody_needs_the_column(tmp_path: Path) 
     assert np.flatnonzero(np.isnan(a)).tolist() == [200_000, 200_001]
     assert np.flatnonzero(np.isnan(b)).tolist() == [200_001]
     assert table.place(200_000) == "line 200005"
-    assert str(table.spoilt(0)).startswith("x.csv: line 200005, column 'a': found 'OVLD'; expected a number.")
-    assert table.spoilt(0, 200_001) is None
-    assert table.part(200_000, 200_002).spoilt(1) == table.spoilt(1)
+    assert str(table.find_non_number(0)).startswith("x.csv: line 200005, column 'a': found 'OVLD'; expected a number.")
+    assert table.find_non_number(0, 200_001) is None
+    assert table.part(200_000, 200_002).find_non_number(1) == table.find_non_number(1)
     np.testing.assert_array_equal(table.take([1], 123_456, 123_459), [[123456.5, 123457.5, 123458.5]])
 
 
@@ -250,14 +250,14 @@ def test_blocks_are_whole_lines(tmp_path: Path, encoding: str, line_end: str, la
     mark = b"\xfe\xff" if encoding == "utf-16-be" else b""
     path.write_bytes(mark + line_end.join(lines).encode(encoding))
     expected = lines if lines[-1] else lines[:-1]
-    recognised = encoding_of(path)
+    recognised = detect_encoding(path)
     for size in (1, 2, 3, 5, 8, 64, 1000):
-        found = list(blocks(path, recognised, size=size))
+        found = list(read_blocks(path, recognised, size=size))
         assert [line for block in found for line in block.lines] == expected
         for index, block in enumerate(found[:4]):
             rest = [line for block in found[index:] for line in block.lines]
-            assert [line for block in blocks(path, recognised, block.start) for line in block.lines] == rest
-    assert len(list(blocks(path, recognised, size=64))) > 4
+            assert [line for block in read_blocks(path, recognised, block.start) for line in block.lines] == rest
+    assert len(list(read_blocks(path, recognised, size=64))) > 4
 
 
 @pytest.mark.parametrize("blank", ["", "\n", "\n;;\n \n\n", 60 * "\n"])
@@ -270,13 +270,15 @@ def test_a_text_table_in_many_blocks_is_the_same(tmp_path: Path, monkeypatch: py
     path.write_text("\n".join(["Logger 7", "Zeit;a;b", *lines, f"10:00:04.000;2{blank}"]))
     whole = read_table(path)
     monkeypatch.setattr(csv_format, "_SMALL", 0)
-    monkeypatch.setattr(csv_format, "blocks", partial(blocks, size=300))
+    monkeypatch.setattr(csv_format, "read_blocks", partial(read_blocks, size=300))
     table = read_table(path)
     assert table.notes == whole.notes
     assert any(note.endswith("is cut short and was left out") for note in table.notes)
     assert [table.place(sample) for sample in range(200)] == [whole.place(sample) for sample in range(200)]
-    assert [table.spoilt(column) for column in range(2)] == [whole.spoilt(column) for column in range(2)]
-    assert "(the first of 2 such cells)" in str(table.spoilt(1))
+    assert [table.find_non_number(column) for column in range(2)] == [
+        whole.find_non_number(column) for column in range(2)
+    ]
+    assert "(the first of 2 such cells)" in str(table.find_non_number(1))
     np.testing.assert_array_equal(table.time, whole.time)
     np.testing.assert_array_equal(table.take(), whole.take())
     np.testing.assert_array_equal(table.take([1, 0], 40, 161), whole.take([1, 0])[:, 40:161])

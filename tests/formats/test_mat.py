@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from sprung.errors import InputError
-from sprung.formats import Table, optional
+from sprung.formats import Table, libraries
 from sprung.formats.hdf5 import Hdf5Format
 from sprung.formats.mat import MatFormat
 
@@ -238,7 +238,7 @@ def test_version_7_3_without_its_library_says_what_to_install(tmp_path: Path, mo
         raise ImportError(f"No module named '{module}'")
 
     path = new_version(tmp_path / "x.mat", {"time": TIME, "a": A})
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'x\.mat: .*h5py.*pip install "sprung\[hdf5\]"'):
         read(path)
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.errors import InputError
-from sprung.formats import Table, optional
+from sprung.formats import Table, libraries
 from sprung.formats.parquet import ParquetFormat
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def test_without_its_library_it_says_what_to_install(tmp_path: Path, monkeypatch
         raise ImportError(f"No module named '{module}'")
 
     path = written(tmp_path, {"time": TIME, "a": A})
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'pyarrow.*not installed.*pip install "sprung\[parquet\]"'):
         read(path)
 

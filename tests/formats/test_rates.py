@@ -134,7 +134,7 @@ def test_too_slow_a_channel_is_spoilt_only_where_it_is_needed(tmp_path: Path) ->
     table = read_table(tdms(tmp_path / "x", [(1000.0, {"z": fast}), (20.0, {"temperature": slow})]), set())
     assert table.channels == ("z", "temperature")
     assert np.isnan(table.take([1])).all()
-    assert "40 samples from 0 to 1.95 s at 20 Hz" in str(table.spoilt(1))
+    assert "40 samples from 0 to 1.95 s at 20 Hz" in str(table.find_non_number(1))
 
 
 def test_a_gap_of_the_slower_clock_stays_one(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from sprung.errors import InputError
 from sprung.formats import Table, formats, read_table, registry
-from sprung.formats.store import holding
+from sprung.formats.sample_store import store_in_memory
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +21,7 @@ class Greedy:
         return bool(path.name and head)
 
     def read(self, path: Path) -> Table:
-        return Table((path.stem,), (None,), holding(np.zeros((1, 4))), clock=2.0)
+        return Table((path.stem,), (None,), store_in_memory(np.zeros((1, 4))), clock=2.0)
 
 
 class GreedyEntry:

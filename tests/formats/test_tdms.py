@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 
 from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
-from sprung.formats import optional
+from sprung.formats import libraries
 from sprung.formats.tdms import TdmsFormat
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ def test_groups_that_start_apart_are_on_two_clocks(tmp_path: Path) -> None:
     table = read(written(tmp_path, rows))
     assert table.channels == ("a0", "a1", "b")
     assert table.clock == 2000.0
-    assert "found 60 samples from 0.5 to 0.5295 s at 2000 Hz" in str(table.spoilt(2))
+    assert "found 60 samples from 0.5 to 0.5295 s at 2000 Hz" in str(table.find_non_number(2))
 
 
 def test_other_starts_text_and_channels_without_time(tmp_path: Path) -> None:
@@ -110,7 +110,7 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     def missing(name: str) -> None:
         raise ImportError(f"No module named '{name}'")
 
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'pip install "sprung\[tdms\]"'):
         TdmsFormat().read(path)
 

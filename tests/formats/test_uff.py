@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from spoiling import Spoiling, read_or_refused, spoilings
 from sprung.errors import InputError
-from sprung.formats import optional
+from sprung.formats import libraries
 from sprung.formats.uff import UffFormat
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     def missing(name: str) -> None:
         raise ImportError(f"No module named '{name}'")
 
-    monkeypatch.setattr(optional, "import_module", missing)
+    monkeypatch.setattr(libraries, "import_module", missing)
     with pytest.raises(InputError, match=r'pip install "sprung\[uff\]"'):
         UffFormat().read(path)
 

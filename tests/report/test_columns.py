@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from sprung.report.columns import Line, arrange, wrapped
+from sprung.report.terminal.columns import Line, arrange, wrapped
 from sprung.tables import Table
 
 CELLS = st.lists(st.text("abc12.±²試", min_size=0, max_size=12), max_size=5).map(" ".join)

@@ -30,7 +30,7 @@ from sprung.report import (
     whole_picture,
     write_check,
 )
-from sprung.report.lanes import thinned
+from sprung.report.pictures.lanes import thinned
 from sprung.vehicle import TABLE_1_CAR
 
 M = TypeVar("M", Band, Curve, Points, Rule)

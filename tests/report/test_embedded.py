@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from sprung.report import Curve, Panel, Picture, Points
-from sprung.report.axis import Axis
-from sprung.report.embedded import figure_json
+from sprung.report.drawing.axis import Axis
+from sprung.report.page.embedded import figure_json
 
 
 def picture(zoomable: bool, log: bool = False) -> Picture:

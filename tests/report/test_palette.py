@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sprung.report.palette import DARK, LIGHT
+from sprung.report.drawing.palette import DARK, LIGHT
 
 WRITTEN = ("text", "subdued", "link", "accept", "doubtful", "reject", "fault", "release", "landing", "mode")
 GROUNDS = ("paper", "raised", "band")

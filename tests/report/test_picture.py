@@ -17,9 +17,9 @@ import sprung
 from sprung.campaign import Campaign
 from sprung.errors import InputError
 from sprung.report import Band, Curve, Panel, Picture, Points, Rule, page_of, svg_of
-from sprung.report.axis import Axis, room, round_ticks
-from sprung.report.legend import WIDTH
-from sprung.report.picture import labelled_together
+from sprung.report.drawing.axis import Axis, room, round_ticks
+from sprung.report.drawing.legend import WIDTH
+from sprung.report.drawing.picture import labelled_together
 from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 

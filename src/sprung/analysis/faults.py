@@ -8,21 +8,30 @@ from dataclasses import replace
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.campaign import Campaign
 from sprung.faults import (
+    SIGNIFICANT,
+    Consistency,
     FaultIsolation,
     Hypothesis,
     Isolated,
     consistency_of,
     decays_without_wheel_sensors,
     isolate,
+    score_faults_of,
 )
 from sprung.progress import Progress, Step
+from sprung.selection import score_linear_terms
+from sprung.vehicle import Tracks
 
 
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains the recordings wholly, before any further model term is tried."""
+    if _is_term_more_likely(run):
+        return run.noted("isolate_evident_faults", "a model term is tried first", "its score is the largest")
     run = _with_isolated(run, progress)
     found = _found(run)
-    if found is None or not found.is_explained or any(one.remedy == "named" for one in found.hypotheses):
+    if found is None or not found.is_explained:
+        return run
+    if any(one.remedy == "named" or not one.is_specific for one in found.hypotheses):
         return run
     return _corrected(run, found.hypotheses, "isolate_evident_faults")
 
@@ -41,6 +50,16 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     return _corrected(run, corrected, "isolate_faults") if corrected else run
 
 
+def _is_term_more_likely(run: Analysis) -> bool:
+    """Whether a model term would gain more than any fault of small size: both are scored in the same fit."""
+    if run.model.structure.is_time_stepped:
+        return False
+    faults = score_faults_of(run.campaign, run.decays, run.fit)
+    largest = max((score.gain for score in faults), default=0.0)
+    terms = score_linear_terms(run.model)
+    return max((gain - run.model.asked(term) for term, gain in terms.items()), default=0.0) > max(largest, SIGNIFICANT)
+
+
 def _found(run: Analysis) -> Isolated | None:
     """Return what was isolated in the present fit."""
     return run.isolated[1] if run.isolated is not None and run.isolated[0] is run.fit else None
@@ -55,34 +74,35 @@ def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
         checked = replace(run, isolated=(run.fit, None))
         return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
     progress(Step("isolating faults"))
-    found, fits = isolate(_isolation(run), progress), 1
-    fits += found.fits
-    if consistency == "misfit" and not found.is_explained:
-        # A wheel sensor at fault may have shown a wrong landing, and the decays begin too early.
-        decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
+    run, isolation = _with_isolation(run, consistency)
+    base = isolation.base
+    if base.fit is not run.fit and consistency_of(base.campaign, base.decays, base.fit) == "consistent":
+        found = Isolated((), False, 0)
+    else:
+        found = isolate(isolation, progress)
+    run = replace(run, isolated=(run.fit, found), fits=run.fits + found.fits)
+    faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "no fault"
+    explains = "explains the recordings" if found.is_explained else "explains a part of the recordings at most"
+    return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{found.fits} fits of hypotheses")
+
+
+def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, FaultIsolation]:
+    """Return the fit against which hypotheses are held, with the larger of the models that are open.
+
+    Where nothing explains the recordings, a wheel sensor at fault may have shown a wrong landing: then the decays begin
+    where they would without any.
+    """
+    structure, decays = run.model.structure, run.decays
+    tracks: Tracks = "separate" if structure.tracks_open else structure.tracks
+    if consistency == "misfit":
+        safe = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
+        if any(other.start > decay.start for other, decay in zip(safe, decays, strict=True)):
+            decays = safe
         run = replace(run, preparations=run.preparations + 1)
-        starts = [decay.start for decay in run.decays]
-        if [decay.start for decay in decays] != starts:
-            later = isolate(FaultIsolation.of(run.campaign, decays, None, *_model(run)), progress)
-            fits += later.fits + 1
-            found = later if later.is_explained or not found.hypotheses else found
-    run = replace(run, isolated=(run.fit, found), fits=run.fits + fits)
-    faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "nothing"
-    explained = "explains the recordings" if found.is_explained else "does not explain the recordings wholly"
-    return run.noted("isolate_faults", f"{consistency}: {faults} {explained}", f"{fits} fits")
-
-
-def _isolation(run: Analysis) -> FaultIsolation:
-    tracks, terms = _model(run)
-    structure = run.model.structure
-    is_same = not structure.is_time_stepped and tracks == structure.tracks
-    return FaultIsolation.of(run.campaign, run.decays, run.fit if is_same else None, tracks, terms)
-
-
-def _model(run: Analysis):  # type: ignore[no-untyped-def]
-    """Return tracks and terms with which faults are isolated: the larger of the models that are open."""
-    structure = run.model.structure
-    return ("separate" if structure.tracks_open else structure.tracks), structure.linear_terms
+    is_same = decays is run.decays and tracks == structure.tracks and not structure.is_time_stepped
+    run = replace(run, fits=run.fits + (not is_same))
+    fit = run.fit if is_same else None
+    return run, FaultIsolation.of(run.campaign, decays, fit, tracks, structure.linear_terms)
 
 
 def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:

@@ -1,57 +1,60 @@
 """Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
 
-from sprung.campaign.beforehand import Given, known_quantities
 from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
-from sprung.campaign.completeness import Missing
-from sprung.campaign.drop import KINDS, Drop, DropTest, drop_names, kind_of, recording_names
-from sprung.campaign.gaps import gap, gaps_in
-from sprung.campaign.in_memory import check_statements, require_plausible
-from sprung.campaign.loggers import files_named_after
-from sprung.campaign.merging import merged
-from sprung.campaign.plausibility import implausible
-from sprung.campaign.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
-from sprung.campaign.reading import FILE, VehicleFile, read, read_document, read_vehicle
+from sprung.campaign.campaign_source import CampaignSource, resolve_campaign
+from sprung.campaign.completeness import MissingEntry
+from sprung.campaign.drop import DROP_KINDS, Drop, DropTest, drop_kind, unique_drop_names, unique_recording_names
+from sprung.campaign.drop_recording import find_logger_files
+from sprung.campaign.gap_filling import MAX_MISSING, fill_short_gaps
+from sprung.campaign.json_schema import SCHEMA_FILE, SCHEMA_LINE, schema_text
+from sprung.campaign.known_values import KnownValueLike, parse_known_values
+from sprung.campaign.logger_merging import merge_loggers
+from sprung.campaign.placeholders import find_placeholders, placeholder
+from sprung.campaign.plausibility import explain_implausible
+from sprung.campaign.reading import CAMPAIGN_FILE, VehicleFile, read, read_document, read_vehicle
 from sprung.campaign.recording import CLOCK_STD, LoggerClock, Recording
 from sprung.campaign.sep005 import to_sep005
-from sprung.campaign.source import CampaignSource, campaign_from
-from sprung.campaign.sources import SourceFile
+from sprung.campaign.source_file import SourceFile
+from sprung.campaign.statements import check_statements, require_plausible
 from sprung.campaign.writing import campaign_files, write
 
 __all__ = [
+    "CAMPAIGN_FILE",
     "CLOCK_STD",
-    "FILE",
-    "KINDS",
+    "DROP_KINDS",
+    "MAX_MISSING",
     "SCHEMA_FILE",
     "SCHEMA_LINE",
     "Campaign",
     "CampaignSource",
     "Drop",
     "DropTest",
-    "Given",
+    "KnownValueLike",
     "LoggerClock",
-    "Missing",
+    "MissingEntry",
     "ModelChoice",
     "Recording",
     "SourceFile",
     "TestRecord",
     "VehicleFile",
     "campaign_files",
-    "campaign_from",
     "check_statements",
-    "drop_names",
-    "files_named_after",
-    "gap",
-    "gaps_in",
-    "implausible",
-    "kind_of",
-    "known_quantities",
-    "merged",
+    "drop_kind",
+    "explain_implausible",
+    "fill_short_gaps",
+    "find_logger_files",
+    "find_placeholders",
+    "merge_loggers",
+    "parse_known_values",
+    "placeholder",
     "read",
     "read_document",
     "read_vehicle",
-    "recording_names",
     "require_plausible",
+    "resolve_campaign",
     "schema_text",
     "to_sep005",
+    "unique_drop_names",
+    "unique_recording_names",
     "write",
 ]

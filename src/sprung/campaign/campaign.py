@@ -10,11 +10,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from sprung.campaign.beforehand import Given, known_quantities
-from sprung.campaign.completeness import Missing
+from sprung.campaign.completeness import MissingEntry
 from sprung.campaign.drop import Drop, DropTest
+from sprung.campaign.known_values import KnownValueLike, parse_known_values
 from sprung.campaign.recording import Recording
-from sprung.campaign.sources import SourceFile
+from sprung.campaign.source_file import SourceFile
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problems, UnknownNameError
 from sprung.uncertainty import KnownValue
@@ -107,7 +107,7 @@ class Campaign:
     faults: tuple[Fault, ...] = ()
     path: Path | None = None
     files: tuple[SourceFile, ...] = ()
-    missing: tuple[Missing, ...] = ()
+    missing: tuple[MissingEntry, ...] = ()
     unread: tuple[Drop, ...] = ()
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
@@ -120,10 +120,10 @@ class Campaign:
             object.__setattr__(self, name, tuple(_as_record(one, kind, problems) for one in getattr(self, name)))
         for name, kind in single.items():
             object.__setattr__(self, name, _as_record(getattr(self, name), kind, problems))
-        given: dict[str, Given] = dict(self.known)
+        given: dict[str, KnownValueLike] = dict(self.known)
         if self.wheelbase is not None:
             given["wheelbase"] = self.wheelbase
-        known = known_quantities(given, f"campaign {self.name}: known", problems)
+        known = parse_known_values(given, f"campaign {self.name}: known", problems)
         for drop in self.drops:
             if not isinstance(drop, DropTest):
                 do = "Give Drop(...).with_recording(recording), or DropTest(..., recording=recording)."

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sprung.campaign.plausibility import LIMITS, implausible
+from sprung.campaign.plausibility import LIMITS, explain_implausible
+from sprung.campaign.plausibility_checks import SMALLEST, check_relations, check_sizes
 from sprung.campaign.schema import KNOWABLE, CampaignFile, VehicleFileSchema
-from sprung.campaign.sizes import SMALLEST, check_sizes, check_together
 from sprung.errors import Problems, did_you_mean
 from sprung.uncertainty import KnownValue
 from sprung.units import acceleration_factor
@@ -19,7 +19,7 @@ from sprung.vehicle import EXTRAS, PARAMETERS, Sensor
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from sprung.campaign.understanding import Draft
+    from sprung.campaign.parsing import ParsedFile
 
 CONTRADICTION = 4.0
 """Two statements contradict each other from this many combined standard uncertainties on."""
@@ -28,7 +28,7 @@ ROUNDING = 1e-6
 """By how much, relatively, numbers given as exact may differ."""
 
 
-def check(draft: Draft[CampaignFile], problems: Problems) -> None:
+def check(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     """Check everything that needs no recording.
 
     Parameters
@@ -38,16 +38,16 @@ def check(draft: Draft[CampaignFile], problems: Problems) -> None:
     problems
         Takes up what is wrong.
     """
-    _check_names(draft, problems)
-    _check_units(draft, problems)
-    check_body_sensors(draft, problems)
-    _check_loads(draft, problems)
-    _check_model(draft, problems)
-    _check_drops(draft, problems)
-    check_quantities(draft, problems)
+    _check_names(parsed, problems)
+    _check_units(parsed, problems)
+    check_body_sensors(parsed, problems)
+    _check_loads(parsed, problems)
+    _check_model(parsed, problems)
+    _check_drops(parsed, problems)
+    check_quantities(parsed, problems)
 
 
-def check_quantities(draft: Draft[CampaignFile], problems: Problems) -> None:
+def check_quantities(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     """Check every size by itself, and what several of them say together.
 
     Parameters
@@ -57,15 +57,15 @@ def check_quantities(draft: Draft[CampaignFile], problems: Problems) -> None:
     problems
         Takes up what is wrong.
     """
-    check_sizes(draft, problems)
-    known = _check_known(draft, problems)
-    check_together(draft, known, problems)
-    _check_sums(draft, known, problems)
+    check_sizes(parsed, problems)
+    known = _check_known(parsed, problems)
+    check_relations(parsed, known, problems)
+    _check_sums(parsed, known, problems)
 
 
-def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
+def _check_names(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     """Nothing may be named twice."""
-    file = draft.file
+    file = parsed.file
     named: dict[tuple[str, str], list[tuple[str, str, object]]] = {
         ("sensor", "channel"): [("channel", sensor.channel, sensor.logger) for sensor in file.sensor],
         ("load", "name"): [("name", load.name, None) for load in file.load],
@@ -83,20 +83,20 @@ def _check_names(draft: Draft[CampaignFile], problems: Problems) -> None:
     remedies = {("drop", "file"): "Each drop has its own recording, or its own window of one."}
     for (section, kind), entries in named.items():
         first: dict[tuple[str, object], int] = {}
-        for index, (key, name, beside) in zip(draft.numbered(section), entries, strict=True):
+        for index, (key, name, beside) in zip(parsed.numbered(section), entries, strict=True):
             if not name or first.setdefault((name, beside), index) == index:
                 continue
             found = f"'{name}', which {section}[{first[name, beside] + 1}] has too"
             expected = f"a {key} of its own for every {section}"
             problems.add(
-                draft.where(section, index, key),
+                parsed.where(section, index, key),
                 found,
                 expected,
                 remedies.get((section, kind), "Rename one, or remove it."),
             )
 
 
-def refused_unit(sensor: Sensor) -> str | None:
+def find_wrong_unit(sensor: Sensor) -> str | None:
     """Give the reason why a sensor's own unit cannot be; None where it can.
 
     Parameters
@@ -111,15 +111,15 @@ def refused_unit(sensor: Sensor) -> str | None:
     return None
 
 
-def _check_units(draft: Draft[CampaignFile], problems: Problems) -> None:
-    for index, sensor in zip(draft.numbered("sensor"), draft.file.sensor, strict=True):
-        reason = refused_unit(sensor)
+def _check_units(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
+    for index, sensor in zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True):
+        reason = find_wrong_unit(sensor)
         if reason is not None:
             do = reason.rpartition("acceleration. ")[2]
-            problems.add(draft.where("sensor", index, "unit"), f"'{sensor.unit}'", "a unit of acceleration", do)
+            problems.add(parsed.where("sensor", index, "unit"), f"'{sensor.unit}'", "a unit of acceleration", do)
 
 
-def check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
+def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     """Check that the body's sensors tell bounce, pitch and roll apart: three unknowns, three sensors not on one line.
 
     Parameters
@@ -129,89 +129,93 @@ def check_body_sensors(draft: Draft[CampaignFile], problems: Problems) -> None:
     problems
         Takes up what is wrong.
     """
-    if not draft.complete("sensor") or _left_to_defaults(draft, "sensor"):
+    if not parsed.complete("sensor") or _left_to_defaults(parsed, "sensor"):
         return
-    if any(sensor.on == "body" and sensor.position is None for sensor in draft.file.sensor):
+    if any(sensor.on == "body" and sensor.position is None for sensor in parsed.file.sensor):
         return  # said already
     placed = [
-        sensor.position[:2] for sensor in draft.file.sensor if sensor.on == "body" and sensor.position is not None
+        sensor.position[:2] for sensor in parsed.file.sensor if sensor.on == "body" and sensor.position is not None
     ]
-    if any(not LIMITS["x"].hold(length) for position in placed for length in position):
+    if any(not LIMITS["x"].contain(length) for position in placed for length in position):
         return  # said already, and what they span is not worth saying
     if len(placed) < 3:
         found, do = f"{len(placed)} sensors on the body", 'Add [[sensor]] entries with on = "body".'
-        problems.add(draft.where("sensor"), found, "at least 3, to tell bounce, pitch and roll apart", do)
+        problems.add(parsed.where("sensor"), found, "at least 3, to tell bounce, pitch and roll apart", do)
         return
     across = np.linalg.svd(np.array(placed) - np.mean(placed, axis=0), compute_uv=False)
     if across[1] <= 0.01 * across[0]:
         found = "body sensors that all sit on one line, seen from above"
         do = "Correct their x and y; if they are right, pitch cannot be told from roll: move a sensor off the line."
-        problems.add(draft.where("sensor"), found, "at least 3 that span an area", do)
+        problems.add(parsed.where("sensor"), found, "at least 3 that span an area", do)
 
 
-def _left_to_defaults(draft: Draft[CampaignFile], section: str) -> bool:
+def _left_to_defaults(parsed: ParsedFile[CampaignFile], section: str) -> bool:
     """Say whether a vehicle file leaves its sensors or drops to the simulation."""
-    return isinstance(draft.file, VehicleFileSchema) and section not in draft.document
+    return isinstance(parsed.file, VehicleFileSchema) and section not in parsed.document
 
 
-def _check_drops(draft: Draft[CampaignFile], problems: Problems) -> None:
-    if not draft.file.drop and draft.complete("drop") and not _left_to_defaults(draft, "drop"):
-        problems.add(draft.where("drop"), "no drops", "at least one [[drop]]", "Add a [[drop]] for each recording.")
+def _check_drops(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
+    if not parsed.file.drop and parsed.complete("drop") and not _left_to_defaults(parsed, "drop"):
+        problems.add(parsed.where("drop"), "no drops", "at least one [[drop]]", "Add a [[drop]] for each recording.")
 
 
-def _check_loads(draft: Draft[CampaignFile], problems: Problems) -> None:
-    if ("load",) in draft.lost:
+def _check_loads(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
+    if ("load",) in parsed.lost:
         return
-    written = draft.document.get("load", [])
+    written = parsed.document.get("load", [])
     names = {"empty"} | {entry.get("name") for entry in written if isinstance(entry, dict)}
-    for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
-        if drop.load and drop.load not in names and ("load" in draft.document or draft.complete("load")):
+    for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True):
+        if drop.load and drop.load not in names and ("load" in parsed.document or parsed.complete("load")):
             do = did_you_mean(drop.load, [name for name in names if isinstance(name, str)])
-            problems.add(draft.where("drop", index, "load"), f"'{drop.load}'", "'empty' or the name of a [[load]]", do)
+            problems.add(parsed.where("drop", index, "load"), f"'{drop.load}'", "'empty' or the name of a [[load]]", do)
 
 
-def _check_model(draft: Draft[CampaignFile], problems: Problems) -> None:
-    model = draft.file.model
+def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
+    model = parsed.file.model
     for key, names in (("extras", model.extras or ()), ("forbid", model.forbid)):
         for name in names:
             if name not in EXTRAS:
-                where, expected = draft.where("model", key), f"any of {', '.join(EXTRAS)}"
+                where, expected = parsed.where("model", key), f"any of {', '.join(EXTRAS)}"
                 problems.add(where, f"'{name}'", expected, did_you_mean(name, EXTRAS))
     for name in sorted(set(model.extras or ()) & set(model.forbid)):
         do = "Take it out of one of the two."
-        problems.add(draft.where("model", "forbid"), f"'{name}', which extras asks for", "an extra not in extras", do)
-    apart = [name for name in ("t_f1", "t_f2", "t_r1", "t_r2") if name in draft.file.known]
+        problems.add(parsed.where("model", "forbid"), f"'{name}', which extras asks for", "an extra not in extras", do)
+    apart = [name for name in ("t_f1", "t_f2", "t_r1", "t_r2") if name in parsed.file.known]
     if model.tracks == "shared" and apart:
         found = f'"shared", and {apart[0]} in [known]'
         do = f'Give {apart[0][:-1]} instead of {apart[0]}, or tracks = "separate".'
-        problems.add(draft.where("model", "tracks"), found, "t_f and t_r, which springs and dampers share", do)
+        problems.add(parsed.where("model", "tracks"), found, "t_f and t_r, which springs and dampers share", do)
 
 
-def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, KnownValue]:
+def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[str, KnownValue]:
     """Give what is known and possible: the wheelbase too."""
     known: dict[str, KnownValue] = {}
-    for name, measured in draft.file.known.items():
-        where = draft.where("known", name)
+    for name, measured in parsed.file.known.items():
+        where = parsed.where("known", name)
         if name not in KNOWABLE:
             do = "Write it under [vehicle]." if name == "wheelbase" else did_you_mean(name, KNOWABLE)
             problems.add(where, f"the unknown quantity '{name}'", "the name of a parameter, or of a weighed mass", do)
             continue
-        unit, meaning, positive = "kg", name.replace("_", " "), True
+        unit, describe_key, positive = "kg", name.replace("_", " "), True
         if name in PARAMETERS:
-            unit, meaning, positive = PARAMETERS[name].unit, PARAMETERS[name].meaning, PARAMETERS[name].positive
-        beyond = implausible(name, measured.value)
+            unit, describe_key, positive = (
+                PARAMETERS[name].unit,
+                PARAMETERS[name].meaning,
+                PARAMETERS[name].positive,
+            )
+        beyond = explain_implausible(name, measured.value)
         if measured.value < 0 or (measured.value < SMALLEST and positive):
             sign = "positive" if positive else "not negative"
-            problems.add(where, f"{measured.value:g}", f"a {sign} number: the {meaning} in {unit}", "Correct it.")
+            problems.add(where, f"{measured.value:g}", f"a {sign} number: the {describe_key} in {unit}", "Correct it.")
         elif beyond is not None:
             expected, do = beyond
-            problems.add(where, f"{measured.value:g}", f"{expected}: the {meaning}", do)
+            problems.add(where, f"{measured.value:g}", f"{expected}: the {describe_key}", do)
         else:
             known[name] = measured.known
-    wheelbase = draft.file.vehicle.wheelbase
+    wheelbase = parsed.file.vehicle.wheelbase
     if wheelbase is not None:
-        where, length = draft.where("vehicle", "wheelbase"), wheelbase.value
-        beyond = implausible("wheelbase", length)
+        where, length = parsed.where("vehicle", "wheelbase"), wheelbase.value
+        beyond = explain_implausible("wheelbase", length)
         if length < SMALLEST:
             expected = "a positive number: front axle to rear axle in m"
             problems.add(where, f"{length:g}", expected, "Correct it.")
@@ -222,7 +226,7 @@ def _check_known(draft: Draft[CampaignFile], problems: Problems) -> dict[str, Kn
     return known
 
 
-def contradict(one: KnownValue, other: KnownValue) -> bool:
+def is_contradiction(one: KnownValue, other: KnownValue) -> bool:
     """Say whether two statements about one quantity cannot both hold.
 
     Parameters
@@ -243,9 +247,9 @@ def _said(known: KnownValue) -> str:
     return f"{known.value:.10g}" if known.is_exact else f"{known.value:.10g} ± {known.std:.3g}"
 
 
-def _check_sums(draft: Draft[CampaignFile], known: Mapping[str, KnownValue], problems: Problems) -> None:
+def _check_sums(parsed: ParsedFile[CampaignFile], known: Mapping[str, KnownValue], problems: Problems) -> None:
     """Two axles make a vehicle: in weight and in length."""
-    parameters = getattr(draft.file, "parameters", {})
+    parameters = getattr(parsed.file, "parameters", {})
     lengths = {name: KnownValue(parameters[name]) if name in parameters else known.get(name) for name in ("a", "b")}
     masses = {name: known.get(name) for name in ("front_axle_mass", "rear_axle_mass")}
     for section, name, unit, parts in (("known", "total_mass", "kg", masses), ("vehicle", "wheelbase", "m", lengths)):
@@ -254,8 +258,8 @@ def _check_sums(draft: Draft[CampaignFile], known: Mapping[str, KnownValue], pro
             continue
         whole, together = known[name], _sum(given.values())
         # With one part alone the other is missing: then only a whole that is too small is a contradiction.
-        if contradict(whole, together) and (len(given) == len(parts) or whole.value < together.value):
+        if is_contradiction(whole, together) and (len(given) == len(parts) or whole.value < together.value):
             found = f"{_said(whole)} {unit}, but {' + '.join(given)} = {_said(together)} {unit}"
             expected = f"the sum of {' and '.join(parts)}, to within their uncertainty"
             do = "Correct one of them, or say how sure they are: { value = ..., std = ... }."
-            problems.add(draft.where(section, name), found, expected, do)
+            problems.add(parsed.where(section, name), found, expected, do)

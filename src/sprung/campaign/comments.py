@@ -9,7 +9,7 @@ from functools import cache
 from textwrap import wrap
 from typing import Any
 
-from sprung.campaign.published import schema_text
+from sprung.campaign.json_schema import schema_text
 
 AXES = """\
 # Lengths m, masses kg, times s, angles rad. x forward from the front axle, y left from the centreline, z up from the ground.
@@ -42,7 +42,7 @@ _COLUMN, _WIDTH = 44, 124
 """Where comments begin behind a key, and how wide a line may be; others stand above their key."""
 
 
-def commented(text: str) -> str:
+def add_comments(text: str) -> str:
     """Add comments to a campaign file.
 
     Parameters
@@ -73,7 +73,7 @@ def _lines(text: str) -> Iterator[str]:
             yield line
         elif key is not None and (section, key[1]) not in seen:
             seen.add((section, key[1]))
-            yield from _with_comment(line, meaning(section, key[1]))
+            yield from _with_comment(line, describe_key(section, key[1]))
         else:
             yield line
 
@@ -85,7 +85,7 @@ def _with_comment(line: str, text: str) -> Iterator[str]:
     yield beside if text and len(beside) <= _WIDTH else line
 
 
-def meaning(section: str, key: str) -> str:
+def describe_key(section: str, key: str) -> str:
     """Say what a key of the campaign file means, as its JSON Schema does.
 
     Parameters

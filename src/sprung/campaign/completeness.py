@@ -11,9 +11,9 @@ from sprung.errors import Problem
 from sprung.vehicle import EMPTY
 
 if TYPE_CHECKING:
+    from sprung.campaign.parsing import ParsedFile
     from sprung.campaign.schema import CampaignFile
-    from sprung.campaign.sentences import Place
-    from sprung.campaign.understanding import Draft
+    from sprung.campaign.schema_problems import Place
 
 _ITEMS = {
     ("vehicle", "wheelbase"): "wheelbase",
@@ -31,7 +31,7 @@ _ITEMS = {
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Missing:
+class MissingEntry:
     """Something that a campaign file does not say.
 
     Attributes
@@ -60,7 +60,7 @@ class Missing:
         }
 
 
-def missing_in_file(draft: Draft[CampaignFile]) -> Iterator[Missing]:
+def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEntry]:
     """List what a campaign file does not say yet.
 
     Parameters
@@ -73,31 +73,35 @@ def missing_in_file(draft: Draft[CampaignFile]) -> Iterator[Missing]:
     Missing
         Its gaps, and what was left out.
     """
-    for place, problem in draft.gaps.items():
-        yield Missing(_item(place), problem)
-    file = draft.file
-    for index, sensor in zip(draft.numbered("sensor"), file.sensor, strict=True):
-        if sensor.on == "body" and sensor.position is None and ("sensor", index, "position") not in draft.gaps:
+    for place, problem in parsed.placeholders.items():
+        yield MissingEntry(_item(place), problem)
+    file = parsed.file
+    for index, sensor in zip(parsed.numbered("sensor"), file.sensor, strict=True):
+        if sensor.on == "body" and sensor.position is None and ("sensor", index, "position") not in parsed.placeholders:
             do = "A body sensor needs its position = [x, y, z]."
-            where = draft.where("sensor", index)
-            yield Missing(_item(("sensor", index, "position")), Problem(where, "no position", "where it sits, m", do))
-    for index, load in zip(draft.numbered("load"), file.load, strict=True):
-        if load.name != EMPTY.name and not load.described and ("load", index, "items") not in draft.gaps:
-            where, do = draft.where("load", index), "A load needs items = [...] or added = {...}."
-            yield Missing(_item(("load", index, "items")), Problem(where, "neither items nor added", "what it is", do))
-    for index, drop in zip(draft.numbered("drop"), file.drop, strict=True):
+            where = parsed.where("sensor", index)
+            yield MissingEntry(
+                _item(("sensor", index, "position")), Problem(where, "no position", "where it sits, m", do)
+            )
+    for index, load in zip(parsed.numbered("load"), file.load, strict=True):
+        if load.name != EMPTY.name and not load.described and ("load", index, "items") not in parsed.placeholders:
+            where, do = parsed.where("load", index), "A load needs items = [...] or added = {...}."
+            yield MissingEntry(
+                _item(("load", index, "items")), Problem(where, "neither items nor added", "what it is", do)
+            )
+    for index, drop in zip(parsed.numbered("drop"), file.drop, strict=True):
         for key, found, known, expected in (
             ("load", '""', bool(drop.load), "'empty' or the name of a [[load]], not empty"),
             ("wheels", "[]", bool(drop.wheels), "a list of the wheels that fell, not empty"),
         ):
-            if not known and ("drop", index, key) not in draft.gaps:
-                problem = Problem(draft.where("drop", index, key), found, expected, "Correct it.")
-                yield Missing(_item(("drop", index, key)), problem)
+            if not known and ("drop", index, key) not in parsed.placeholders:
+                problem = Problem(parsed.where("drop", index, key), found, expected, "Correct it.")
+                yield MissingEntry(_item(("drop", index, key)), problem)
     placed = file.vehicle.wheelbase is not None or {"a", "b"} <= file.known.keys()
-    if not placed and draft.complete("vehicle") and ("vehicle", "wheelbase") not in draft.gaps:
-        where, do = draft.where("vehicle", "wheelbase"), "Measure it with a tape and add wheelbase = ... to [vehicle]."
+    if not placed and parsed.complete("vehicle") and ("vehicle", "wheelbase") not in parsed.placeholders:
+        where, do = parsed.where("vehicle", "wheelbase"), "Measure it with a tape and add wheelbase = ... to [vehicle]."
         problem = Problem(where, "nothing", "front axle to rear axle, m", do)
-        yield Missing(_item(("vehicle", "wheelbase")), problem, needed=False)
+        yield MissingEntry(_item(("vehicle", "wheelbase")), problem, needed=False)
 
 
 def _item(place: Place) -> str:

@@ -14,7 +14,7 @@ from pydantic import Field, InstanceOf, model_validator
 from sprung.campaign.recording import Recording
 from sprung.vehicle import WHEELS, Finite, Positive, Wheel, checked_record
 
-KINDS: Mapping[frozenset[Wheel], str] = {
+DROP_KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
     frozenset(("fl", "fr")): "pitch front",
     frozenset(("rl", "rr")): "pitch rear",
@@ -24,7 +24,7 @@ KINDS: Mapping[frozenset[Wheel], str] = {
 """The usual drops by the wheels that fall."""
 
 
-def kind_of(wheels: Sequence[Wheel]) -> str:
+def drop_kind(wheels: Sequence[Wheel]) -> str:
     """Give what a drop of some wheels is called: ``pitch front``; or just the wheels.
 
     Parameters
@@ -36,7 +36,7 @@ def kind_of(wheels: Sequence[Wheel]) -> str:
     -------
     str
     """
-    return KINDS.get(frozenset(wheels), " ".join(wheels))
+    return DROP_KINDS.get(frozenset(wheels), " ".join(wheels))
 
 
 @checked_record
@@ -123,7 +123,7 @@ class Drop:
     @property
     def kind(self) -> str:
         """What kind of drop it is, by the wheels that were dropped: ``pitch front``; or just the wheels."""
-        return kind_of(self.wheels)
+        return drop_kind(self.wheels)
 
     def with_recording(self, recording: Recording) -> DropTest:
         """Return the drop as it was recorded.
@@ -149,7 +149,7 @@ class DropTest(Drop):
     """Its samples; the channels have the order of the campaign's sensors."""
 
 
-def drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
+def unique_drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     """Give every drop of a campaign a name of its own, as short as that allows.
 
     Parameters
@@ -165,7 +165,7 @@ def drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     return _told_apart([(drop.label,) if drop.name else (drop.label, drop._long_name) for drop in drops])
 
 
-def recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
+def unique_recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     """Say what to call every drop's recording, no two alike: the drop's own name, or what its files have in common.
 
     Parameters

@@ -40,7 +40,7 @@ class Limits(NamedTuple):
     unit: str
     zero: bool = False
 
-    def hold(self, value: float) -> bool:
+    def contain(self, value: float) -> bool:
         """Say whether a value, SI, is one that a vehicle may have."""
         return self.low <= value <= self.high or (self.zero and value == 0)
 
@@ -105,7 +105,7 @@ _ANYTHING: Mapping[str, Limits] = {
 """By unit: the limits of the parameters that have none of their own."""
 
 
-def limits_of(quantity: str) -> Limits:
+def find_limits(quantity: str) -> Limits:
     """Return the limits of a quantity.
 
     Parameters
@@ -116,7 +116,7 @@ def limits_of(quantity: str) -> Limits:
     return LIMITS[quantity] if quantity in LIMITS else _ANYTHING[PARAMETERS[quantity].unit]
 
 
-def implausible(quantity: str, *values: float) -> tuple[str, str] | None:
+def explain_implausible(quantity: str, *values: float) -> tuple[str, str] | None:
     """Say what is expected in place of a value that no vehicle has, and in which unit it may have been stated.
 
     Parameters
@@ -137,13 +137,13 @@ def implausible(quantity: str, *values: float) -> tuple[str, str] | None:
     >>> implausible("total_mass", 1.5518)[1]
     'Write it in kg: 1551.8 if it was stated in tonnes.'
     """
-    limits = limits_of(quantity)
-    if all(map(limits.hold, values)):
+    limits = find_limits(quantity)
+    if all(map(limits.contain, values)):
         return None
-    return limits.expected, remedy(dict.fromkeys(values, limits))
+    return limits.expected, suggest_unit(dict.fromkeys(values, limits))
 
 
-def remedy(stated: Mapping[float, Limits], first: Sequence[float] = ()) -> str:
+def suggest_unit(stated: Mapping[float, Limits], first: Sequence[float] = ()) -> str:
     """Say what to write in place of values that are not plausible.
 
     Parameters
@@ -157,7 +157,7 @@ def remedy(stated: Mapping[float, Limits], first: Sequence[float] = ()) -> str:
     meant = [
         (name, factor)
         for name, factor in _OTHER_UNITS.get(unit, {}).items()
-        if all(limits.hold(value * factor) for value, limits in stated.items())
+        if all(limits.contain(value * factor) for value, limits in stated.items())
     ]
     if not meant:
         return f"Correct it; it is read in {unit}."

@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
-from sprung.campaign.checks import check, refused_unit
-from sprung.campaign.completeness import missing_in_file
-from sprung.campaign.document import toml_document
-from sprung.campaign.drop import Drop, DropTest, recording_names
-from sprung.campaign.loggers import Wanted, named_apart, recording_of_drop
+from sprung.campaign.checks import check, find_wrong_unit
+from sprung.campaign.completeness import find_missing_entries
+from sprung.campaign.drop import Drop, DropTest, unique_recording_names
+from sprung.campaign.drop_recording import Wanted, assemble_recording, qualify_channels
+from sprung.campaign.parsing import ParsedFile, parse_document
 from sprung.campaign.schema import CampaignFile, VehicleFileSchema
-from sprung.campaign.signals import column_of
-from sprung.campaign.sources import SourceFile
-from sprung.campaign.understanding import Draft, understand
+from sprung.campaign.signals import find_column
+from sprung.campaign.source_file import SourceFile
+from sprung.campaign.toml_document import read_toml
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
 from sprung.formats import Signals, Table, from_sep005, read_table, split_unit
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from sprung.campaign.recording import Recording
     from sprung.uncertainty import KnownValue
 
-FILE = "campaign.toml"
+CAMPAIGN_FILE = "campaign.toml"
 """The campaign file's name, where only its folder is given."""
 
 
@@ -112,8 +112,8 @@ def read(
     >>> import sprung
     >>> campaign = sprung.read("campaign.toml", signals={"empty_bounce": signals})          # doctest: +SKIP
     """
-    path = Path(path) / FILE if Path(path).is_dir() else Path(path)
-    return read_document(toml_document(path), path, signals=signals, complete=complete, progress=progress)
+    path = Path(path) / CAMPAIGN_FILE if Path(path).is_dir() else Path(path)
+    return read_document(read_toml(path), path, signals=signals, complete=complete, progress=progress)
 
 
 def read_document(
@@ -146,45 +146,45 @@ def read_document(
     """
     problems, unread = Problems(), Problems()
     of_recordings = problems if complete else unread
-    draft = understand(CampaignFile, document, path.name, problems)
-    missing = tuple(missing_in_file(draft))
+    parsed = parse_document(CampaignFile, document, path.name, problems)
+    missing = tuple(find_missing_entries(parsed))
     if complete:
         for one in missing:
             if one.needed:
                 problems.add(*astuple(one.problem))
-    check(draft, problems)
-    files = _files(draft, problems)
+    check(parsed, problems)
+    files = _files(parsed, problems)
     tables = _tables(files, path.parent, signals or {}, of_recordings, progress)
-    _check_signals(draft, files, signals or {}, problems)
-    _check_channels(draft, tables, problems)
-    _check_starts_and_ends(draft, tables, problems)
-    sensors = named_apart(draft.file.sensor)
-    drops = _recorded(draft, sensors, tables, of_recordings, progress)
+    _check_signals(parsed, files, signals or {}, problems)
+    _check_channels(parsed, tables, problems)
+    _check_starts_and_ends(parsed, tables, problems)
+    sensors = qualify_channels(parsed.file.sensor)
+    drops = _recorded(parsed, sensors, tables, of_recordings, progress)
     problems.raise_if_any()
     if not drops:
         unread.raise_if_any()
     _refuse_unusable([drop.recording for drop in drops.values()])
-    vehicle = draft.file.vehicle
+    vehicle = parsed.file.vehicle
     return Campaign(
         name=vehicle.name or _printable(path.absolute().parent.name),
         sensors=sensors,
         drops=tuple(drops.values()),
-        loads=_loads(draft.file),
+        loads=_loads(parsed.file),
         wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
         cg_height=vehicle.cg_height,
         wheel_height=vehicle.wheel_height,
         roll_axis_height=vehicle.roll_axis_height,
-        known={name: measured.known for name, measured in draft.file.known.items()},
-        model=draft.file.model,
+        known={name: measured.known for name, measured in parsed.file.known.items()},
+        model=parsed.file.model,
         faults=tuple(_unread_fault(problem) for problem in unread),
         path=path,
         files=_sources(files, path, signals or {}),
         missing=missing,
         unread=tuple(
-            drop for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True) if index not in drops
+            drop for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True) if index not in drops
         ),
         identification=vehicle.identification,
-        test=draft.file.test,
+        test=parsed.file.test,
     )
 
 
@@ -207,45 +207,45 @@ def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
     """
     path = Path(path)
     problems = Problems()
-    draft = understand(VehicleFileSchema, toml_document(path), path.name, problems)
-    for one in missing_in_file(draft):
+    parsed = parse_document(VehicleFileSchema, read_toml(path), path.name, problems)
+    for one in find_missing_entries(parsed):
         if one.needed:
             problems.add(*astuple(one.problem))
-    check(draft, problems)
-    section = draft.file.vehicle
+    check(parsed, problems)
+    section = parsed.file.vehicle
     name = section.name or path.stem
-    vehicle = _vehicle(draft, name, problems)
+    vehicle = _vehicle(parsed, name, problems)
     problems.raise_if_any()
     assert vehicle is not None  # noqa: S101 (its problems were raised; for the type checker)
     return VehicleFile(
         vehicle=vehicle,
-        sensors=draft.file.sensor,
-        loads=_loads(draft.file),
-        drops=draft.file.drop,
+        sensors=parsed.file.sensor,
+        loads=_loads(parsed.file),
+        drops=parsed.file.drop,
         wheelbase=section.wheelbase.known if section.wheelbase else None,
         wheel_height=section.wheel_height,
         roll_axis_height=section.roll_axis_height,
-        known={name: measured.known for name, measured in draft.file.known.items()},
-        model=draft.file.model,
+        known={name: measured.known for name, measured in parsed.file.known.items()},
+        model=parsed.file.model,
         path=path,
         identification=section.identification,
-        test=draft.file.test,
+        test=parsed.file.test,
     )
 
 
-def _vehicle(draft: Draft[VehicleFileSchema], name: str, problems: Problems) -> Vehicle | None:
+def _vehicle(parsed: ParsedFile[VehicleFileSchema], name: str, problems: Problems) -> Vehicle | None:
     """Make the vehicle of a file, or note what keeps it from being one."""
-    if ("parameters",) in draft.lost:
+    if ("parameters",) in parsed.lost:
         return None
     # What was written but not understood is a problem already: it must not be called missing as well.
-    held = {str(place[1]): 1.0 for place in draft.lost if place[0] == "parameters"}
-    parameters = {**held, **draft.file.parameters}
+    held = {str(place[1]): 1.0 for place in parsed.lost if place[0] == "parameters"}
+    parameters = {**held, **parsed.file.parameters}
     try:
-        return Vehicle.from_parameters(parameters, name=name, **draft.file.vehicle.heights.by_key)
+        return Vehicle.from_parameters(parameters, name=name, **parsed.file.vehicle.heights.by_key)
     except InputError as error:
         for problem in error.problems:
-            where = problem.where.replace(f"vehicle {name}: ", f"{draft.name}: parameters.")
-            where = where.replace(f"vehicle {name}", f"{draft.name}: parameters")
+            where = problem.where.replace(f"vehicle {name}: ", f"{parsed.name}: parameters.")
+            where = where.replace(f"vehicle {name}", f"{parsed.name}: parameters")
             problems.add(where, problem.found, problem.expected, problem.do)
     return None
 
@@ -254,15 +254,15 @@ def _loads(file: CampaignFile) -> tuple[Load, ...]:
     return (EMPTY, *(load for load in file.load if load.name != EMPTY.name))
 
 
-def _files(draft: Draft[CampaignFile], problems: Problems) -> dict[int, tuple[str, ...]]:
+def _files(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[int, tuple[str, ...]]:
     """Give the recordings' names by the drop's index in the file, also of drops that are faulty otherwise."""
-    written = [] if ("drop",) in draft.lost else draft.document.get("drop", [])
+    written = [] if ("drop",) in parsed.lost else parsed.document.get("drop", [])
     entries = {index: entry for index, entry in enumerate(written) if isinstance(entry, dict)}
     either = {index: entry.get("files") or [entry.get("file")] for index, entry in entries.items()}
     files = {index: names for index, names in either.items() if names != [None]}
-    for index in draft.numbered("drop"):
+    for index in parsed.numbered("drop"):
         if index not in files:
-            where = draft.where("drop", index, "file")
+            where = parsed.where("drop", index, "file")
             problems.add(where, "nothing", "the name of its recording", 'Add file = "..." to it.')
     return {
         index: tuple(names)
@@ -309,25 +309,27 @@ def _unread_fault(problem: Problem) -> Fault:
 
 
 def _check_signals(
-    draft: Draft[CampaignFile], files: Mapping[int, Sequence[str]], signals: Signals, problems: Problems
+    parsed: ParsedFile[CampaignFile], files: Mapping[int, Sequence[str]], signals: Signals, problems: Problems
 ) -> None:
     """Whoever gives signals wants them used."""
     wanted = {file for names in files.values() for file in names}
     for name in signals:
-        if name not in wanted and draft.complete("drop"):
+        if name not in wanted and parsed.complete("drop"):
             do = did_you_mean(name, wanted - set(signals)).replace("Allowed:", "Without signals:")
             problems.add("signals", f"'{name}', which no drop has", "the name of a drop's recording", do)
 
 
-def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Mapping[str, Table]], problems: Problems) -> None:
+def _check_channels(
+    parsed: ParsedFile[CampaignFile], tables: Mapping[int, Mapping[str, Table]], problems: Problems
+) -> None:
     """Every sensor must be in some recording; in which it is missing, the recording itself will say."""
     whole = [table for of_drop in tables.values() for table in of_drop.values()]
     columns = sorted({name for table in whole for name in table.channels})
-    sensors = tuple(zip(draft.numbered("sensor"), draft.file.sensor, strict=True))
+    sensors = tuple(zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True))
     unclaimed = set(columns) - {split_unit(sensor.channel)[0] for _, sensor in sensors}
     for index, sensor in sensors:
-        if whole and not any(column_of(table, sensor.channel) for table in whole):
-            where = draft.where("sensor", index, "channel")
+        if whole and not any(find_column(table, sensor.channel) for table in whole):
+            where = parsed.where("sensor", index, "channel")
             expected = "the name of a column of the recordings"
             problems.add(
                 where,
@@ -338,7 +340,7 @@ def _check_channels(draft: Draft[CampaignFile], tables: Mapping[int, Mapping[str
 
 
 def _recorded(
-    draft: Draft[CampaignFile],
+    parsed: ParsedFile[CampaignFile],
     sensors: Sequence[Sensor],
     tables: Mapping[int, Mapping[str, Table]],
     problems: Problems,
@@ -347,30 +349,30 @@ def _recorded(
     """Return every drop whose files could be read, with its recording; by the drop's index."""
     pairs = [
         Wanted(written, named)
-        for written, named in zip(draft.file.sensor, sensors, strict=True)
-        if refused_unit(written) is None
+        for written, named in zip(parsed.file.sensor, sensors, strict=True)
+        if find_wrong_unit(written) is None
     ]
-    understood = dict(zip(draft.numbered("drop"), draft.file.drop, strict=True))
+    understood = dict(zip(parsed.numbered("drop"), parsed.file.drop, strict=True))
     drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
     recorded: dict[int, DropTest] = {}
-    names = counted(progress, "checking the clocks and units of the recordings", tuple(recording_names(drops)))
+    names = counted(progress, "checking the clocks and units of the recordings", tuple(unique_recording_names(drops)))
     for (index, of_drop), drop, name in zip(tables.items(), drops, names, strict=True):
         with problems.collecting():
-            recorded[index] = drop.with_recording(recording_of_drop(of_drop, pairs, drop, name))
+            recorded[index] = drop.with_recording(assemble_recording(of_drop, pairs, drop, name))
     return recorded
 
 
 def _check_starts_and_ends(
-    draft: Draft[CampaignFile], tables: Mapping[int, Mapping[str, Table]], problems: Problems
+    parsed: ParsedFile[CampaignFile], tables: Mapping[int, Mapping[str, Table]], problems: Problems
 ) -> None:
-    for index, drop in zip(draft.numbered("drop"), draft.file.drop, strict=True):
+    for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True):
         time = next(iter(tables[index].values())).time if index in tables else np.empty(0)
         window = drop.window or (None, None)
         for key, value in (("start", drop.start), ("end", drop.end), ("window", window[0]), ("window", window[1])):
             if value is not None and len(time) > 1 and not time.min() <= value <= time.max():
                 expected = f"a time within the recording, {time.min():.6g} to {time.max():.6g} s on its own clock"
                 do = f"Correct {key}, or leave it out."
-                problems.add(draft.where("drop", index, key), f"{value:g} s", expected, do)
+                problems.add(parsed.where("drop", index, key), f"{value:g} s", expected, do)
 
 
 def _printable(name: str) -> str:

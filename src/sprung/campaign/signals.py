@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sprung.campaign.gap_filling import MAX_MISSING, fill_gaps
 from sprung.campaign.recording import Recording
+from sprung.campaign.time_base import RegularTimeBase, regularise_time_base
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
-from sprung.formats import MOST_MISSING, SLOWEST, RegularTimeBase, Table, fill_gaps, regularise_time_base, split_unit
+from sprung.formats import MIN_RATE, Table, split_unit
 from sprung.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -18,14 +20,14 @@ if TYPE_CHECKING:
 
     from sprung.vehicle import Sensor
 
-LARGEST = 1e6
+MAX_READING = 1e6
 """m/s²: no accelerometer reads more; loggers write such numbers where they have none."""
 
 _LATEST, _SHORTEST = 1e12, 1e-9
 """s: no clock shows more, and no sample follows another sooner."""
 
 
-def column_of(table: Table, channel: str) -> tuple[int, ...]:
+def find_column(table: Table, channel: str) -> tuple[int, ...]:
     """Find a sensor's columns: of just that name, or else of that name with a unit behind it.
 
     Parameters
@@ -45,7 +47,7 @@ def column_of(table: Table, channel: str) -> tuple[int, ...]:
     return exact or tuple(i for i, name in enumerate(table.channels) if name == channel.strip())
 
 
-def own_unit(sensor: Sensor, written: str | None) -> str:
+def sensor_unit(sensor: Sensor, written: str | None) -> str:
     """Give the unit of a channel: the sensor's, otherwise what the file says, otherwise m/s².
 
     Parameters
@@ -58,7 +60,7 @@ def own_unit(sensor: Sensor, written: str | None) -> str:
     return sensor.unit or written or "m/s^2"
 
 
-def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recording:
+def make_recording(table: Table, sensors: Sequence[Sensor], name: str) -> Recording:
     """Make the recording of one drop.
 
     Parameters
@@ -89,7 +91,7 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     with problems.collecting():
         _refuse_backward(table, name)
     raw: dict[int, NDArray[np.float64]] = {}
-    needed = [column[0] for sensor in sensors if len(column := column_of(table, sensor.channel)) == 1]
+    needed = [column[0] for sensor in sensors if len(column := find_column(table, sensor.channel)) == 1]
     table = _where_all_reach(table, needed)
     with problems.collecting():
         raw = dict(zip(needed, table.take(needed), strict=True))
@@ -111,18 +113,18 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
     count = values.shape[1]
     samples = _evened(table, values, name)
     useless = np.isnan(samples.values).all() and bool(samples.faults)
-    if samples.rate < SLOWEST and not useless:
+    if samples.rate < MIN_RATE and not useless:
         raise InputError([_too_slow(samples.rate, name)])
     if useless:
         faults, left_out = [*samples.faults], []
     else:
         wheres = [f"{name}: {sensor.channel}" for sensor in sensors]
-        mended = fill_gaps(
+        filled = fill_gaps(
             samples.values, samples.lost, samples.rate, wheres, lambda sample: table.place(int(samples.origin[sample]))
         )
-        samples = samples._replace(values=mended.values, start=samples.start + mended.first / samples.rate)
-        faults = [*samples.faults, *left_out, *mended.faults]
-        left_out += mended.left_out
+        samples = samples._replace(values=filled.values, start=samples.start + filled.first / samples.rate)
+        faults = [*samples.faults, *left_out, *filled.faults]
+        left_out += filled.left_out
         if np.isnan(samples.values).all():
             do = "Check the logger and its cables, and the channel names in the campaign file."
             left_out.append(Fault("missing", name, "no channel of it is usable; the drop is left out", do))
@@ -148,7 +150,7 @@ def recording_of(table: Table, sensors: Sequence[Sensor], name: str) -> Recordin
 
 def _rate_ratios(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
     """Give the samples that were taken for each one that is there, of each channel; nothing where all have one clock."""
-    columns = [column_of(table, sensor.channel)[:1] for sensor in sensors]
+    columns = [find_column(table, sensor.channel)[:1] for sensor in sensors]
     slower = [
         table.resampled[column[0]].rate_ratio if column and column[0] in table.resampled else 1.0 for column in columns
     ]
@@ -158,7 +160,7 @@ def _rate_ratios(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
 def _where_all_reach(table: Table, needed: Sequence[int]) -> Table:
     """Leave out the few samples at the ends that columns of another clock do not reach."""
     reach = [table.resampled[column] for column in needed if column in table.resampled]
-    reach = [one for one in reach if one.last - one.first >= (1 - MOST_MISSING) * table.samples]
+    reach = [one for one in reach if one.last - one.first >= (1 - MAX_MISSING) * table.samples]
     first, last = max((one.first for one in reach), default=0), min((one.last for one in reach), default=table.samples)
     return table.part(first, last) if last - first < table.samples else table
 
@@ -167,7 +169,7 @@ def _channel(
     table: Table, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
 ) -> tuple[NDArray[np.float64], str, float] | Fault:
     """Give one sensor's samples, NaN where one is missing, what was done to them and the unit; or why it is left out."""
-    where, columns = f"{file}: {sensor.channel}", column_of(table, sensor.channel)
+    where, columns = f"{file}: {sensor.channel}", find_column(table, sensor.channel)
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
         unclaimed = set(table.channels) - {split_unit(other.channel)[0] for other in sensors}
@@ -177,8 +179,8 @@ def _channel(
         found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."
         raise InputError([Problem(where, found, "one column per channel", do)])
     column = columns[0]
-    samples, unit = raw[column], own_unit(sensor, table.units[column])
-    if not np.isfinite(samples).all() and (problem := table.spoilt(column)) is not None:
+    samples, unit = raw[column], sensor_unit(sensor, table.units[column])
+    if not np.isfinite(samples).all() and (problem := table.find_non_number(column)) is not None:
         raise InputError([problem])
     if not np.isfinite(samples).any():
         do = "Check the sensor's cable and the logger, or export the recording again."
@@ -188,7 +190,7 @@ def _channel(
     except ValueError:
         do = 'Give the sensor a unit in the campaign file, such as unit = "g", if that is what the numbers are.'
         raise InputError([Problem(where, f"the unit '{unit}'", "a unit of acceleration", do)]) from None
-    no_number = ~(np.abs(samples) <= LARGEST / factor)
+    no_number = ~(np.abs(samples) <= MAX_READING / factor)
     if no_number.all():
         first = f"the first {samples[0]:.4g} {unit}"
         what = f"every sample reads more than any accelerometer can, {first}; the channel is left out of this drop"
@@ -239,6 +241,6 @@ def _evened(table: Table, values: NDArray[np.float64], file: str) -> RegularTime
 
 def _too_slow(rate: float, file: str) -> Problem:
     do = "Record at 200 Hz or more."
-    if 1e3 * rate >= SLOWEST:
+    if 1e3 * rate >= MIN_RATE:
         do += " If the time is written in ms, name its column 'time [ms]'; if it only counts samples, give it in s."
-    return Problem(file, f"{rate:.4g} samples per second", f"at least {SLOWEST:g}, to see wheels hop", do)
+    return Problem(file, f"{rate:.4g} samples per second", f"at least {MIN_RATE:g}, to see wheels hop", do)

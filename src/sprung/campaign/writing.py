@@ -11,11 +11,11 @@ import numpy as np
 import tomli_w
 from pydantic import TypeAdapter
 
-from sprung.campaign.comments import commented
-from sprung.campaign.published import SCHEMA_FILE, SCHEMA_LINE, schema_text
-from sprung.campaign.reading import FILE
+from sprung.campaign.comments import add_comments
+from sprung.campaign.json_schema import SCHEMA_FILE, SCHEMA_LINE, schema_text
+from sprung.campaign.reading import CAMPAIGN_FILE
 from sprung.campaign.schema import SCHEMA
-from sprung.campaign.signals import own_unit
+from sprung.campaign.signals import sensor_unit
 from sprung.files import atomic_write
 from sprung.formats import split_unit
 from sprung.units import acceleration_factor
@@ -58,7 +58,7 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
         If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
     atomic_write(folder, campaign_files(campaign), overwrite=overwrite)
-    return Path(folder) / FILE
+    return Path(folder) / CAMPAIGN_FILE
 
 
 def campaign_files(campaign: Campaign) -> dict[str, bytes]:
@@ -77,7 +77,7 @@ def campaign_files(campaign: Campaign) -> dict[str, bytes]:
         for name, piece in zip(of_drop, _pieces(drop.recording), strict=True)
     }
     files[SCHEMA_FILE] = schema_text().encode()
-    files[FILE] = (SCHEMA_LINE + commented(_toml(_document(campaign, names)))).encode()
+    files[CAMPAIGN_FILE] = (SCHEMA_LINE + add_comments(_toml(_document(campaign, names)))).encode()
     return files
 
 
@@ -115,22 +115,22 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
     sections = {
         "vehicle": vehicle,
-        "test": written(campaign.test),
+        "test": document_of_record(campaign.test),
         "known": {name: _measured(known) for name, known in campaign.known.items()},
-        "model": written(campaign.model),
-        "sensor": [written(sensor) for sensor in campaign.sensors],
+        "model": document_of_record(campaign.model),
+        "sensor": [document_of_record(sensor) for sensor in campaign.sensors],
         "load": [_load(load) for load in campaign.loads if load.name != EMPTY.name],
         "drop": [
             ({"file": own[0]} if len(own) == 1 else {"files": list(own)})
             | {"load": drop.load, "wheels": drop.wheels}
-            | written(drop, "file", "files", "window", "recording")
+            | document_of_record(drop, "file", "files", "window", "recording")
             for own, drop in zip(files, campaign.drops, strict=True)
         ],
     }
     return {"schema": SCHEMA} | {name: section for name, section in sections.items() if section}
 
 
-def written(record: object, *without: str) -> dict[str, Any]:
+def document_of_record(record: object, *without: str) -> dict[str, Any]:
     """Give the keys of a record that say more than their defaults, as TOML holds them.
 
     Parameters
@@ -146,7 +146,7 @@ def written(record: object, *without: str) -> dict[str, Any]:
 
 
 def _load(load: Load) -> dict[str, Any]:
-    keys = written(load)
+    keys = document_of_record(load)
     for part in (*keys.get("items", ()), *([keys["added"]] if "added" in keys else [])):
         if "mass_std" in part:
             part["mass"] = {"value": part["mass"], "std": part.pop("mass_std")}
@@ -199,5 +199,5 @@ def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:
 
 def _si_per_reading(sensor: Sensor) -> float:
     """Give m/s², positive up, in one unit of a sensor's reading: the inverse of what reading does."""
-    factor = acceleration_factor(own_unit(sensor, split_unit(sensor.channel)[1]))
+    factor = acceleration_factor(sensor_unit(sensor, split_unit(sensor.channel)[1]))
     return -factor if sensor.direction == "down" else factor

@@ -11,9 +11,20 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from sprung.campaign import FILE, Campaign, Drop, Missing, drop_names, kind_of, read, read_document, require_plausible
+from sprung.campaign import (
+    CAMPAIGN_FILE,
+    Campaign,
+    Drop,
+    MissingEntry,
+    drop_kind,
+    read,
+    read_document,
+    require_plausible,
+    unique_drop_names,
+)
 from sprung.checking.clock import ClockReport
 from sprung.checking.recorded import PlottedRecording
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.drafting import DraftCampaign, draft
 from sprung.errors import Fault, InputError
@@ -160,7 +171,7 @@ class Check:
     faults: tuple[Fault, ...]
     recorded: tuple[PlottedRecording, ...] = field(default=(), repr=False)
     campaign: Campaign | None = field(default=None, repr=False)
-    missing: tuple[Missing, ...] = ()
+    missing: tuple[MissingEntry, ...] = ()
 
     @property
     def usable(self) -> bool:
@@ -169,7 +180,8 @@ class Check:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return what happened in each drop as a table, times in s on the recording's own clock."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         columns = ["file", "load", "kind", "release", "landing", "start", "end", "rate", "faults"]
         rows = [[getattr(drop, one) for one in columns[:-1]] + [", ".join(drop.faults)] for drop in self.drops]
@@ -249,7 +261,7 @@ def _campaign_at(path: Path, progress: Progress) -> Campaign:
     if not path.is_dir() or any(path.glob("*.toml")):
         return read(path, complete=False, progress=progress)
     drafted = draft(path, progress=progress)
-    campaign = read_document(tomllib.loads(drafted.text), path / FILE, complete=False, progress=progress)
+    campaign = read_document(tomllib.loads(drafted.text), path / CAMPAIGN_FILE, complete=False, progress=progress)
     return replace(campaign, faults=(*campaign.faults, *_without_drop(drafted)))
 
 
@@ -269,7 +281,7 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
     used = {decay.file: decay for decay in prepared.decays}
     left_out = {drop.recording.name: faults for drop, faults in prepared.left_out}
     reports = []
-    for short, seen in zip(drop_names(campaign.drops), prepared.observations, strict=True):
+    for short, seen in zip(unique_drop_names(campaign.drops), prepared.observations, strict=True):
         name = seen.recording.name
         decay = used.get(name)
         faults = left_out[name] if decay is None else decay.faults
@@ -286,7 +298,7 @@ def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
     file = drop.recording_name or drop.label
     codes = tuple(fault.code for fault in faults if fault.where == file or _is_within(fault.where, file))
-    kind, title = kind_of(drop.wheels), drop.name or ""
+    kind, title = drop_kind(drop.wheels), drop.name or ""
     return DropReport(file, drop.load, None, None, codes, kind=kind, wheels=drop.wheels, name=drop.label, title=title)
 
 
@@ -306,7 +318,7 @@ def _report(
         start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
         faults=tuple(fault.code for fault in faults),
-        kind=kind_of(drop.wheels or seen.wheels),
+        kind=drop_kind(drop.wheels or seen.wheels),
         wheels=drop.wheels,
         wheels_seen=_fallen(drop, seen) if seen.dropped else None,
         release=events.release,

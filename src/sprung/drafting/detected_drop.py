@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import kind_of
+from sprung.campaign import drop_kind
 from sprung.preprocess import DropFeatures, SlowMotion, detect_dropped_channels
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS, Wheel
@@ -74,9 +74,9 @@ class DetectedDrop:
     @property
     def kind(self) -> str | None:
         """What such a drop is called; None where the wheels are not known."""
-        return kind_of(self.wheels) if self.wheels else None
+        return drop_kind(self.wheels) if self.wheels else None
 
-    def on_clock(self, clock: Callable[[float], float]) -> DetectedDrop:
+    def interpolate(self, clock: Callable[[float], float]) -> DetectedDrop:
         """Give the same with its times on another clock.
 
         Parameters

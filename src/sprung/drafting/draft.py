@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import accumulate
 from pathlib import Path
 
-from sprung.campaign import FILE
+from sprung.campaign import CAMPAIGN_FILE
 from sprung.drafting.gather import gather
 from sprung.drafting.look import Look, look
 from sprung.drafting.records import DraftCampaign
@@ -97,7 +97,7 @@ def _refuse(folder: Path, overwrite: bool) -> None:
         found = "a file" if folder.exists() else "no such folder"
         do = "Give the folder that the recordings are in."
         raise InputError([Problem(str(folder), found, "a folder with recordings", do)])
-    path = folder / FILE
+    path = folder / CAMPAIGN_FILE
     if path.exists() and not overwrite:
         do = f"Go on with it (sprung check {path}), or move it away to have it drafted anew."
         raise InputError([Problem(str(path), "a campaign file", "a folder that has none yet", do)])

@@ -14,7 +14,7 @@ from sprung.drafting.detection import Detection, detect_drops
 from sprung.drafting.records import DraftFile
 from sprung.drafting.survey import Survey, full_scales, largest, pieces, survey
 from sprung.errors import InputError, Problem
-from sprung.formats import SLOWEST, Table, read_table
+from sprung.formats import MIN_RATE, Table, read_table
 from sprung.units import acceleration_factor
 
 _UNITS = ("m/s^2", "g", "mm/s^2", "mg")
@@ -96,10 +96,10 @@ def _refuse(name: str, seen: Survey) -> None:
         found = f"no vertical acceleration ({reasons})" if reasons else "no channels"
         do = "If one of them is, let the file name its unit, such as 'ch1 [g]'."
         raise InputError([Problem(name, found, "channels of accelerometers", do)])
-    if not seen.rate >= SLOWEST:
+    if not seen.rate >= MIN_RATE:
         found = f"{seen.rate:.4g} samples per second"
         raise InputError(
-            [Problem(name, found, f"at least {SLOWEST:g}, to see wheels hop", "Record at 200 Hz or more.")]
+            [Problem(name, found, f"at least {MIN_RATE:g}, to see wheels hop", "Record at 200 Hz or more.")]
         )
 
 
@@ -133,4 +133,4 @@ def _on_clock(drop: DetectedDrop, table: Table, seen: Survey) -> DetectedDrop:
     clock = table.clock
     if not isinstance(clock, np.ndarray):
         return drop
-    return drop.on_clock(lambda time: float(clock[min(round((time - seen.start) * seen.rate), seen.samples - 1)]))
+    return drop.interpolate(lambda time: float(clock[min(round((time - seen.start) * seen.rate), seen.samples - 1)]))

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from sprung.campaign import FILE, SCHEMA_FILE, kind_of, schema_text
+from sprung.campaign import CAMPAIGN_FILE, SCHEMA_FILE, drop_kind, schema_text
 from sprung.display import shown
 from sprung.drafting.detected_drop import DetectedDrop, SensorPlace
 from sprung.drafting.detection import RejectedEvent
@@ -92,7 +92,7 @@ class DraftDrop:
     @property
     def kind(self) -> str | None:
         """What such a drop is called."""
-        return kind_of(self.wheels) if self.wheels else None
+        return drop_kind(self.wheels) if self.wheels else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,7 +167,7 @@ class DraftCampaign:
     @property
     def path(self) -> Path:
         """Where the campaign file goes."""
-        return self.folder / FILE
+        return self.folder / CAMPAIGN_FILE
 
     def write(self, *, overwrite: bool = False) -> Path:
         """Write the campaign file and, for editors, its JSON Schema beside it; whole or not at all.
@@ -187,7 +187,7 @@ class DraftCampaign:
         InputError
             If such files would be overwritten, with their list, or the folder cannot be written to.
         """
-        files = {SCHEMA_FILE: schema_text().encode(), FILE: self.text.encode()}
+        files = {SCHEMA_FILE: schema_text().encode(), CAMPAIGN_FILE: self.text.encode()}
         atomic_write(self.folder, files, overwrite=overwrite)
         return self.path
 

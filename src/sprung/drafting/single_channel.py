@@ -10,7 +10,7 @@ from pathlib import Path, PurePath
 
 import numpy as np
 
-from sprung.campaign import Recording, files_named_after
+from sprung.campaign import Recording, find_logger_files
 from sprung.drafting.channel import Channel
 from sprung.drafting.detection import detect_drops
 from sprung.drafting.look import Look
@@ -87,7 +87,7 @@ def _likely(groups: Groups) -> float:
 def _told_apart(groups: Groups) -> bool:
     """Say whether every logger's name tells its own file of each drop from the others."""
     return all(
-        files_named_after([other.file.name for other in group.values()], logger) == [one.file.name]
+        find_logger_files([other.file.name for other in group.values()], logger) == [one.file.name]
         for group in groups.values()
         for logger, one in group.items()
     )

@@ -107,7 +107,9 @@ def _spoilt(table: Table, column: int, begins: list[int], spots: Real) -> Proble
     """Say what stands in the stretches of a channel that is no number."""
     length = spots.shape[1]
     missing = (begin for begin, spot in zip(begins, spots, strict=True) if not np.isfinite(spot).all())
-    return next((problem for begin in missing if (problem := table.spoilt(column, begin, begin + length))), None)
+    return next(
+        (problem for begin in missing if (problem := table.find_non_number(column, begin, begin + length))), None
+    )
 
 
 def pieces(table: Table, surveyed: Survey, factors: Real) -> Iterator[tuple[int, Real]]:

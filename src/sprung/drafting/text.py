@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-from sprung.campaign import SCHEMA_LINE, gap, gaps_in
+from sprung.campaign import SCHEMA_LINE, find_placeholders, placeholder
 from sprung.drafting.records import DraftCampaign, DraftDrop, DraftSensor
 
 _HEAD = """\
@@ -18,16 +18,22 @@ _HEAD = """\
 schema = 1
 """
 
-_WHEELBASE = gap("m, front axle to rear axle, by tape: a number or { value = ..., std = ... }")
-_MASS = gap("kg, whole vehicle, empty, on the scales: a number or { value = ..., std = ... }; or remove this line")
-_POSITION = gap("[x, y, z], m: forward of the front axle, left of the centreline, above the ground")
-_STATION = gap("fl, fr, rl or rr: the wheel it sits on")
-_UNIT = gap("g or m/s^2: its unit, which neither the file nor gravity tells")
-_HIGH_PASS = gap("Hz, lower limit of the sensor or its amplifier; remove the line if it has none, or nobody knows it")
-_ITEMS = gap("[ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece of this load")
-_WHICH = gap("which load? [ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece on the vehicle")
-_LOAD = gap("empty, or the name of the [[load]] that was on the vehicle")
-_WHEELS = gap("[fl, fr, rl, rr] each in quotes: those that were dropped")
+_WHEELBASE = placeholder("m, front axle to rear axle, by tape: a number or { value = ..., std = ... }")
+_MASS = placeholder(
+    "kg, whole vehicle, empty, on the scales: a number or { value = ..., std = ... }; or remove this line"
+)
+_POSITION = placeholder("[x, y, z], m: forward of the front axle, left of the centreline, above the ground")
+_STATION = placeholder("fl, fr, rl or rr: the wheel it sits on")
+_UNIT = placeholder("g or m/s^2: its unit, which neither the file nor gravity tells")
+_HIGH_PASS = placeholder(
+    "Hz, lower limit of the sensor or its amplifier; remove the line if it has none, or nobody knows it"
+)
+_ITEMS = placeholder("[ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece of this load")
+_WHICH = placeholder(
+    "which load? [ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece on the vehicle"
+)
+_LOAD = placeholder("empty, or the name of the [[load]] that was on the vehicle")
+_WHEELS = placeholder("[fl, fr, rl, rr] each in quotes: those that were dropped")
 
 _LOADS = """\
 # One [[load]] for each load that was on the vehicle in some of the drops; the load "empty" always exists, and a vehicle that
@@ -82,7 +88,7 @@ def missing_in(text: str) -> tuple[tuple[str, str], ...]:
     """
     document = tomllib.loads(text)
     found = []
-    for place, what in gaps_in(document):
+    for place, what in find_placeholders(document):
         where = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place).lstrip(".")
         label = ""
         if len(place) > 2 and isinstance(place[1], int):

@@ -185,9 +185,9 @@ class FaultIsolation:
             starts=_STARTS if np.isfinite(enough) else 1,
             enough=enough,
         )
-        untouched = correction.samples is None and not correction.corners
-        noise = self.noise if untouched else reference_noise(decays, fit)
         table = residual_table(self.recordings, decays, fit)
+        is_same = correction.samples is None and not correction.corners
+        noise = self.noise if is_same else reference_noise(decays, fit).of_present(table, self.noise)
         return CandidateFit(campaign, decays, structure.linear_models, fit, table, noise)
 
 

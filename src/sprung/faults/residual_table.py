@@ -45,6 +45,11 @@ class ReferenceNoise(NamedTuple):
     correlation: Real
     samples: Real
 
+    def of_present(self, table: ResidualTable, other: ReferenceNoise) -> ReferenceNoise:
+        """Return the noise, that of channels without any sample in a table taken from another one."""
+        present = table.counts.any(axis=0)
+        return ReferenceNoise(*(np.where(present, own, before) for own, before in zip(self, other, strict=True)))
+
 
 @dataclass(frozen=True, eq=False)
 class ResidualTable:

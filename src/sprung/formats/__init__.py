@@ -1,25 +1,19 @@
 """One file per format, behind one registry."""
 
+from sprung.formats.interpolation import interpolate
 from sprung.formats.registry import Format, formats, read_table
-from sprung.formats.regularise import MOST_MISSING, fill_gaps, filled, on_clock
-from sprung.formats.resampled import SLOWEST
+from sprung.formats.resampling import MIN_RATE
 from sprung.formats.sep005 import Signals, from_sep005
 from sprung.formats.table import Table, split_unit
-from sprung.formats.timestamps import RegularTimeBase, regularise_time_base
 
 __all__ = [
-    "MOST_MISSING",
-    "SLOWEST",
+    "MIN_RATE",
     "Format",
-    "RegularTimeBase",
     "Signals",
     "Table",
-    "fill_gaps",
-    "filled",
     "formats",
     "from_sep005",
-    "on_clock",
+    "interpolate",
     "read_table",
-    "regularise_time_base",
     "split_unit",
 ]

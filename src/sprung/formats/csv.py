@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sprung.formats.blocks import Block, Encoding, blocks, encoding_of
-from sprung.formats.cells import Cells
-from sprung.formats.clock import TIME_NAMES, Columns, clock_of, may_be_time
-from sprung.formats.dialect import Layout, cells_of, layout_of
-from sprung.formats.rates import TIME_UNITS, Rate, rate_of
-from sprung.formats.refusals import reading, refuse
-from sprung.formats.store import Samples, Store, holding, in_steps, joined
+from sprung.formats.reading_errors import input_error, reading
+from sprung.formats.sample_store import Samples, Store, join_samples, regroup, store_in_memory
+from sprung.formats.stated_rates import TIME_UNITS, Rate, find_stated_rate
 from sprung.formats.table import Table, split_unit
+from sprung.formats.text_blocks import Encoding, LineBlock, detect_encoding, read_blocks
+from sprung.formats.text_cells import Cells
+from sprung.formats.text_clock import TIME_NAMES, Columns, find_text_clock, find_time_candidates
+from sprung.formats.text_layout import Layout, detect_layout, split_cells
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -58,17 +58,17 @@ class CsvFormat:
         """
         file = path.name
         try:
-            encoding = encoding_of(path)
+            encoding = detect_encoding(path)
         except UnicodeDecodeError as error:
             do = "Export the recording again, as UTF-8."
-            raise refuse(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
-        ahead = blocks(path, encoding)
-        head = next(ahead, Block(0, []))
+            raise input_error(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
+        ahead = read_blocks(path, encoding)
+        head = next(ahead, LineBlock(0, []))
         layout, rate, times = _understood(head, file)
         return _table(_Text(path, encoding, layout), chain([head], ahead), rate, times)
 
 
-def table_of_lines(file: str, lines: Sequence[str]) -> Table:
+def table_from_lines(file: str, lines: Sequence[str]) -> Table:
     """Understand lines as a text table, for formats whose cells can be written as text.
 
     Parameters
@@ -87,19 +87,19 @@ def table_of_lines(file: str, lines: Sequence[str]) -> Table:
     InputError
         As from `CsvFormat.read`.
     """
-    head = Block(0, list(lines))
+    head = LineBlock(0, list(lines))
     layout, rate, times = _understood(head, file)
     return _table(_Lines(Path(file), Encoding("utf-8", 0), layout, (), head), [head], rate, times)
 
 
-def _understood(head: Block, file: str) -> tuple[Layout, Rate | None, list[int]]:
+def _understood(head: LineBlock, file: str) -> tuple[Layout, Rate | None, list[int]]:
     """Recognise the layout of a table, its rate where a line above says it, and the columns that may be the time."""
     text = "\n".join(head.lines)
     end = _end(text)
     if not text[:end].strip():
         expected = "a line with the names of the columns, then the samples"
-        raise refuse(file, "an empty file", expected, "Export it again.")
-    layout = layout_of(text, end)
+        raise input_error(file, "an empty file", expected, "Export it again.")
+    layout = detect_layout(text, end)
     rate = _rate(text, layout, file)
     _check(layout, rate, end, file)
     return layout, rate, _may_be_time(text, layout)
@@ -119,11 +119,11 @@ def _end(text: str) -> int:
 def _rate(text: str, layout: Layout, file: str) -> Rate | None:
     lines = text[: layout.start].split("\n") if layout.line < 10_000 else text[: layout.start].split("\n")[:10_000]
     try:
-        return rate_of(lines, layout.decimal)
+        return find_stated_rate(lines, layout.decimal)
     except ValueError as error:
         where, _, found = str(error).partition("|")
         expected = "a number that can be read in one way"
-        raise refuse(f"{file}: {where}", found, expected, "Write it without a thousands separator.") from None
+        raise input_error(f"{file}: {where}", found, expected, "Write it without a thousands separator.") from None
 
 
 def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
@@ -133,22 +133,22 @@ def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
         found, do = "numbers in the first line", "Add a line with the names of the columns above them."
         if layout.line > 1:
             found = "numbers without names above them"
-        raise refuse(where, found, "the names of the columns", do)
+        raise input_error(where, found, "the names of the columns", do)
     if any(not character.isprintable() for name in layout.names for character in name):
         found, do = "characters that nobody can read", "Export the recording as text; this file may be of another kind."
-        raise refuse(where, found, "the names of the columns", do)
+        raise input_error(where, found, "the names of the columns", do)
     if len(layout.names) < 2 and rate is None:
         expected = "the time and at least one channel, separated by comma, semicolon, tab, pipe or spaces"
         do = "Export it with separators, or add a line such as 'Sample rate: 500 Hz' above the names."
-        raise refuse(where, f"a single column, '{layout.names[0][:80]}'", expected, do)
+        raise input_error(where, f"a single column, '{layout.names[0][:80]}'", expected, do)
     if layout.start >= end:
-        raise refuse(file, "a header and no samples", "one line per sample below the names", "Export it again.")
+        raise input_error(file, "a header and no samples", "one line per sample below the names", "Export it again.")
 
 
 def _may_be_time(text: str, layout: Layout) -> list[int]:
     """Give the columns that may be the time, by their names or by what stands in their first cells."""
-    rows = [cells_of(line, layout.delimiter) for line in text[layout.start :].split("\n", _LOOKED_AT)[:_LOOKED_AT]]
-    return may_be_time(layout.names, rows)
+    rows = [split_cells(line, layout.delimiter) for line in text[layout.start :].split("\n", _LOOKED_AT)[:_LOOKED_AT]]
+    return find_time_candidates(layout.names, rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,16 +178,16 @@ class _Text:
         """Whether it is read at once."""
         return self.size <= _SMALL
 
-    def blocks(self, start: int) -> Iterator[Block]:
+    def read_blocks(self, start: int) -> Iterator[LineBlock]:
         """Give its lines from a byte on."""
-        return blocks(self.path, self.encoding, start)
+        return read_blocks(self.path, self.encoding, start)
 
     def cells(self, columns: Sequence[int], first: int, last: int) -> Iterator[tuple[int, Cells]]:
         """Read the blocks with some samples; give the first sample of each as well."""
         sample, number, start = self.marks[bisect_right(self.marks, first, key=lambda mark: mark[0]) - 1]
-        pieces = self.blocks(start)
+        pieces = self.read_blocks(start)
         while sample < last:
-            with reading(self.path, "a text table"):
+            with reading(self.path.name, "a text table"):
                 lines = _samples(next(pieces), number, self.layout)
                 cells = Cells(self.path.name, self.layout, columns, self.size, first - sample, last - sample)
                 cells.add(lines.lines, lines.start)
@@ -197,9 +197,9 @@ class _Text:
     def read(self, columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
         """Read as a store does."""
         found = self.cells(columns, first, last)
-        return in_steps((cells.values[:, max(first - sample, 0) :] for sample, cells in found), step)
+        return regroup((cells.values[:, max(first - sample, 0) :] for sample, cells in found), step)
 
-    def spoilt(self, column: int, first: int, last: int) -> Problem | None:
+    def find_non_number(self, column: int, first: int, last: int) -> Problem | None:
         """Say what is no number, as a store does."""
         whole = Cells(self.path.name, self.layout, [column], self.size)
         for _, cells in self.cells([column], first, last):
@@ -207,7 +207,7 @@ class _Text:
                 for line, cell, count in own.values():
                     begin, text, before = all_.get(column, (line, cell, 0))
                     all_[column] = (begin, text, before + count)
-        return whole.spoilt(column)
+        return whole.find_non_number(column)
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,7 +220,7 @@ class _Lines(_Text):
         All of them.
     """
 
-    held: Block = Block(0, [])  # noqa: RUF009 (a tuple that nobody changes)
+    held: LineBlock = LineBlock(0, [])  # noqa: RUF009 (a tuple that nobody changes)
 
     @property
     def size(self) -> int:
@@ -232,18 +232,18 @@ class _Lines(_Text):
         """Always: they are in memory anyhow."""
         return True
 
-    def blocks(self, start: int) -> Iterator[Block]:  # noqa: ARG002 (there is one block)
+    def read_blocks(self, start: int) -> Iterator[LineBlock]:  # noqa: ARG002 (there is one block)
         """Give all lines."""
         return iter([self.held])
 
 
-def _samples(block: Block, number: int, layout: Layout) -> Block:
+def _samples(block: LineBlock, number: int, layout: Layout) -> LineBlock:
     """Give the lines of a block that are not above the samples, and the number of the first of them."""
     above = max(layout.line - number, 0)
-    return Block(number + min(above, len(block.lines)), block.lines[above:])
+    return LineBlock(number + min(above, len(block.lines)), block.lines[above:])
 
 
-def _gone_through(text: _Text, ahead: Iterable[Block], columns: Sequence[int]) -> tuple[_Text, Cells, int]:
+def _gone_through(text: _Text, ahead: Iterable[LineBlock], columns: Sequence[int]) -> tuple[_Text, Cells, int]:
     """Go through a file for its lines and some columns; give the number of its last line too if that is cut short."""
     layout = text.layout
     cells = Cells(text.path.name, layout, columns, text.size)
@@ -262,14 +262,14 @@ def _gone_through(text: _Text, ahead: Iterable[Block], columns: Sequence[int]) -
             before = next((line for line in reversed(lines[:last]) if line.strip(_BLANK)), held[1])
             held = (start + last, lines[last])
         number = start + len(lines)
-    found, full = (len(cells_of(line, layout.delimiter)) for line in (held[1], before))
+    found, full = (len(split_cells(line, layout.delimiter)) for line in (held[1], before))
     cut = held[0] if cells.count and found < len(layout.names) <= full else 0
     if held[0] and not cut:
         cells.add([held[1]], held[0])
     return replace(text, marks=marks), cells, cut
 
 
-def _table(text: _Text, ahead: Iterable[Block], rate: Rate | None, candidates: Sequence[int]) -> Table:
+def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidates: Sequence[int]) -> Table:
     layout = text.layout
     small = text.small
     read = range(len(layout.names)) if small else candidates
@@ -296,18 +296,18 @@ def _table(text: _Text, ahead: Iterable[Block], rate: Rate | None, candidates: S
         wrong={column: problem for column in candidates if (problem := cells.wrong(column)) is not None},
         line=line,
     )
-    clock = clock_of(columns, rate, text.path.name)
+    clock = find_text_clock(columns, rate, text.path.name)
     channels = [column for column, name in enumerate(layout.names) if name and column != clock.column]
     named = [split_unit(layout.names[column]) for column in channels]
-    in_memory = holding(cells.values) if small else None
-    store = Store(len(layout.names), cells.count, in_memory.read if in_memory else text.read, text.spoilt)
+    in_memory = store_in_memory(cells.values) if small else None
+    store = Store(len(layout.names), cells.count, in_memory.read if in_memory else text.read, text.find_non_number)
     return Table(
         channels=tuple(name for name, _ in named),
         units=tuple(
             unit if unit is not None else units[column] or None
             for (_, unit), column in zip(named, channels, strict=True)
         ),
-        store=joined([Samples(store, column) for column in channels]),
+        store=join_samples([Samples(store, column) for column in channels]),
         clock=clock.time,
         place=lambda sample: f"line {line(sample)}",
         notes=(*notes, *clock.notes),

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sprung.errors import InputError
-from sprung.formats.csv import table_of_lines
-from sprung.formats.optional import library
-from sprung.formats.refusals import Allowance, contained, refuse
+from sprung.formats.csv import table_from_lines
+from sprung.formats.libraries import load_library
+from sprung.formats.reading_errors import MemoryBudget, input_error, reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,13 +40,13 @@ class ExcelFormat:
             If it is another kind of workbook, is damaged, holds no recording or several, or openpyxl is missing.
         """
         _refuse_others(path)
-        openpyxl = library("openpyxl", "excel", path)
-        allowance = Allowance(path)
-        with contained(path.name, "Excel workbook"):
+        openpyxl = load_library("openpyxl", "excel", path)
+        budget = MemoryBudget(path)
+        with reading(path.name, "an Excel workbook"):
             workbook = openpyxl.load_workbook(path, read_only=True, data_only=True)
         try:
-            with contained(path.name, "Excel workbook"):
-                sheets = {sheet.title: list(_lines(sheet, allowance)) for sheet in workbook.worksheets}
+            with reading(path.name, "an Excel workbook"):
+                sheets = {sheet.title: list(_lines(sheet, budget)) for sheet in workbook.worksheets}
         finally:
             workbook.close()
         return _the_table({name: lines for name, lines in sheets.items() if any(line.strip() for line in lines)}, path)
@@ -57,24 +57,24 @@ def _refuse_others(path: Path) -> None:
         head = file.read(512)
     ending = path.suffix.lower()
     if not head:
-        raise refuse(path.name, "an empty file", _KIND, "Copy or export it again.")
+        raise input_error(path.name, "an empty file", _KIND, "Copy or export it again.")
     if ending in {".xlsx", ".xlsm"} and head.startswith(_ZIP):
         return
     if head.startswith(_COMPOUND):
         found = "a workbook of old Excel (.xls), or one with a password"
-        raise refuse(path.name, found, "a workbook as .xlsx without a password, or CSV", _SAVE)
+        raise input_error(path.name, found, "a workbook as .xlsx without a password, or CSV", _SAVE)
     if head.startswith(_ZIP):
-        raise refuse(path.name, f"a workbook of another kind ({ending})", "a workbook as .xlsx, or CSV", _SAVE)
+        raise input_error(path.name, f"a workbook of another kind ({ending})", "a workbook as .xlsx, or CSV", _SAVE)
     if b"\0" not in head:
         found = f"text under the name of a workbook ({ending})"
-        raise refuse(path.name, found, _KIND, "Rename it to .csv, which its content seems to be.")
-    raise refuse(path.name, f"a file that is no workbook ({ending})", _KIND, "Copy or export it again.")
+        raise input_error(path.name, found, _KIND, "Rename it to .csv, which its content seems to be.")
+    raise input_error(path.name, f"a file that is no workbook ({ending})", _KIND, "Copy or export it again.")
 
 
-def _lines(sheet: Any, allowance: Allowance) -> Iterator[str]:
+def _lines(sheet: Any, budget: MemoryBudget) -> Iterator[str]:
     """Write each row as a line of text, its cells separated by tabs."""
     for row in sheet.iter_rows(values_only=True):
-        allowance.take(_CELL * len(row))
+        budget.take(_CELL * len(row))
         yield "\t".join(map(_cell, row)).rstrip("\t")
 
 
@@ -97,14 +97,14 @@ def _cell(value: object) -> str:
 def _the_table(sheets: dict[str, list[str]], path: Path) -> Table:
     """Understand every sheet; the one that is a recording is meant, and others, such as a cover, are not."""
     if not sheets:
-        raise refuse(
+        raise input_error(
             path.name, "a workbook without content", "a sheet with the time and the channels", "Export it again."
         )
     tables: dict[str, Table] = {}
     problems: dict[str, InputError] = {}
     for name, lines in sheets.items():
         try:
-            tables[name] = table_of_lines(f"{path.name}: sheet '{name}'", lines)
+            tables[name] = table_from_lines(f"{path.name}: sheet '{name}'", lines)
         except InputError as error:
             problems[name] = error
     match list(tables.items()):
@@ -116,4 +116,4 @@ def _the_table(sheets: dict[str, list[str]], path: Path) -> Table:
             raise problems[longest]
         case _:
             found = f"{len(tables)} sheets with recordings: {', '.join(repr(name) for name in tables)}"
-            raise refuse(path.name, found, "one", "Save each sheet as a workbook or CSV file of its own.")
+            raise input_error(path.name, found, "one", "Save each sheet as a workbook or CSV file of its own.")

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sprung.formats.datasets import unread
+from sprung.formats.hdf5_datasets import lazy_numbers
+from sprung.formats.libraries import load_library
 from sprung.formats.nested import DEEPEST, Foreign, Node
-from sprung.formats.optional import library
-from sprung.formats.refusals import Allowance, reading
-from sprung.formats.vectors import table_of
+from sprung.formats.reading_errors import MemoryBudget, reading
+from sprung.formats.vectors import table_from_nested
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,10 +42,10 @@ class Hdf5Format:
         InputError
             If it is damaged, holds no recording, or h5py is missing.
         """
-        h5py = library("h5py", "hdf5", path)
-        with reading(path, "an HDF5 file"), h5py.File(path, "r") as file:
-            node = _group(h5py, file, Allowance(path), {file}, path)
-        return table_of(node, path, "Write the time and the channels as one-dimensional datasets.")
+        h5py = load_library("h5py", "hdf5", path)
+        with reading(path.name, "an HDF5 file"), h5py.File(path, "r") as file:
+            node = _group(h5py, file, MemoryBudget(path), {file}, path)
+        return table_from_nested(node, path, "Write the time and the channels as one-dimensional datasets.")
 
 
 def named(items: Any) -> list[str]:
@@ -59,11 +59,11 @@ def named(items: Any) -> list[str]:
     return [name for name in items if isinstance(name, str)]
 
 
-def _group(h5py: Any, group: Any, allowance: Allowance, seen: set[Any], path: Path, depth: int = 0) -> Node:
-    allowance.take(PER_OBJECT)
+def _group(h5py: Any, group: Any, budget: MemoryBudget, seen: set[Any], path: Path, depth: int = 0) -> Node:
+    budget.take(PER_OBJECT)
     if depth > DEEPEST:
         return Foreign("nested too deeply")
-    node: dict[str, Node] = _attributes(h5py, group, allowance)
+    node: dict[str, Node] = _attributes(h5py, group, budget)
     for name in named(group):
         link = group.get(name, getlink=True)
         if isinstance(link, h5py.ExternalLink):
@@ -74,26 +74,26 @@ def _group(h5py: Any, group: Any, allowance: Allowance, seen: set[Any], path: Pa
             continue
         seen.add(item)
         if isinstance(item, h5py.Group):
-            node[name] = _group(h5py, item, allowance, seen, path, depth + 1)
+            node[name] = _group(h5py, item, budget, seen, path, depth + 1)
         elif isinstance(item, h5py.Dataset):
-            values = _dataset(h5py, item, allowance, path)
-            attributes = _attributes(h5py, item, allowance)
+            values = _dataset(h5py, item, budget, path)
+            attributes = _attributes(h5py, item, budget)
             node[name] = {"": values, **attributes} if attributes else values
     return node
 
 
-def _dataset(h5py: Any, dataset: Any, allowance: Allowance, path: Path) -> Node:
-    allowance.take(PER_OBJECT)
+def _dataset(h5py: Any, dataset: Any, budget: MemoryBudget, path: Path) -> Node:
+    budget.take(PER_OBJECT)
     if h5py.check_string_dtype(dataset.dtype) is not None:
-        return _words(h5py, dataset, allowance)
+        return _words(h5py, dataset, budget)
     if dataset.dtype.hasobject:
         return Foreign("references or lists of varying length")
     if dataset.shape is None:
         return np.empty(0)
-    return unread(dataset, path, allowance)
+    return lazy_numbers(dataset, path, budget)
 
 
-def _words(h5py: Any, dataset: Any, allowance: Allowance) -> Node:
+def _words(h5py: Any, dataset: Any, budget: MemoryBudget) -> Node:
     if dataset.shape is None or len(dataset.shape) > 1:
         return Foreign("a table of text")
     if not dataset.shape:
@@ -101,23 +101,23 @@ def _words(h5py: Any, dataset: Any, allowance: Allowance) -> Node:
         return text
     words: list[Node] = []
     if h5py.check_string_dtype(dataset.dtype).length is not None:
-        allowance.take(dataset.size * dataset.dtype.itemsize * 8)
+        budget.take(dataset.size * dataset.dtype.itemsize * 8)
         words.extend(dataset.asstr("utf-8", "replace")[()])
     else:
         for index in range(dataset.size):  # one by one, as nothing says how long they are
-            allowance.take(PER_OBJECT)
+            budget.take(PER_OBJECT)
             words.append(dataset.asstr("utf-8", "replace")[index])
-            allowance.take(4 * len(str(words[-1])))
+            budget.take(4 * len(str(words[-1])))
     return words
 
 
-def _attributes(h5py: Any, item: Any, allowance: Allowance) -> dict[str, Node]:
+def _attributes(h5py: Any, item: Any, budget: MemoryBudget) -> dict[str, Node]:
     """Give the attributes that are words or single numbers."""
     node: dict[str, Node] = {}
     for name in named(item.attrs):
         identity = item.attrs.get_id(name)
         count = int(np.prod(identity.shape or (), dtype=object))
-        allowance.take(PER_OBJECT + 4 * count * identity.dtype.itemsize)
+        budget.take(PER_OBJECT + 4 * count * identity.dtype.itemsize)
         is_text = h5py.check_string_dtype(identity.dtype) is not None
         if count > (_MOST_WORDS if is_text else 1) or not (is_text or identity.dtype.kind in "fiub"):
             continue
@@ -127,7 +127,7 @@ def _attributes(h5py: Any, item: Any, allowance: Allowance) -> dict[str, Node]:
         values = np.asarray(value)
         if is_text:
             words = [word.decode("utf-8", "replace") if isinstance(word, bytes) else str(word) for word in values.flat]
-            allowance.take(4 * sum(map(len, words)))
+            budget.take(4 * sum(map(len, words)))
             node[name] = words[0] if len(words) == 1 else list(words)
         else:
             node[name] = values

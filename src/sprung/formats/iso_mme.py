@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem, Problems
-from sprung.formats.blocks import Encoding, blocks, encoding_of
-from sprung.formats.dialect import EMPTY
-from sprung.formats.rates import TIME_UNITS
-from sprung.formats.store import Samples, Store, in_steps, joined, nothing
+from sprung.formats.sample_store import Samples, Store, join_samples, missing_samples, regroup
+from sprung.formats.stated_rates import TIME_UNITS
 from sprung.formats.table import Table
+from sprung.formats.text_blocks import Encoding, detect_encoding, read_blocks
+from sprung.formats.text_layout import EMPTY
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -98,13 +98,13 @@ class IsoMmeFormat:
         samples = [
             Samples(_store(channel), 0)
             if clocks[id(channel)] == clock
-            else nothing(count, _other(channel, clocks[id(channel)], clock))
+            else missing_samples(count, _other(channel, clocks[id(channel)], clock))
             for channel in measured
         ]
         return Table(
             channels=tuple(channel.name for channel in measured),
             units=tuple(channel.header.get("unit") for channel in measured),
-            store=joined(samples),
+            store=join_samples(samples),
             clock=time,
         )
 
@@ -144,8 +144,8 @@ def _channel(path: Path) -> _Channel:
     header: dict[str, str] = {}
     count = start = above = 0
     with _reading(path):
-        encoding = encoding_of(path)
-        for block in blocks(path, encoding):
+        encoding = detect_encoding(path)
+        for block in read_blocks(path, encoding):
             lines = block.lines
             if not start:
                 found = next((index for index, line in enumerate(lines) if not _is_header(line)), len(lines))
@@ -167,7 +167,7 @@ def _cells(channel: _Channel) -> Iterator[list[tuple[int, str]]]:
     """Give the lines with samples block by block, and their numbers."""
     number = 1
     with _reading(channel.path):
-        for block in blocks(channel.path, channel.encoding):
+        for block in read_blocks(channel.path, channel.encoding):
             lines = enumerate(map(str.strip, block.lines), number)
             yield [(line, cell) for line, cell in lines if cell and line >= channel.start]
             number += len(block.lines)
@@ -189,15 +189,15 @@ def _store(channel: _Channel) -> Store:
             place += len(cells)
 
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
-        return (np.repeat(piece, len(columns), axis=0) for piece in in_steps(pieces(first, last), step))
+        return (np.repeat(piece, len(columns), axis=0) for piece in regroup(pieces(first, last), step))
 
-    def spoilt(_column: int, first: int, last: int) -> Problem | None:
+    def find_non_number(_column: int, first: int, last: int) -> Problem | None:
         within = islice(chain.from_iterable(_cells(channel)), first, last)
         words = ((line, cell) for line, cell in within if np.isnan(_number(cell)) and cell.lower() not in _MISSING)
         found = next(words, None)
         return _spoilt(channel.file, *found, 1 + sum(1 for _ in words)) if found else None
 
-    return Store(1, channel.count, read, spoilt)
+    return Store(1, channel.count, read, find_non_number)
 
 
 def _spoilt(file: str, line: int, cell: str, count: int) -> Problem:

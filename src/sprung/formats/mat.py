@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.formats import mat4, mat5
-from sprung.formats.datasets import numbers_in, unread
 from sprung.formats.hdf5 import PER_OBJECT, SIGNATURE, named
+from sprung.formats.hdf5_datasets import lazy_numbers, read_dataset
+from sprung.formats.libraries import load_library
 from sprung.formats.nested import DEEPEST, Foreign, Node
-from sprung.formats.optional import library
-from sprung.formats.refusals import Allowance, reading
-from sprung.formats.vectors import table_of
+from sprung.formats.reading_errors import MemoryBudget, reading
+from sprung.formats.vectors import table_from_nested
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,14 +49,14 @@ class MatFormat:
         with path.open("rb") as file:
             head = file.read(mat5.HEADER)
         if head[126:128] not in _BYTE_ORDERS:
-            return table_of(_read(mat4.variables, path), path, _DO)
+            return table_from_nested(_read(mat4.variables, path), path, _DO)
         new = head[124:126] in {b"\0\x02", b"\x02\0"}
-        return table_of(_read_7_3(path) if new else _read(mat5.variables, path), path, _DO)
+        return table_from_nested(_read_7_3(path) if new else _read(mat5.variables, path), path, _DO)
 
 
-def _read(variables: Callable[[Path, Allowance], dict[str, Node]], path: Path) -> Node:
-    with reading(path, _KIND):
-        return variables(path, Allowance(path))
+def _read(variables: Callable[[Path, MemoryBudget], dict[str, Node]], path: Path) -> Node:
+    with reading(path.name, _KIND):
+        return variables(path, MemoryBudget(path))
 
 
 def _words(rows: list[str]) -> Node:
@@ -64,31 +64,31 @@ def _words(rows: list[str]) -> Node:
 
 
 def _read_7_3(path: Path) -> Node:
-    h5py = library("h5py", "hdf5", path)
-    allowance = Allowance(path)
-    with reading(path, _KIND), h5py.File(path, "r") as file:
+    h5py = load_library("h5py", "hdf5", path)
+    budget = MemoryBudget(path)
+    with reading(path.name, _KIND), h5py.File(path, "r") as file:
         items = {name: file[name] for name in named(file) if not name.startswith("#")}
-        return {name: _item(h5py, path, item, allowance, 0) for name, item in items.items()}
+        return {name: _item(h5py, path, item, budget, 0) for name, item in items.items()}
 
 
-def _item(h5py: Any, path: Path, item: Any, allowance: Allowance, depth: int) -> Node:
+def _item(h5py: Any, path: Path, item: Any, budget: MemoryBudget, depth: int) -> Node:
     """Bring what h5py gives into plain form: what MATLAB calls it stands in an attribute."""
-    allowance.take(PER_OBJECT)
+    budget.take(PER_OBJECT)
     said = item.attrs.get("MATLAB_class", b"")
     kind = said.decode("utf-8", "replace") if isinstance(said, bytes) else str(said)
     foreign = "MATLAB_object_decode" in item.attrs or "MATLAB_sparse" in item.attrs or kind not in _KINDS
     if foreign or depth > DEEPEST:
         return Foreign(f"an object of class {kind}, which only MATLAB can read")
     if isinstance(item, h5py.Group):
-        return _struct({name: _item(h5py, path, item[name], allowance, depth + 1) for name in named(item)})
+        return _struct({name: _item(h5py, path, item[name], budget, depth + 1) for name in named(item)})
     if item.shape is None or "MATLAB_empty" in item.attrs:
         return np.empty(0)
     is_list = h5py.check_ref_dtype(item.dtype) is not None
     if item.external or item.is_virtual or not (is_list or kind == "char"):
-        return Foreign("complex numbers") if item.dtype.names else unread(item, path, allowance, transposed=True)
-    values = numbers_in(item, allowance)
+        return Foreign("complex numbers") if item.dtype.names else lazy_numbers(item, path, budget, transposed=True)
+    values = read_dataset(item, budget)
     if is_list:
-        children = [_item(h5py, path, item.file[ref], allowance, depth + 1) for ref in values.flat if ref]
+        children = [_item(h5py, path, item.file[ref], budget, depth + 1) for ref in values.flat if ref]
         return children if kind == "cell" else _Array(children)
     rows = np.atleast_2d(values.T).astype(np.uint16).tolist()
     return _words(["".join(map(chr, row)) for row in rows])

@@ -17,7 +17,7 @@ from sprung.formats.nested import Foreign, Node
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats.refusals import Allowance
+    from sprung.formats.reading_errors import MemoryBudget
 
 _HEADER = 20
 _KINDS = (("f8", 9), ("f4", 7), ("i4", 5), ("i2", 3), ("u2", 4), ("u1", 2))
@@ -25,7 +25,7 @@ _KINDS = (("f8", 9), ("f4", 7), ("i4", 5), ("i2", 3), ("u2", 4), ("u1", 2))
 _FULL, _WORDS, _SPARSE = 0, 1, 2
 
 
-def variables(path: Path, allowance: Allowance) -> dict[str, Node]:
+def variables(path: Path, budget: MemoryBudget) -> dict[str, Node]:
     """Find all variables; their numbers stay where they are.
 
     Parameters
@@ -69,9 +69,9 @@ def variables(path: Path, allowance: Allowance) -> dict[str, Node]:
             if what == _SPARSE or is_complex:
                 found[name] = Foreign("a sparse matrix" if what == _SPARSE else "complex numbers")
             elif what == _WORDS:
-                allowance.take(values.size * 8)
+                budget.take(values.size * 8)
                 codes = np.frombuffer(source.content(values), order + dtype).astype(np.int64)
                 found[name] = words("".join(map(chr, codes % 0x110000)), (rows, columns))
             else:
-                found[name] = numbers(source, values, (rows, columns), allowance)
+                found[name] = numbers(source, values, (rows, columns), budget)
     return found

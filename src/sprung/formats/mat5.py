@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, BinaryIO, NamedTuple, cast
 import numpy as np
 
 from sprung.formats.nested import DEEPEST, Foreign, Node, Numbers
-from sprung.formats.refusals import reading
-from sprung.formats.store import Samples, Store, by_ranges, samples_at_once
+from sprung.formats.reading_errors import reading
+from sprung.formats.sample_store import Samples, Store, samples_per_read, store_by_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.refusals import Allowance
+    from sprung.formats.reading_errors import MemoryBudget
 
 HEADER = 128
 _ARRAY, _COMPRESSED = 14, 15
@@ -46,7 +46,7 @@ _IN_MEMORY = 1 << 22
 _KIND = "a MATLAB file of vectors"
 
 
-def variables(path: Path, allowance: Allowance) -> dict[str, Node]:
+def variables(path: Path, budget: MemoryBudget) -> dict[str, Node]:
     """Find all variables; their numbers stay where they are, those of compressed ones are unpacked.
 
     Parameters
@@ -77,12 +77,12 @@ def variables(path: Path, allowance: Allowance) -> dict[str, Node]:
         for element in _elements(plain, HEADER, path.stat().st_size):
             inside = [(plain, element)]
             if element.kind == _COMPRESSED:
-                begin, end = unpacked.add(plain, element, allowance)
+                begin, end = unpacked.add(plain, element, budget)
                 inside = [(packed, inner) for inner in _elements(packed, begin, end)]
             for source, inner in inside:
                 if inner.kind != _ARRAY:
                     raise ValueError(f"a variable of unknown type {inner.kind}")
-                name, node = _array(source, inner, allowance, 0)
+                name, node = _array(source, inner, budget, 0)
                 if name:  # what has none is MATLAB's own
                     found[name] = node
     return found
@@ -124,14 +124,14 @@ class _Unpacked:
     def __del__(self) -> None:
         self.stream.close()
 
-    def add(self, source: Bytes, element: Element, allowance: Allowance) -> tuple[int, int]:
+    def add(self, source: Bytes, element: Element, budget: MemoryBudget) -> tuple[int, int]:
         """Unpack a variable, and say where it begins and ends."""
         begin = self.stream.seek(0, 2)
         size = held = 0
         for piece in _inflated(source.stream, element):
             if not held:
                 size = 8 + struct.unpack(source.order + "II", piece[:8])[1]
-                allowance.take(size)
+                budget.take(size)
             held += len(piece)
             if held > size:
                 break
@@ -171,9 +171,9 @@ def _elements(source: Bytes, place: int, end: int) -> Iterator[Element]:
         place += step
 
 
-def _array(source: Bytes, element: Element, allowance: Allowance, depth: int) -> tuple[str, Node]:
+def _array(source: Bytes, element: Element, budget: MemoryBudget, depth: int) -> tuple[str, Node]:
     """Give the name and the content of an array."""
-    allowance.take(_PER_ARRAY)
+    budget.take(_PER_ARRAY)
     if not element.size:
         return "", np.empty(0)
     if depth > DEEPEST:
@@ -188,25 +188,25 @@ def _array(source: Bytes, element: Element, allowance: Allowance, depth: int) ->
     if min(sides, default=0) < 0:
         raise ValueError("an array with a negative side")
     if kind == _STRUCT:
-        return name, _structs(source, parts, allowance, depth)
+        return name, _structs(source, parts, budget, depth)
     if kind == _CELL:
-        return name, [_array(source, part, allowance, depth + 1)[1] for part in parts]
+        return name, [_array(source, part, budget, depth + 1)[1] for part in parts]
     values = next(parts, Element(2, element.start, 0))
     if kind == _CHAR:
-        allowance.take(values.size)
+        budget.take(values.size)
         return name, words(_decoded(source.content(values), values.kind, source.order), sides)
     if kind not in _NUMERIC:
         raise ValueError(f"an array of unknown kind {kind}")
-    return name, numbers(source, values, sides, allowance)
+    return name, numbers(source, values, sides, budget)
 
 
-def numbers(source: Bytes, values: Element, sides: Sequence[int], allowance: Allowance) -> Node:
+def numbers(source: Bytes, values: Element, sides: Sequence[int], budget: MemoryBudget) -> Node:
     """Give an array of numbers: as it is where it is small, otherwise its rows and columns, still unread."""
     dtype = np.dtype(source.order + _NUMBERS[values.kind])
     count, rest = divmod(values.size, dtype.itemsize)
     if rest or count != int(np.prod(sides, dtype=object)):
         raise ValueError(f"{values.size} bytes of an array of sides {sides}")
-    allowance.take(8 * count)
+    budget.take(8 * count)
     if count <= 1:
         return np.frombuffer(source.content(values), dtype)
     shape = tuple(side for side in sides if side != 1)
@@ -234,14 +234,14 @@ def _store(
         return np.frombuffer(stream.read(count * dtype.itemsize), dtype, count)
 
     def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
-        with reading(path, _KIND), again() as stream:
+        with reading(path.name, _KIND), again() as stream:
             if upright:
                 rows = [taken(stream, column * length + first, last - first) for column in columns]
                 return np.array(rows, dtype=np.float64)
             block = taken(stream, first * width, (last - first) * width).reshape(last - first, width)
             return block.T[list(columns)].astype(np.float64)
 
-    return by_ranges(width, length, get, samples_at_once(dtype.itemsize * (1 if upright else width)))
+    return store_by_ranges(width, length, get, samples_per_read(dtype.itemsize * (1 if upright else width)))
 
 
 def _decoded(letters: bytes, written: int, order: str) -> str:
@@ -249,13 +249,13 @@ def _decoded(letters: bytes, written: int, order: str) -> str:
     return letters.decode(encoding, "replace")
 
 
-def _structs(source: Bytes, parts: Iterator[Element], allowance: Allowance, depth: int) -> Node:
+def _structs(source: Bytes, parts: Iterator[Element], budget: MemoryBudget, depth: int) -> Node:
     [width] = source.integers(next(parts))
     if width < 1:
         raise ValueError("names of no length")
     names = source.content(next(parts))
     fields = [names[at : at + width].split(b"\0")[0].decode("latin-1") for at in range(0, len(names), width)]
-    nodes = [_array(source, part, allowance, depth + 1)[1] for part in parts]
+    nodes = [_array(source, part, budget, depth + 1)[1] for part in parts]
     if not fields:
         return {}
     starts = range(0, len(nodes), len(fields))

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sprung.formats.axes import Clock, Column, one_table, stamped
-from sprung.formats.mdf_blocks import AGAIN, MAGIC, Content, refuse_damaged
-from sprung.formats.optional import library
-from sprung.formats.rates import TIME_UNITS
-from sprung.formats.refusals import allowance, contained, cut_short, refuse, refuse_too_large
-from sprung.formats.store import Samples, Store, steps
+from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times
+from sprung.formats.libraries import load_library
+from sprung.formats.mdf_blocks import AGAIN, MAGIC, Content, check_blocks
+from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
+from sprung.formats.sample_store import Samples, Store, split_range
+from sprung.formats.stated_rates import TIME_UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -48,15 +48,15 @@ class MdfFormat:
         InputError
             If asammdf is not installed, if the file is cut short or damaged, or if it has no channel over time.
         """
-        file, largest = path.name, allowance(path.stat().st_size)
-        library("asammdf", "mdf", path)
+        file, largest = path.name, memory_limit(path.stat().st_size)
+        load_library("asammdf", "mdf", path)
         with path.open("rb") as stream:
-            refuse_damaged(Content(stream, path.stat().st_size), file)
+            check_blocks(Content(stream, path.stat().st_size), file)
         with _measurement(path) as measurement:
             columns: list[Column] = []
             timeless: list[str] = []
             for index in range(len(measurement.groups)):
-                with contained(f"{file}: group {index + 1}", "MDF"):
+                with reading(f"{file}: group {index + 1}", "an MDF file"):
                     clock = _clock(measurement, index, file, largest)
                     found = list(_columns(measurement, index, clock, path))
                     columns += found
@@ -64,7 +64,7 @@ class MdfFormat:
                         timeless += [f"{column.otherwise}" for column in found]
             columns = [column for column in columns if column.clock.count]
             notes = (f"left out, as they have no time: {', '.join(timeless)}",) if timeless else ()
-            return one_table(columns, file, largest, notes)
+            return assemble_table(columns, file, largest, notes)
 
 
 @contextmanager
@@ -73,8 +73,8 @@ def _measurement(path: Path) -> Iterator[Any]:
     with path.open("rb") as stream:
         unfinished = stream.read(8) == MAGIC[1]
         stream.seek(0)
-        with contained(path.name, "MDF"), _closing_what_was_begun():
-            measurement = library("asammdf", "mdf", path).MDF(BytesIO(stream.read()) if unfinished else stream)
+        with reading(path.name, "an MDF file"), _closing_what_was_begun():
+            measurement = load_library("asammdf", "mdf", path).MDF(BytesIO(stream.read()) if unfinished else stream)
             measurement.configure(read_fragment_size=_AT_ONCE)
         with closing(measurement):
             yield measurement
@@ -95,7 +95,7 @@ def _closing_what_was_begun() -> Iterator[None]:
         raise
 
 
-def _clock(measurement: Any, index: int, file: str, largest: float) -> Clock | None:
+def _clock(measurement: Any, index: int, file: str, largest: float) -> ChannelClock | None:
     """Give the clock of a group; None if it has none or no samples."""
     group = measurement.groups[index]
     count, size = group.channel_group.cycles_nr, group.channel_group.samples_byte_nr
@@ -103,15 +103,15 @@ def _clock(measurement: Any, index: int, file: str, largest: float) -> Clock | N
         return None
     where = f"{file}: group {index + 1}"
     whole = size + getattr(group.channel_group, "invalidation_bytes_nr", 0)
-    refuse_too_large(count * max(1, -(-whole // 8)), where, largest)
+    check_declared_size(count * max(1, -(-whole // 8)), where, largest)
     _refuse_misfit(group, where)
     master = group.channels[measurement.masters_db[index]]
     if getattr(master, "sync_type", _SYNC_TIME) != _SYNC_TIME:
         return None  # over angle or distance
     times = np.asarray(measurement.get_master(index), dtype=np.float64)
     if len(times) < count:
-        raise cut_short(where, f"the times of {len(times)} of {count} samples")
-    return stamped(TIME_UNITS.get(_unit(master).lower(), 1.0) * times)
+        raise truncation_error(where, f"the times of {len(times)} of {count} samples")
+    return clock_from_times(TIME_UNITS.get(_unit(master).lower(), 1.0) * times)
 
 
 def _refuse_misfit(group: Any, where: str) -> None:
@@ -119,7 +119,7 @@ def _refuse_misfit(group: Any, where: str) -> None:
     record = group.channel_group
     held = sum(int(block.original_size) for block in group.data_blocks)
     if held < record.cycles_nr * record.samples_byte_nr:
-        raise cut_short(where, f"{held} bytes of {record.cycles_nr} samples")
+        raise truncation_error(where, f"{held} bytes of {record.cycles_nr} samples")
     for channel in group.channels:
         if hasattr(channel, "start_offset"):  # version 3
             begin, bits = channel.additional_byte_offset + channel.start_offset // 8, channel.start_offset % 8
@@ -129,13 +129,13 @@ def _refuse_misfit(group: Any, where: str) -> None:
             within = not channel.flags & _INVALIDATED or channel.pos_invalidation_bit < 8 * record.invalidation_bytes_nr
         if not within or begin + (bits + channel.bit_count + 7) // 8 > record.samples_byte_nr:
             found = f"channel '{channel.name}' at byte {begin} of records of {record.samples_byte_nr} bytes"
-            raise refuse(where, found, "channels within the records", AGAIN)
+            raise input_error(where, found, "channels within the records", AGAIN)
 
 
-def _columns(measurement: Any, index: int, clock: Clock | None, path: Path) -> Iterator[Column]:
+def _columns(measurement: Any, index: int, clock: ChannelClock | None, path: Path) -> Iterator[Column]:
     group = measurement.groups[index]
     source = getattr(group.channel_group, "acq_name", "") or f"group {index + 1}"
-    nothing = Clock(0.0, 0.0, 0, None, np.empty(0))
+    nothing = ChannelClock(0.0, 0.0, 0, None, np.empty(0))
     clock = clock or nothing
     numbers = [number for number in range(len(group.channels)) if number != measurement.masters_db.get(index)]
     store = _store(path, index, numbers, clock.count)
@@ -169,10 +169,10 @@ def _unit(channel: Any) -> str:
 def _store(path: Path, group: int, channels: Sequence[int], length: int) -> Store:
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
         with _measurement(path) as measurement:
-            for begin, end in steps(first, last, step):
+            for begin, end in split_range(first, last, step):
                 values = np.empty((len(columns), end - begin))
                 own = [channels[column] for column in columns]
-                with contained(f"{path.name}: group {group + 1}", "MDF"):
+                with reading(f"{path.name}: group {group + 1}", "an MDF file"):
                     place = 0
                     for records in _records(measurement, group, begin, end - begin):
                         for row, channel in zip(values, own, strict=True):
@@ -180,7 +180,9 @@ def _store(path: Path, group: int, channels: Sequence[int], length: int) -> Stor
                             row[place : place + len(samples)] = samples
                         place += len(samples)
                     if place < end - begin:
-                        raise cut_short(f"{path.name}: group {group + 1}", f"{begin + place} of {length} samples")
+                        raise truncation_error(
+                            f"{path.name}: group {group + 1}", f"{begin + place} of {length} samples"
+                        )
                 yield values
 
     return Store(len(channels), length, read)

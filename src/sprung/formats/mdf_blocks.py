@@ -6,7 +6,7 @@ import struct
 import zlib
 from typing import BinaryIO
 
-from sprung.formats.refusals import allowance, cut_short, refuse, refuse_too_large
+from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, truncation_error
 
 MAGIC = (b"MDF     ", b"UnFinMF ")
 """What a file begins with: one that was finished, and one that was not."""
@@ -54,7 +54,7 @@ class Content:
         return self._stream.read(min(count, self._size))
 
 
-def refuse_damaged(content: Content, file: str) -> None:
+def check_blocks(content: Content, file: str) -> None:
     """Go through the blocks of a file, which the library would follow for ever where they lead back to themselves.
 
     Parameters
@@ -76,7 +76,7 @@ def refuse_damaged(content: Content, file: str) -> None:
         address = ahead.pop()
         where = f"{file}: byte {address}"
         if address in seen:
-            raise refuse(where, "a block that is met twice", "blocks that do not lead back to themselves", AGAIN)
+            raise input_error(where, "a block that is met twice", "blocks that do not lead back to themselves", AGAIN)
         seen.add(address)
         own, shared = links(content, address, where)
         ahead += own
@@ -86,16 +86,16 @@ def refuse_damaged(content: Content, file: str) -> None:
 def _links_4(content: Content, address: int, where: str) -> tuple[list[int], list[int]]:
     """Give the blocks that a block of a version 4 file leads to, those of its own and those that others may share."""
     if address + 24 > len(content):
-        raise cut_short(where, f"a file of {len(content)} bytes")
+        raise truncation_error(where, f"a file of {len(content)} bytes")
     kind, _, length, count = struct.unpack("<4sIQQ", content.at(address, 24))
     if not kind.startswith(b"##") or (address == _HEADER) != (kind == b"##HD"):
-        raise refuse(where, "something else", "the beginning of a block", AGAIN)
+        raise input_error(where, "something else", "the beginning of a block", AGAIN)
     # Where recording was broken off, the last block of data does not know its length, which the library restores.
     unfinished = content.at(0, 8) == MAGIC[1]
     if (not 24 <= length <= len(content) - address and not unfinished) or 24 + 8 * count > min(
         max(length, 24), len(content)
     ):
-        raise cut_short(where, f"a block of {length} bytes with {count} links in a file of {len(content)}")
+        raise truncation_error(where, f"a block of {length} bytes with {count} links in a file of {len(content)}")
     if kind == b"##DZ":
         _refuse_misinflated(content, address, where)
     wanted = range(count) if kind in _LISTS_4 else [link for link in _LINKS_4.get(kind, ()) if link < count]
@@ -108,26 +108,26 @@ def _links_4(content: Content, address: int, where: str) -> tuple[list[int], lis
 def _links_3(content: Content, address: int, where: str) -> tuple[list[int], list[int]]:
     """Give the blocks that a block of a version 3 file leads to."""
     if address + 12 > len(content):
-        raise cut_short(where, f"a file of {len(content)} bytes")
+        raise truncation_error(where, f"a file of {len(content)} bytes")
     kind, length, *links = struct.unpack("<2sH2I", content.at(address, 12))
     if kind not in _LINKS_3 or (address == _HEADER) != (kind == b"HD"):
-        raise refuse(where, "something else", "the beginning of a block", AGAIN)
+        raise input_error(where, "something else", "the beginning of a block", AGAIN)
     if address + length > len(content):
-        raise cut_short(where, f"a block of {length} bytes in a file of {len(content)}")
+        raise truncation_error(where, f"a block of {length} bytes in a file of {len(content)}")
     return [links[link] for link in _LINKS_3[kind] if links[link]], []
 
 
 def _refuse_misinflated(content: Content, address: int, where: str) -> None:
     """See that a compressed block holds what it declares: the library trusts that it does."""
     if address + 48 > len(content):
-        raise cut_short(where, f"a file of {len(content)} bytes")
+        raise truncation_error(where, f"a file of {len(content)} bytes")
     kind, _, _, size, packed = struct.unpack("<BBIQQ", content.at(address + 26, 22))
     if kind not in (0, 1):
         return  # compressed in another way than by deflation
-    refuse_too_large(-(-size // 8), where, allowance(len(content)))
+    check_declared_size(-(-size // 8), where, memory_limit(len(content)))
     try:
         held = len(zlib.decompressobj().decompress(content.at(address + 48, packed), size + 1))
     except zlib.error as error:
-        raise refuse(where, f"compressed data that is no such ({error})", "sound data", AGAIN) from error
+        raise input_error(where, f"compressed data that is no such ({error})", "sound data", AGAIN) from error
     if held != size:
-        raise refuse(where, f"{held} bytes or more where {size} are declared", "as many", AGAIN)
+        raise input_error(where, f"{held} bytes or more where {size} are declared", "as many", AGAIN)

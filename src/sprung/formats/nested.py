@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from sprung.formats.store import Samples, holding
+from sprung.formats.sample_store import Samples, store_in_memory
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -57,7 +57,7 @@ class Foreign:
 
 
 @dataclass(frozen=True, eq=False)
-class Block:
+class NumberBlock:
     """Numbers.
 
     Attributes
@@ -100,13 +100,13 @@ class Content:
         What else is there, in words.
     """
 
-    blocks: tuple[Block, ...]
+    blocks: tuple[NumberBlock, ...]
     texts: tuple[Text, ...]
     numbers: tuple[Number, ...]
     foreign: tuple[str, ...]
 
 
-def content_of(node: Node) -> Content:
+def flatten_nested(node: Node) -> Content:
     """Gather what lies beneath a node.
 
     Parameters
@@ -133,7 +133,7 @@ def content_of(node: Node) -> Content:
 class _Gathered(NamedTuple):
     """What was met so far."""
 
-    blocks: list[Block]
+    blocks: list[NumberBlock]
     texts: list[Text]
     numbers: list[Number]
     foreign: list[str]
@@ -161,7 +161,7 @@ class _Gathered(NamedTuple):
         if words and len(words) == len(nodes):
             self.texts.append(Text(path, words))
         elif len(vectors) == len(nodes) > 1 and len({vector.shape for vector in vectors}) == 1:
-            self.blocks.append(Block(path, vectors))
+            self.blocks.append(NumberBlock(path, vectors))
         elif len(nodes) == 1:
             return [(path, nodes[0])]
         else:
@@ -169,28 +169,28 @@ class _Gathered(NamedTuple):
         return []
 
     def _array(self, path: Path, array: NDArray[Any]) -> None:
-        if (other := kind_of(array.dtype)) is not None:
+        if (other := non_numeric_kind(array.dtype)) is not None:
             self.foreign.append(f"{'.'.join(path)}: {other}")
         elif array.size == 1:
             self.numbers.append(Number(path, float(array.item())))
         else:
-            self._numbers(path, numbers_of(array))
+            self._numbers(path, wrap_array(array))
 
     def _numbers(self, path: Path, numbers: Numbers) -> None:
         if len(numbers.shape) > 2:
             self.foreign.append(f"{'.'.join(path)}: an array of {len(numbers.shape)} dimensions")
         elif all(numbers.shape):
-            self.blocks.append(Block(path, numbers))
+            self.blocks.append(NumberBlock(path, numbers))
 
 
-def kind_of(dtype: np.dtype[Any]) -> str | None:
+def non_numeric_kind(dtype: np.dtype[Any]) -> str | None:
     """Say what values are that are no real numbers; None if they are."""
     if dtype.kind in "fiub":
         return None
     return "complex numbers" if dtype.kind == "c" else f"values of type {dtype}"
 
 
-def numbers_of(array: NDArray[Any]) -> Numbers:
+def wrap_array(array: NDArray[Any]) -> Numbers:
     """Take numbers that are in memory for unread ones.
 
     Parameters
@@ -201,7 +201,7 @@ def numbers_of(array: NDArray[Any]) -> Numbers:
     flat = array.reshape([side for side in array.shape if side != 1] or [1])
 
     def along(side: int) -> list[Samples]:
-        store = holding(np.atleast_2d(flat if side == flat.ndim - 1 else flat.T))
+        store = store_in_memory(np.atleast_2d(flat if side == flat.ndim - 1 else flat.T))
         return [Samples(store, column) for column in range(store.width)]
 
     return Numbers(flat.shape, along)
@@ -210,6 +210,10 @@ def numbers_of(array: NDArray[Any]) -> Numbers:
 def _vector(node: Node) -> Numbers | None:
     if isinstance(node, Numbers):
         return node if len(node.shape) == 1 else None
-    if isinstance(node, np.ndarray) and kind_of(node.dtype) is None and node.size == max(node.shape, default=0) > 1:
-        return numbers_of(node)
+    if (
+        isinstance(node, np.ndarray)
+        and non_numeric_kind(node.dtype) is None
+        and node.size == max(node.shape, default=0) > 1
+    ):
+        return wrap_array(node)
     return None

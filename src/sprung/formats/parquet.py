@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sprung.formats.libraries import load_library
 from sprung.formats.nested import Foreign, Node, Numbers
-from sprung.formats.optional import library
-from sprung.formats.refusals import Allowance, reading
-from sprung.formats.store import Samples, Store, in_steps
-from sprung.formats.vectors import table_of
+from sprung.formats.reading_errors import MemoryBudget, reading
+from sprung.formats.sample_store import Samples, Store, regroup
+from sprung.formats.vectors import table_from_nested
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -40,12 +40,12 @@ class ParquetFormat:
         InputError
             If it is damaged, holds no recording, or pyarrow is missing.
         """
-        arrow = library("pyarrow", "parquet", path)
-        parquet = library("pyarrow.parquet", "parquet", path)
-        with reading(path, _KIND), parquet.ParquetFile(path, memory_map=False) as file:
+        arrow = load_library("pyarrow", "parquet", path)
+        parquet = load_library("pyarrow.parquet", "parquet", path)
+        with reading(path.name, _KIND), parquet.ParquetFile(path, memory_map=False) as file:
             rows, schema = file.metadata.num_rows, file.schema_arrow
             fields = [field for field in schema if _is_number(arrow, field.type) or _ticks(arrow, field.type)]
-            Allowance(path).take(8 * rows * len(fields))
+            MemoryBudget(path).take(8 * rows * len(fields))
             store = _store(path, [field.name for field in fields], rows)
             node = _said(schema.metadata)
             for field in schema:
@@ -54,7 +54,7 @@ class ParquetFormat:
                     node[field.name] = {"": _numbers(samples, bool(_ticks(arrow, field.type))), **_said(field.metadata)}
                 else:
                     node[field.name] = Foreign(f"values of type {field.type}")
-        return table_of(node, path, "Write the time and the channels as columns of numbers.")
+        return table_from_nested(node, path, "Write the time and the channels as columns of numbers.")
 
 
 def _numbers(samples: Samples, moments: bool) -> Node:
@@ -66,18 +66,18 @@ def _numbers(samples: Samples, moments: bool) -> Node:
 
 def _store(path: Path, names: Sequence[str], rows: int) -> Store:
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
-        return in_steps(_pieces(path, [names[column] for column in columns], first, last, step), step)
+        return regroup(_pieces(path, [names[column] for column in columns], first, last, step), step)
 
     return Store(len(names), rows, read)
 
 
 def _pieces(path: Path, names: Sequence[str], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
     """Read from the group of rows on in which a range begins."""
-    arrow, parquet = library("pyarrow", "parquet", path), library("pyarrow.parquet", "parquet", path)
-    with reading(path, _KIND):
+    arrow, parquet = load_library("pyarrow", "parquet", path), load_library("pyarrow.parquet", "parquet", path)
+    with reading(path.name, _KIND):
         file = parquet.ParquetFile(path, memory_map=False, buffer_size=1 << 16, pre_buffer=False)
     with file:
-        with reading(path, _KIND):
+        with reading(path.name, _KIND):
             origins = _origins(arrow, file, names)
             counts = [file.metadata.row_group(group).num_rows for group in range(file.num_row_groups)]
             ends = np.cumsum(counts)
@@ -86,7 +86,7 @@ def _pieces(path: Path, names: Sequence[str], first: int, last: int, step: int) 
             groups = list(range(group, len(counts)))
             batches = iter(file.iter_batches(min(step, 1 << 16), groups, list(dict.fromkeys(names)), use_threads=False))
         while place < last:
-            with reading(path, _KIND):
+            with reading(path.name, _KIND):
                 batch = next(batches)
                 values = np.array([_values(arrow, batch.column(name), origins.get(name, 0)) for name in names])
             yield values[:, max(first - place, 0) : last - place]

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.errors import did_you_mean
-from sprung.formats.axes import Clock, Column, even, one_table
-from sprung.formats.refusals import allowance, cut_short, reading, refuse
-from sprung.formats.store import Samples, Store, by_ranges
+from sprung.formats.channels import ChannelClock, Column, assemble_table, regular_clock
+from sprung.formats.reading_errors import input_error, memory_limit, reading, truncation_error
+from sprung.formats.sample_store import Samples, Store, store_by_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -55,14 +55,14 @@ class RpcFormat:
         start, groups = _BLOCK * header.whole("NUM_HEADER_BLOCKS"), -(-frames * frame // group)
         size = groups * count * group * dtype.itemsize
         if written - start < size:
-            raise cut_short(file, f"{max(written - start, 0)} of the {size} bytes that the header declares")
+            raise truncation_error(file, f"{max(written - start, 0)} of the {size} bytes that the header declares")
         step, uncertainty = header.step()
-        clock = even(0.0, step, samples, uncertainty, f"{file}: header DELTA_T")
+        clock = regular_clock(0.0, step, samples, uncertainty, f"{file}: header DELTA_T")
         # Only integers are scaled: floats are written in the unit of the channel.
         scales = [header.number(f"SCALE.CHAN_{i + 1}") if kind == "i2" else 1.0 for i in range(count)]
         store = _store(path, _Samples(start, dtype, group, samples), scales)
         columns = [_column(header.pairs, Samples(store, i), clock) for i in range(count)]
-        return one_table(columns, file, allowance(written))
+        return assemble_table(columns, file, memory_limit(written))
 
 
 def _pairs(path: Path, written: int) -> dict[str, str]:
@@ -73,7 +73,7 @@ def _pairs(path: Path, written: int) -> dict[str, str]:
         header = _Header(dict(_pair(record) for record in text), path.name)
         blocks, count = header.whole("NUM_HEADER_BLOCKS"), header.whole("NUM_PARAMS")
         if blocks * _BLOCK > written:
-            raise cut_short(path.name, f"{written} of the {blocks * _BLOCK} bytes of its header")
+            raise truncation_error(path.name, f"{written} of the {blocks * _BLOCK} bytes of its header")
         wanted = min(count * _RECORD, blocks * _BLOCK)
         content = (content + stream.read(max(wanted - len(content), 0)))[:wanted]
     pairs = dict(_pair(content[i : i + _RECORD].decode("latin-1")) for i in range(0, len(content), _RECORD))
@@ -94,7 +94,7 @@ class _Header:
         value = self.pairs.get(key, usual)
         if value not in allowed:
             where, do = f"{self._file}: header {key}", f"Export it in another way. {did_you_mean(value, allowed)}"
-            raise refuse(where, f"'{value}'", "a kind of file that can be read", do)
+            raise input_error(where, f"'{value}'", "a kind of file that can be read", do)
         return allowed[value]
 
     def number(self, key: str) -> float:
@@ -125,7 +125,7 @@ class _Header:
 
     def _refuse(self, key: str, expected: str) -> Exception:
         found = f"'{self.pairs[key]}'" if key in self.pairs else "nothing"
-        return refuse(f"{self._file}: header {key}", found, expected, "Export the recording again.")
+        return input_error(f"{self._file}: header {key}", found, expected, "Export the recording again.")
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ def _store(path: Path, samples: _Samples, scales: Sequence[float]) -> Store:
 
     def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
         values = np.empty((len(columns), last - first))
-        with reading(path, "an RPC III file"), path.open("rb") as stream:
+        with reading(path.name, "an RPC III file"), path.open("rb") as stream:
             for group in range(first // samples.group, -(-last // samples.group)):
                 begin, end = max(first - group * samples.group, 0), min(last - group * samples.group, samples.group)
                 place = group * samples.group + begin - first
@@ -155,10 +155,10 @@ def _store(path: Path, samples: _Samples, scales: Sequence[float]) -> Store:
         values *= np.array([[scales[column]] for column in columns])
         return values
 
-    return by_ranges(len(scales), samples.count, get)
+    return store_by_ranges(len(scales), samples.count, get)
 
 
-def _column(pairs: Mapping[str, str], samples: Samples, clock: Clock) -> Column:
+def _column(pairs: Mapping[str, str], samples: Samples, clock: ChannelClock) -> Column:
     number = samples.column + 1
     name, unit = (pairs.get(f"{key}.CHAN_{number}", "") for key in ("DESC", "UNITS"))
     otherwise = f"{name} (channel {number})".strip() if name else f"channel {number}"

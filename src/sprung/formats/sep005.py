@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problems, did_you_mean
-from sprung.formats.axes import Clock, Column, even, one_table, stamped
-from sprung.formats.refusals import refuse
-from sprung.formats.store import Samples, holding
+from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times, regular_clock
+from sprung.formats.reading_errors import input_error
+from sprung.formats.sample_store import Samples, store_in_memory
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -61,7 +61,7 @@ def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") 
         do = "Give all the time of one clock, and none a start_timestamp of its own."
         problems.add(name, f"start_timestamp {', '.join(sorted(starts))}", "one and the same", do)
     problems.raise_if_any()
-    return one_table(columns, name, np.inf)
+    return assemble_table(columns, name, np.inf)
 
 
 def _start(signal: object) -> str:
@@ -87,17 +87,17 @@ def _column(signal: object, where: str) -> Column:
     with problems.collecting():
         if "data" in signal:
             data = _numbers(signal["data"], f"{where}.data")
-    clock = Clock(0.0, 0.0, len(data), None, np.zeros(len(data)))
+    clock = ChannelClock(0.0, 0.0, len(data), None, np.zeros(len(data)))
     with problems.collecting():
         clock = _clock(signal, len(data), where)
     problems.raise_if_any()
     name, location = str(signal["name"] or "").strip(), str(signal.get("location") or "").strip()
     otherwise = f"{location}.{name}" if location else name or where
     unit = str(signal["unit_str"] or "").strip() or None
-    return Column(name, otherwise, unit, clock, Samples(holding(data[None]), 0))
+    return Column(name, otherwise, unit, clock, Samples(store_in_memory(data[None]), 0))
 
 
-def _clock(signal: Mapping[str, object], count: int, where: str) -> Clock:
+def _clock(signal: Mapping[str, object], count: int, where: str) -> ChannelClock:
     """Take the clock from the times, or else from the rate; where both are, they must agree."""
     rate, problems = _rate(signal.get("fs"), f"{where}.fs"), Problems()
     if signal.get("time") is None:
@@ -105,8 +105,8 @@ def _clock(signal: Mapping[str, object], count: int, where: str) -> Clock:
             do = "Add fs, in Hz, or time, in s."
             problems.add(f"{where}.fs", "neither fs nor time", "when the samples were taken", do)
             raise InputError(problems)
-        clock = even(0.0, 1 / rate, count, 0.0, f"{where}.fs")
-        return Clock(0.0, clock.end, count, rate)
+        clock = regular_clock(0.0, 1 / rate, count, 0.0, f"{where}.fs")
+        return ChannelClock(0.0, clock.end, count, rate)
     times = _numbers(signal["time"], f"{where}.time")
     backward = np.flatnonzero(~(np.diff(times) > 0))
     if len(times) != count:
@@ -116,7 +116,7 @@ def _clock(signal: Mapping[str, object], count: int, where: str) -> Clock:
         first = f", not so at sample {backward[0] + 2}" if backward.size else ""
         problems.add(f"{where}.time", f"times that do not increase{first}", "times that increase, in s", "Correct it.")
     problems.raise_if_any()
-    clock = stamped(times)
+    clock = clock_from_times(times)
     if rate is not None and clock.rate is not None and abs(clock.rate / rate - 1) > 1e-6:
         found, do = f"{rate:.9g} Hz beside times at {clock.rate:.9g} Hz", "Leave one of them out."
         problems.add(f"{where}.fs", found, "a rate that agrees with time", do)
@@ -132,7 +132,7 @@ def _rate(given: object, where: str) -> float | None:
     except OverflowError:  # an integer larger than any float
         rate = np.nan
     if not (np.isfinite(rate) and rate > 0):
-        raise refuse(where, _written(given), "samples per second, a positive number", "Correct it.")
+        raise input_error(where, _written(given), "samples per second, a positive number", "Correct it.")
     return rate
 
 

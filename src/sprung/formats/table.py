@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.display import shown
-from sprung.formats.store import BUDGET, Store
+from sprung.formats.sample_store import BUDGET, Store
 from sprung.units import acceleration_factor
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from sprung.errors import Problem
-    from sprung.formats.resampled import Resampled
+    from sprung.formats.resampling import ResampledChannel
 
 _BRACKETS = re.compile(r"^(?P<name>.*\S)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
 
@@ -68,7 +68,7 @@ class Table:
 
     `take` reads some columns at once, all of them or those of a range; `pieces` goes through the file from its beginning
     to its end, and holds no more than a piece at a time. Both give float64 in the units of the file, NaN where it
-    holds no number; `spoilt` then says what stands there instead. Damage to the file is met when it is read: all three
+    holds no number; `find_non_number` then says what stands there instead. Damage to the file is met when it is read: all three
     raise an InputError over it.
 
     Attributes
@@ -78,7 +78,7 @@ class Table:
     units
         What the file says each channel is measured in; None where it says nothing.
     store
-        Reads their samples: `store.holding(values)` where a format has them in memory, shape (channel, time).
+        Reads their samples: `store.store_in_memory(values)` where a format has them in memory, shape (channel, time).
     clock
         Time of every sample on the file's clock, s, shape (time,); or one number, the samples per second of a format
         that keeps no times, whose clock then starts at 0.
@@ -91,7 +91,7 @@ class Table:
 
     Examples
     --------
-    >>> from sprung.formats.store import holding
+    >>> from sprung.formats.sample_store import holding
     >>> table = Table(("a", "b"), ("g", None), holding(np.arange(10.0).reshape(2, 5)), clock=100.0)
     >>> table.samples, table.take([1]).tolist(), table.take([1, 0], 3, 5).tolist()
     (5, [[5.0, 6.0, 7.0, 8.0, 9.0]], [[8.0, 9.0], [3.0, 4.0]])
@@ -105,7 +105,7 @@ class Table:
     clock: NDArray[np.float64] | float
     place: Callable[[int], str] = sample_number
     notes: tuple[str, ...] = ()
-    resampled: Mapping[int, Resampled] = field(default_factory=dict)
+    resampled: Mapping[int, ResampledChannel] = field(default_factory=dict)
 
     @property
     def samples(self) -> int:
@@ -185,18 +185,18 @@ class Table:
         def read(columns: Sequence[int], begin: int, end: int, step: int) -> Iterator[NDArray[np.float64]]:
             return self.store.read(columns, first + begin, first + end, step)
 
-        def spoilt(column: int, begin: int, end: int) -> Problem | None:
-            return self.store.spoilt(column, first + begin, first + end)
+        def find_non_number(column: int, begin: int, end: int) -> Problem | None:
+            return self.store.find_non_number(column, first + begin, first + end)
 
         return replace(
             self,
-            store=Store(self.store.width, last - first, read, spoilt),
+            store=Store(self.store.width, last - first, read, find_non_number),
             clock=self._times(first, last),
             place=lambda sample: self.place(first + sample),
             resampled={column: one.within(first, last) for column, one in self.resampled.items()},
         )
 
-    def spoilt(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:
+    def find_non_number(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:
         """Say what stands in a column that is no number; None if nothing does, or if cells are merely empty.
 
         A problem only where somebody needs the column. It may read the file again: ask where samples are missing.
@@ -213,7 +213,7 @@ class Table:
         InputError
             If the file is damaged there.
         """
-        return self.store.spoilt(column, first, self.samples if last is None else last)
+        return self.store.find_non_number(column, first, self.samples if last is None else last)
 
     def _read(self, columns: Sequence[int], first: int, last: int, samples: int) -> Iterator[NDArray[np.float64]]:
         """Read in pieces of a multiple of some samples, as long as a read is worth it."""

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sprung.formats.axes import Clock, Column, even, one_table, stamped
-from sprung.formats.clock import TIME_NAMES
-from sprung.formats.optional import library
-from sprung.formats.rates import TIME_UNITS
-from sprung.formats.refusals import allowance, contained, cut_short, refuse, refuse_too_large
-from sprung.formats.store import Samples, Store, steps
+from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times, regular_clock
+from sprung.formats.libraries import load_library
+from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
+from sprung.formats.sample_store import Samples, Store, split_range
+from sprung.formats.stated_rates import TIME_UNITS
 from sprung.formats.table import split_unit
+from sprung.formats.text_clock import TIME_NAMES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -43,19 +43,19 @@ class TdmsFormat:
         InputError
             If npTDMS is not installed, if the file is cut short or damaged, or if no channel has a time.
         """
-        nptdms, file, size = library("nptdms", "tdms", path), path.name, path.stat().st_size
+        nptdms, file, size = load_library("nptdms", "tdms", path), path.name, path.stat().st_size
         _refuse_cut_short(path)
         # Given a stream, the library leaves the index beside the file alone, which may be of another recording.
         with path.open("rb") as stream:
-            with contained(file, "TDMS"):
+            with reading(file, "a TDMS file"):
                 content = nptdms.TdmsFile.open(stream)
                 groups = {group.name: group.channels() for group in content.groups()}
                 numbers = sum(len(channel) for channels in groups.values() for channel in channels)
             if numbers > 8 * size:  # no sample takes less than a bit
-                refuse_too_large(numbers, file, 0.0)
+                check_declared_size(numbers, file, 0.0)
             columns: list[Column] = []
             timeless: list[str] = []
-            with contained(file, "TDMS"):
+            with reading(file, "a TDMS file"):
                 zero = _zero([channel for channels in groups.values() for channel in channels])
                 samples = _samples([channel for channels in groups.values() for channel in channels], path)
                 for name, channels in groups.items():
@@ -66,8 +66,8 @@ class TdmsFormat:
             if timeless and not columns:
                 expected = "a property wf_increment, or a channel named time in the same group"
                 do = "Export the recording with its time."
-                raise refuse(file, f"no time for any channel: {', '.join(timeless)}", expected, do)
-            return one_table(columns, file, allowance(size), notes if timeless else ())
+                raise input_error(file, f"no time for any channel: {', '.join(timeless)}", expected, do)
+            return assemble_table(columns, file, memory_limit(size), notes if timeless else ())
 
 
 def _refuse_cut_short(path: Path) -> None:
@@ -78,15 +78,15 @@ def _refuse_cut_short(path: Path) -> None:
             stream.seek(position)
             lead_in = stream.read(_LEAD_IN)
             if len(lead_in) < _LEAD_IN:
-                raise cut_short(path.name, f"{len(lead_in)} bytes of a segment's first {_LEAD_IN}")
+                raise truncation_error(path.name, f"{len(lead_in)} bytes of a segment's first {_LEAD_IN}")
             if not lead_in.startswith(_MAGIC):
                 do = "The file is damaged: copy or export the recording again."
-                raise refuse(f"{path.name}: byte {position}", "no segment", "the beginning of a segment", do)
+                raise input_error(f"{path.name}: byte {position}", "no segment", "the beginning of a segment", do)
             order = ">" if int.from_bytes(lead_in[4:8], "little") & _BIG_ENDIAN else "<"
             (length,) = struct.unpack(f"{order}Q", lead_in[12:20])
             position += _LEAD_IN + length
             if position > size:
-                raise cut_short(path.name, "a segment that goes on behind the end of the file")
+                raise truncation_error(path.name, "a segment that goes on behind the end of the file")
 
 
 def _columns(
@@ -114,21 +114,21 @@ def _is_time(channel: Any) -> bool:
     return name in TIME_NAMES and bool(len(channel)) and channel.dtype.kind in "fiuM"
 
 
-def _times(channel: Any, file: str) -> Clock:
-    with contained(f"{file}: channel '{channel.name}'", "TDMS"):
+def _times(channel: Any, file: str) -> ChannelClock:
+    with reading(f"{file}: channel '{channel.name}'", "a TDMS file"):
         samples = np.asarray(channel[:])
     if samples.dtype.kind == "M":
-        return stamped((samples - samples[0]) / np.timedelta64(1, "ns") * 1e-9)
+        return clock_from_times((samples - samples[0]) / np.timedelta64(1, "ns") * 1e-9)
     name, unit = _name_and_unit(channel)
     bracket = str(channel.name).rpartition("(")[2].rstrip(") ") if "(" in name else ""
     text = (unit or bracket or "s").strip().lower()
     if text not in TIME_UNITS:
         do = "Export the time in s."
-        raise refuse(f"{file}: channel '{channel.name}'", f"the unit '{text}'", "a unit of time", do)
-    return stamped(TIME_UNITS[text] * samples.astype(np.float64))
+        raise input_error(f"{file}: channel '{channel.name}'", f"the unit '{text}'", "a unit of time", do)
+    return clock_from_times(TIME_UNITS[text] * samples.astype(np.float64))
 
 
-def _clock(channel: Any, shared: Clock | None, zero: Any, where: str) -> Clock | None:
+def _clock(channel: Any, shared: ChannelClock | None, zero: Any, where: str) -> ChannelClock | None:
     step = channel.properties.get("wf_increment")
     if isinstance(step, (int, float)) and step > 0:
         factor = TIME_UNITS.get(str(channel.properties.get("wf_xunit_string") or "s").strip().lower())
@@ -139,7 +139,7 @@ def _clock(channel: Any, shared: Clock | None, zero: Any, where: str) -> Clock |
         if isinstance(absolute, np.datetime64) and zero is not None:
             start += float((absolute - zero) / np.timedelta64(1, "ns")) * 1e-9
         step = factor * float(step)
-        return even(start, step, len(channel), 4 * float(np.spacing(step)), where)
+        return regular_clock(start, step, len(channel), 4 * float(np.spacing(step)), where)
     return shared if shared is not None and shared.count == len(channel) else None
 
 
@@ -170,19 +170,19 @@ def _samples(channels: Sequence[Any], path: Path) -> dict[str, Samples]:
 
 def _store(path: Path, channels: Sequence[str], length: int) -> Store:
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
-        nptdms = library("nptdms", "tdms", path)
+        nptdms = load_library("nptdms", "tdms", path)
         with path.open("rb") as stream:
-            with contained(path.name, "TDMS"):
+            with reading(path.name, "a TDMS file"):
                 content = nptdms.TdmsFile.open(stream)
                 own = {channel.path: channel for group in content.groups() for channel in group.channels()}
-            for begin, end in steps(first, last, step):
+            for begin, end in split_range(first, last, step):
                 values = np.empty((len(columns), end - begin))
                 for row, column in zip(values, columns, strict=True):
                     channel = own[channels[column]]
-                    with contained(f"{path.name}: channel '{channel.name}'", "TDMS"):
+                    with reading(f"{path.name}: channel '{channel.name}'", "a TDMS file"):
                         samples = channel.read_data(begin, end - begin)
                         if len(samples) < end - begin:
-                            raise cut_short(path.name, f"{begin + len(samples)} of {length} samples")
+                            raise truncation_error(path.name, f"{begin + len(samples)} of {length} samples")
                         row[:] = samples
                 yield values
 

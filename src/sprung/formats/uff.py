@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.errors import did_you_mean
-from sprung.formats.axes import Clock, Column, even, one_table, stamped
-from sprung.formats.optional import library
-from sprung.formats.rates import TIME_UNITS
-from sprung.formats.refusals import allowance, contained, cut_short, refuse
-from sprung.formats.store import Samples, Store, steps
+from sprung.formats.channels import ChannelClock, Column, assemble_table, clock_from_times, regular_clock
+from sprung.formats.libraries import load_library
+from sprung.formats.reading_errors import input_error, memory_limit, reading, truncation_error
+from sprung.formats.sample_store import Samples, Store, split_range
+from sprung.formats.stated_rates import TIME_UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -46,44 +46,46 @@ class UffFormat:
         InputError
             If pyuff is not installed, if the file is cut short or damaged, or if it holds no time response.
         """
-        pyuff, file = library("pyuff", "uff", path), path.name
+        pyuff, file = load_library("pyuff", "uff", path), path.name
         if sum(1 for _ in _MARK.finditer(path.read_bytes())) % 2:
-            raise cut_short(file, "a data set without its end")
+            raise truncation_error(file, "a data set without its end")
         columns: list[Column] = []
         others: list[int] = []
-        with contained(file, "UFF"):
+        with reading(file, "a universal file"):
             content = pyuff.UFF(str(path))
             numbers = [number for number, kind in enumerate(content.get_set_types()) if kind == 58]
         for number in numbers:
             where = f"{file}: data set {number + 1}"
-            with contained(where, "UFF"):
+            with reading(where, "a universal file"):
                 head = content.read_sets(number, header_only=True)
             if head["func_type"] != _TIME_RESPONSE or head["ord_data_type"] not in _REAL:
                 others.append(head["func_type"])
                 continue
             if head["binary"] and head["fp_format"] != _IEEE:
                 do = "Export it again, with numbers in the IEEE 754 format."
-                raise refuse(where, f"binary numbers of format {head['fp_format']}", f"format {_IEEE}, IEEE 754", do)
-            with contained(where, "UFF"):
+                raise input_error(
+                    where, f"binary numbers of format {head['fp_format']}", f"format {_IEEE}, IEEE 754", do
+                )
+            with reading(where, "a universal file"):
                 columns.append(_column(content, number, head, where))
         notes = [f"left out {len(others)} functions that are no real time responses"] if others else []
-        return one_table(columns, file, allowance(path.stat().st_size), notes)
+        return assemble_table(columns, file, memory_limit(path.stat().st_size), notes)
 
 
 def _column(content: Any, number: int, head: dict[str, Any], where: str) -> Column:
     declared = int(head["num_pts"])
     if declared < 0:
-        raise cut_short(where, f"{declared} samples")
+        raise truncation_error(where, f"{declared} samples")
     times = None if head["abscissa_spacing"] else np.asarray(content.read_sets(number)["x"], dtype=np.float64)
     if times is not None and len(times) < declared:
-        raise cut_short(where, f"{len(times)} of {declared} samples")
+        raise truncation_error(where, f"{len(times)} of {declared} samples")
 
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
-        with contained(where, "UFF"):  # the library reads a function as a whole
+        with reading(where, "a universal file"):  # the library reads a function as a whole
             values = np.asarray(content.read_sets(number)["data"], dtype=np.float64)
         if len(values) < declared:
-            raise cut_short(where, f"{len(values)} of {declared} samples")
-        for begin, end in steps(first, last, step):  # line ends behind binary numbers may look like one more
+            raise truncation_error(where, f"{len(values)} of {declared} samples")
+        for begin, end in split_range(first, last, step):  # line ends behind binary numbers may look like one more
             yield np.repeat(values[None, begin:end], len(columns), axis=0)
 
     point = _point(head)
@@ -92,17 +94,19 @@ def _column(content: Any, number: int, head: dict[str, Any], where: str) -> Colu
     return Column(name or point, point, unit or None, clock, Samples(Store(1, declared, read), 0))
 
 
-def _clock(function: dict[str, Any], times: NDArray[np.float64] | None, count: int, where: str) -> Clock:
+def _clock(function: dict[str, Any], times: NDArray[np.float64] | None, count: int, where: str) -> ChannelClock:
     label = _text(function["abscissa_axis_units_lab"]).lower().strip("[]().") or "s"
     if label not in TIME_UNITS:
-        raise refuse(f"{where}: abscissa", f"'{label}'", "a unit of time", did_you_mean(label, TIME_UNITS))
+        raise input_error(f"{where}: abscissa", f"'{label}'", "a unit of time", did_you_mean(label, TIME_UNITS))
     factor = TIME_UNITS[label]
     if times is not None:
-        return stamped(factor * times[:count])
+        return clock_from_times(factor * times[:count])
     step = factor * float(function["abscissa_inc"])
     # The field has room for six digits: 1/2048 s reads 4.88281e-04.
     uncertainty = 0.51e-5 * 10.0 ** np.floor(np.log10(step)) if 0 < step < np.inf else 0.0
-    return even(factor * float(function["abscissa_min"]), step, count, float(uncertainty), f"{where}: abscissa")
+    return regular_clock(
+        factor * float(function["abscissa_min"]), step, count, float(uncertainty), f"{where}: abscissa"
+    )
 
 
 def _point(function: dict[str, Any]) -> str:

@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem
-from sprung.formats.belonging import Belonging, items
-from sprung.formats.nested import Numbers, content_of
-from sprung.formats.rates import TIME_UNITS
-from sprung.formats.resampled import SLOWEST, Resampled, resampled
-from sprung.formats.store import joined
+from sprung.formats.metadata import MetadataScope, split_list
+from sprung.formats.nested import Numbers, flatten_nested
+from sprung.formats.resampling import MIN_RATE, ResampledChannel, resample
+from sprung.formats.sample_store import join_samples
+from sprung.formats.stated_rates import TIME_UNITS
 from sprung.formats.table import Table, split_unit
-from sprung.formats.timebase import Clock, Vector, clock_of, named_time
+from sprung.formats.vector_clock import Vector, VectorClock, find_vector_clock, time_name_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path as File
 
-    from sprung.formats.nested import Block, Content, Node, Path, Text
-    from sprung.formats.store import Samples
+    from sprung.formats.nested import Content, Node, NumberBlock, Path, Text
+    from sprung.formats.sample_store import Samples
 
 
-def table_of(node: Node, file: File, do: str) -> Table:
+def table_from_nested(node: Node, file: File, do: str) -> Table:
     """Find the recording in what a file holds.
 
     It is made of the vectors of one length: of those with a time, or with a rate in the file, the ones that hold most
@@ -50,22 +50,22 @@ def table_of(node: Node, file: File, do: str) -> Table:
     InputError
         If there are no vectors of one length, or no clock among them.
     """
-    content = content_of(node)
-    belonging = Belonging(content)
+    content = flatten_nested(node)
+    scope = MetadataScope(content)
     notes: list[str] = []
-    every = _vectors(content, belonging, notes)
+    every = _vectors(content, scope, notes)
     if not every:
         other = f" but {'; '.join(content.foreign[:5])}" if content.foreign else ""
         expected = "a time and at least one channel, as vectors of one length"
         raise InputError([Problem(file.name, f"no vectors of numbers{other}", expected, do)])
-    vectors = _with_units(_recording(every), belonging, notes)
-    clock = clock_of(vectors, content, belonging, file.name)
+    vectors = _with_units(_recording(every), scope, notes)
+    clock = find_vector_clock(vectors, content, scope, file.name)
     channels = [vector for vector in vectors if vector not in clock.taken]
     if not channels:
         found = f"only the time, {clock.taken[0].name}"
         raise InputError([Problem(file.name, found, "at least one channel of the same length", "Export it again.")])
     strays = [vector for vector in every if len(vector) != len(channels[0])]
-    others = _on_other_clocks(strays, clock, len(channels[0]), content, belonging, file.name)
+    others = _on_other_clocks(strays, clock, len(channels[0]), content, scope, file.name)
     if others:
         read_too = ", ".join(vector.name for vector in others)
         notes.append(f"on another clock, and read at the times of the others: {read_too}")
@@ -84,7 +84,7 @@ def table_of(node: Node, file: File, do: str) -> Table:
     return Table(
         channels=_shortest([vector.called for vector in (*channels, *others)]),
         units=tuple(vector.unit for vector in (*channels, *others)),
-        store=joined([*(vector.samples for vector in channels), *(samples for samples, _ in others.values())]),
+        store=join_samples([*(vector.samples for vector in channels), *(samples for samples, _ in others.values())]),
         clock=clock.time,
         notes=(*clock.notes, *notes),
         resampled={number: how for number, (_, how) in enumerate(others.values(), len(channels))},
@@ -92,61 +92,61 @@ def table_of(node: Node, file: File, do: str) -> Table:
 
 
 def _on_other_clocks(
-    strays: Sequence[Vector], clock: Clock, length: int, content: Content, belonging: Belonging, file: str
-) -> dict[Vector, tuple[Samples, Resampled]]:
+    strays: Sequence[Vector], clock: VectorClock, length: int, content: Content, scope: MetadataScope, file: str
+) -> dict[Vector, tuple[Samples, ResampledChannel]]:
     """Read vectors of other lengths at the times of the recording, where they have a time of their own over the same span."""
-    found: dict[Vector, tuple[Samples, Resampled]] = {}
+    found: dict[Vector, tuple[Samples, ResampledChannel]] = {}
     times = clock.time if isinstance(clock.time, np.ndarray) else np.arange(length) / clock.time
     for other in sorted({len(vector) for vector in strays}):
         vectors = [vector for vector in strays if len(vector) == other]
         if not any(vector.is_time() for vector in vectors):
             continue
-        vectors = _with_units(vectors, belonging, [])
+        vectors = _with_units(vectors, scope, [])
         try:
-            own = clock_of(vectors, content, belonging, file)
+            own = find_vector_clock(vectors, content, scope, file)
         except InputError:  # whoever needs these will miss them
             continue
-        if not isinstance(own.time, np.ndarray) or other - 1 < SLOWEST * (own.time[-1] - own.time[0]):
+        if not isinstance(own.time, np.ndarray) or other - 1 < MIN_RATE * (own.time[-1] - own.time[0]):
             continue
         for vector in vectors:
             if vector not in own.taken and (
-                read := resampled(vector.samples, own.time, length, lambda a, b: times[a:b])
+                read := resample(vector.samples, own.time, length, lambda a, b: times[a:b])
             ):
                 found[vector] = read
     return found
 
 
-def _vectors(content: Content, belonging: Belonging, notes: list[str]) -> list[Vector]:
+def _vectors(content: Content, scope: MetadataScope, notes: list[str]) -> list[Vector]:
     """Take matrices apart, and find what everything is called."""
     lengths = {shape[0] for block in content.blocks if len(shape := _shape(block)) == 1}
-    called = Counter(belonging.called(block.path) for block in content.blocks)
+    called = Counter(scope.called(block.path) for block in content.blocks)
     vectors: list[Vector] = []
     for block in content.blocks:
-        path = belonging.called(block.path)
+        path = scope.called(block.path)
         path = path if called[path] == 1 else block.path
         columns = _columns(block, lengths, notes)
         if len(columns) == 1:
             paths: Sequence[Path] = [path]
-        elif names := belonging.column_names(block.path, len(columns)):
+        elif names := scope.column_names(block.path, len(columns)):
             paths = [(*path[:-1], name) for name in names]
         else:
             paths = [(*path[:-1], f"{''.join(path[-1:])}_{index}") for index in range(1, len(columns) + 1)]
         moments = isinstance(block.numbers, Numbers) and block.numbers.moments
         for full, samples in zip(paths, columns, strict=True):
-            unit = named_time(full[-1])
+            unit = time_name_unit(full[-1])
             name, unit = split_unit(full[-1]) if unit is None else (full[-1], unit)
             vectors.append(Vector(block.path, (*full[:-1], name), samples, unit or None, moments))
     return vectors
 
 
-def _shape(block: Block) -> tuple[int, ...]:
+def _shape(block: NumberBlock) -> tuple[int, ...]:
     """Give the sides of a block; those of vectors of one length are two."""
     if isinstance(block.numbers, Numbers):
         return block.numbers.shape
     return (*block.numbers[0].shape, len(block.numbers))
 
 
-def _columns(block: Block, lengths: set[int], notes: list[str]) -> Sequence[Samples]:
+def _columns(block: NumberBlock, lengths: set[int], notes: list[str]) -> Sequence[Samples]:
     """Give the vectors in a block: a matrix lies along the side that some vector shares, or along its longer one."""
     if not isinstance(block.numbers, Numbers):
         return [vector.along(0)[0] for vector in block.numbers]
@@ -171,18 +171,18 @@ def _recording(every: Sequence[Vector]) -> list[Vector]:
     return [vector for vector in every if len(vector) == length]
 
 
-def _with_units(vectors: Sequence[Vector], belonging: Belonging, notes: list[str]) -> list[Vector]:
+def _with_units(vectors: Sequence[Vector], scope: MetadataScope, notes: list[str]) -> list[Vector]:
     """Add the units that the file says beside the vectors, not in their names."""
-    lists = belonging.unit_lists()
+    lists = scope.unit_lists()
     units: list[str | None] = []
     members: dict[Text, list[int]] = {}
     for index, vector in enumerate(vectors):
-        units.append(vector.unit or ("s" if vector.moments else belonging.unit_of(vector.path, vector.called[-1])))
-        text = None if units[index] else belonging.nearest(lists, vector.path)
+        units.append(vector.unit or ("s" if vector.moments else scope.unit_of(vector.path, vector.called[-1])))
+        text = None if units[index] else scope.nearest(lists, vector.path)
         if text is not None:
             members.setdefault(text, []).append(index)
     for text, indices in members.items():
-        words = items(text)
+        words = split_list(text)
         times = [index for index in indices if vectors[index].is_time()]
         others = [index for index in indices if index not in times]
         if len(words) == 2 and words[0].lower() in TIME_UNITS and times:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Campaign, CampaignSource, campaign_from
+from sprung.campaign import Campaign, CampaignSource, resolve_campaign
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Problems
 from sprung.modal import DEFAULT_METHOD
@@ -34,7 +35,8 @@ class ModesByLoad(NamedValues[LoadModes]):
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return frequencies (Hz) and damping ratios (1) with their uncertainties as a table, a row for each load and mode."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         columns = ("frequency", "frequency_std", "damped_frequency", "damping_ratio", "damping_ratio_std", "status")
         rows = [
@@ -122,7 +124,7 @@ def modes(
         )
         return ModesByLoad({RECORDINGS: found})
     _refuse("arrays and recordings", start=start)
-    campaign = campaign_from(source, progress)
+    campaign = resolve_campaign(source, progress)
     decays = prepare(campaign, progress).decays
     if not decays:
         problems = Problems()

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import FILE
+from sprung.campaign import CAMPAIGN_FILE
 from sprung.drafting import detect_drops
 from sprung.errors import Problems
 from sprung.formats import Table, read_table
@@ -46,7 +46,7 @@ def is_recordings(path: str | os.PathLike[str]) -> bool:
     bool
     """
     place = Path(path)
-    return bool(recordings_in(place)) and not (place / FILE).exists()
+    return bool(recordings_in(place)) and not (place / CAMPAIGN_FILE).exists()
 
 
 def recordings_in(place: Path) -> list[Path]:

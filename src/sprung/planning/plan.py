@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import InputError, SprungError
 from sprung.planning.alternatives import Alternative, Cost, alternatives, bound
@@ -97,7 +98,8 @@ class Plan:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the standard uncertainty to expect of each parameter, %, a row for each alternative; NaN: not determined."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         rows = {row.label: {} if row.bound is None else dict(row.bound.percents) for row in self.rows}
         return pd.DataFrame.from_dict(rows, orient="index").astype(float).rename_axis("alternative")

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import CLOCK_STD, Recording, merged
+from sprung.campaign import CLOCK_STD, Recording, merge_loggers
 from sprung.errors import Fault
 from sprung.preprocess.release import detect_release
 
@@ -56,7 +56,7 @@ def align_loggers(recording: Recording) -> Recording:
         for part, moment in zip(recording.parts, told, strict=True)
         if moment is None and part.usable.any()
     ]
-    together = merged(recording, [None if one is None else one.moment for one in told])
+    together = merge_loggers(recording, [None if one is None else one.moment for one in told])
     if together.values.shape[1] < _SHORTEST * together.rate:
         what = "the recordings of its loggers overlap too little; the drop is left out"
         fault = Fault("clock", recording.name, what, "Name the files of one and the same drop, each of some seconds.")

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from sprung.campaign import KINDS, Drop, Recording
+from sprung.campaign import DROP_KINDS, Drop, Recording
 from sprung.errors import Fault
 from sprung.preprocess.drop_features import detect_dropped_channels, read_fall
 from sprung.preprocess.release import Release
@@ -81,7 +81,7 @@ def find_contradicted_drops(drops: Sequence[Drop], fell: Sequence[Fell]) -> tupl
         exchanged = [{swap.get(wheel, wheel): falls for wheel, falls in told.items()} for told in fell]
         if not any(_otherwise(drop, told) for drop, told in zip(drops, exchanged, strict=True)):
             return ()
-    return tuple(i for i in wrong if frozenset(merge_dropped_wheels(drops[i], fell[i])) in KINDS)
+    return tuple(i for i in wrong if frozenset(merge_dropped_wheels(drops[i], fell[i])) in DROP_KINDS)
 
 
 def _otherwise(drop: Drop, fell: Fell) -> set[Wheel]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Campaign, Drop, DropTest, Recording, drop_names
+from sprung.campaign import Campaign, Drop, DropTest, Recording, unique_drop_names
 from sprung.errors import Fault
 from sprung.preprocess.alignment import active_channels, align_loggers
 from sprung.preprocess.clipping import check_full_scale, detect_clipping
@@ -123,7 +123,7 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     campaign = replace(campaign, drops=tuple(drops)).with_recordings(recordings)
     suspension = _weigh_corners(campaign, releases)
     decays, left_out = [], []
-    names = drop_names(campaign.drops)
+    names = unique_drop_names(campaign.drops)
     counted_names = counted(progress, "finding the decays", names)
     for drop, name, release, over in zip(campaign.drops, counted_names, releases, clipped, strict=True):
         decay = _decay(campaign, drop, name, release, suspension, over)

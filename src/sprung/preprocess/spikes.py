@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
-from sprung.campaign import Recording
+from sprung.campaign import MAX_MISSING, Recording, fill_short_gaps
 from sprung.errors import Fault
-from sprung.formats import MOST_MISSING, filled
 from sprung.preprocess.release import resolution
 
 Real = NDArray[np.float64]
@@ -68,13 +67,15 @@ def remove_spikes(recording: Recording) -> Recording:
         found |= more
         values = values.copy()
         for channel in np.flatnonzero(found.any(axis=1)).tolist():
-            values[channel] = filled(np.where(found[channel], np.nan, recording.values[channel]), recording.rate)
+            values[channel] = fill_short_gaps(
+                np.where(found[channel], np.nan, recording.values[channel]), recording.rate
+            )
     if not found.any():
         return recording
     faults = []
     for channel in np.flatnonzero(found.any(axis=1)).tolist():
         begins = np.flatnonzero(np.diff(found[channel].astype(int), prepend=0) == 1)
-        lost = found[channel].mean() > MOST_MISSING or np.isnan(values[channel]).any()
+        lost = found[channel].mean() > MAX_MISSING or np.isnan(values[channel]).any()
         done = "the channel is left out of this drop" if lost else "they were filled in from the samples around"
         many = f"{begins.size} spike{'s' if begins.size > 1 else ''}, {found[channel].sum()} samples far off the others"
         what = f"{many}, the first at {recording.start + begins[0] / recording.rate:.6g} s; {done}"

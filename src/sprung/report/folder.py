@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+from sprung.checking import Check
 from sprung.errors import InputError, Omissions
 from sprung.files import atomic_write
-from sprung.report.page import FILE, drawn_page
-from sprung.report.paper_copy import PDF_FILE, pdf_of
+from sprung.report.drawings import draw_check
+from sprung.report.page.check_page import CHECK_FILE, check_page
+from sprung.report.page.pdf import PDF_FILE, pdf_of
+from sprung.report.page.result_page import FILE, drawn_page
 from sprung.results import Result, load
+from sprung.study import Validation
 
 RESULT_FILES = ("results.json", "series.npz")
 """What programs read; the report can be made from it."""
@@ -121,3 +126,67 @@ def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) ->
     atomic_write(folder, files, overwrite=overwrite)
     written = tuple(folder / name for name in files)
     return Saved(replace(result, omissions=omissions.sentences), written)
+
+
+def write_check(
+    check: Check, folder: Path, *, page: bool = True, drawings: bool = False, overwrite: bool = False
+) -> tuple[Path, ...]:
+    """Write the page of a check, and drawings of its drops, into a folder: all files or none.
+
+    Parameters
+    ----------
+    check
+        From `sprung.check`.
+    folder
+        Made if it does not exist. Files that sprung wrote there are replaced.
+    page
+        Whether to write check.html.
+    drawings
+        Whether to draw each drop as an SVG file.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
+
+    Returns
+    -------
+    tuple of Path
+        The page first, then one for each drop.
+
+    Raises
+    ------
+    InputError
+        If such files would be overwritten, or the folder cannot be written.
+    """
+    files = ({CHECK_FILE: check_page(check)} if page else {}) | (draw_check(check) if drawings else {})
+    atomic_write(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
+    return tuple(folder / name for name in files)
+
+
+def write_validation(
+    validation: Validation, folder: Path, drawings: Mapping[str, str], *, overwrite: bool = False
+) -> tuple[Path, ...]:
+    """Write numbers, series and drawings into a folder, all of them or none.
+
+    Parameters
+    ----------
+    validation
+        From `sprung.validate`.
+    folder
+        Made if it does not exist. Files that sprung wrote there are replaced.
+    drawings
+        From `draw_validation`.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
+
+    Returns
+    -------
+    tuple of Path
+        Every file.
+
+    Raises
+    ------
+    InputError
+        If such files would be overwritten, or the folder cannot be written.
+    """
+    files = {name: text.encode() for name, text in drawings.items()} | validation.files()
+    atomic_write(folder, files, overwrite=overwrite)
+    return tuple(folder / name for name in files)

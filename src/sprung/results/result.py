@@ -15,6 +15,7 @@ from pydantic import Field
 
 from sprung.assessment import DropValidation, Verdict
 from sprung.checking import DropReport, PlottedRecording
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Fault
 from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
@@ -158,7 +159,8 @@ class Result:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return parameters and derived quantities as a table: value, std, lower and upper 95 % limit, unit, status."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         rows = {
             name: (estimate.value, estimate.std, *(estimate.interval95 or (None, None)), estimate.unit, estimate.status)

@@ -67,6 +67,11 @@ def fit_requested_terms(way: ModelSearch, extras: Sequence[str]) -> ModelSearch:
     return way
 
 
+def score_linear_terms(search: ModelSearch) -> dict[str, float]:
+    """Return what each open linear term would gain, in twice the log-likelihood over the overdispersion, by its score test."""
+    return {term: _promised(search, term)[0] for term in search.open_among((SEPARATE, *LINEAR_EXTRAS))}
+
+
 def _promised(way: ModelSearch, extra: str) -> tuple[float, ModelStructure]:
     """Give what a linear extra would gain, and the model that has it, begun where it would gain most."""
     sensors, own = way.structure.campaign.sensors, way.fit.parameters

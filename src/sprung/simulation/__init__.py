@@ -1,14 +1,14 @@
 """Campaigns from a vehicle: drops from blocks, free decays and bumps, measured with real sensors."""
 
-from sprung.simulation.bumps import half_sine_bumps
-from sprung.simulation.decays import free_decays
+from sprung.simulation.arguments import default_drops, default_sensors
+from sprung.simulation.bump_passage import half_sine_bumps
+from sprung.simulation.decay_campaign import free_decays
 from sprung.simulation.drops import DEFAULT_HEIGHT, simulate
-from sprung.simulation.records import default_drops, default_sensors
-from sprung.simulation.setup import Setup
+from sprung.simulation.setup import SimulationSetup
 
 __all__ = [
     "DEFAULT_HEIGHT",
-    "Setup",
+    "SimulationSetup",
     "default_drops",
     "default_sensors",
     "free_decays",

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from sprung.campaign import Campaign, Drop, Given, ModelChoice, read_vehicle
+from sprung.campaign import Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
-from sprung.simulation.setup import Setup, check_not_negative
+from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import (
     BlockSupport,
@@ -41,7 +41,7 @@ def simulate(
     duration: float = 3.2,
     rest: float = 0.4,
     offset: float = 0.0,
-    known: Mapping[str, Given] | None = None,
+    known: Mapping[str, KnownValueLike] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
     gravity: float = STANDARD_GRAVITY,
     progress: Progress = silent,
@@ -106,7 +106,7 @@ def simulate(
         known = file.all_known if known is None else known
         model = file.model if model is None else model
     problems = Problems()
-    setup = Setup.of(
+    setup = SimulationSetup.of(
         vehicle,
         sensors=sensors,
         loads=loads,

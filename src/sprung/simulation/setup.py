@@ -13,17 +13,17 @@ from numpy.typing import NDArray
 from sprung.campaign import (
     Campaign,
     Drop,
-    Given,
+    KnownValueLike,
     ModelChoice,
     Recording,
     check_statements,
-    implausible,
-    known_quantities,
-    recording_names,
+    explain_implausible,
+    parse_known_values,
+    unique_recording_names,
 )
 from sprung.errors import Problems, did_you_mean
-from sprung.simulation.records import check_unlike, default_drops, default_sensors, name_files, record, records
-from sprung.simulation.sensing import Sensing
+from sprung.simulation.arguments import check_unique, default_drops, default_sensors, name_files, record, records
+from sprung.simulation.sensor_model import Sensing
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
 
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Setup:
+class SimulationSetup:
     """A vehicle, and everything around it that fits together.
 
     Attributes
@@ -69,10 +69,10 @@ class Setup:
         noise: float | Mapping[str, float],
         offset: float,
         gravity: float,
-        known: Mapping[str, Given] | None,
+        known: Mapping[str, KnownValueLike] | None,
         model: ModelChoice | Mapping[str, Any] | None,
         problems: Problems,
-    ) -> Setup:
+    ) -> SimulationSetup:
         """Put a test together from the arguments of `simulate`; what does not fit is added to the problems.
 
         Parameters
@@ -108,17 +108,17 @@ class Setup:
                 problems.add(
                     f"simulate: {kind}", "none", "at least one", "Leave the argument out for the default ones."
                 )
-        check_unlike("sensors", "channel", [sensor.channel for sensor in chosen_sensors], problems)
-        check_unlike("loads", "name", [load.name for load in given_loads], problems)
-        check_unlike("drops", "file", [drop.file for drop in chosen_drops if drop.file is not None], problems)
-        check_unlike("drops", "name", [drop.name for drop in chosen_drops if drop.name is not None], problems)
+        check_unique("sensors", "channel", [sensor.channel for sensor in chosen_sensors], problems)
+        check_unique("loads", "name", [load.name for load in given_loads], problems)
+        check_unique("drops", "file", [drop.file for drop in chosen_drops if drop.file is not None], problems)
+        check_unique("drops", "name", [drop.name for drop in chosen_drops if drop.name is not None], problems)
         # A load that is faulty itself has been named above, and the drops with it are not at fault.
         names = {load.name for load in all_loads}
         names |= {load.name if isinstance(load, Load) else str(load.get("name")) for load in loads or ()}
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
         sensing = Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
-        stated = {"wheelbase": KnownValue(vehicle.wheelbase)} | known_quantities(
+        stated = {"wheelbase": KnownValue(vehicle.wheelbase)} | parse_known_values(
             known or {}, "simulate: known", problems
         )
         _check_plausible(vehicle, chosen_sensors, all_loads, chosen_drops, stated, problems)
@@ -161,7 +161,7 @@ class Setup:
                     history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
                 )
             )
-            for drop, name, acceleration in zip(drops, recording_names(drops), accelerations, strict=True)
+            for drop, name, acceleration in zip(drops, unique_recording_names(drops), accelerations, strict=True)
         ]
         return Campaign(
             name=self.vehicle.name,
@@ -198,7 +198,7 @@ def _check_plausible(
         problems=problems,
     )
     for name, value in vehicle.parameters.items():
-        beyond = implausible(name, value)
+        beyond = explain_implausible(name, value)
         if beyond is not None:
             problems.add(f"simulate: vehicle.{name}", f"{value:g}", *beyond)
 

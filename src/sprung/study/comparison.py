@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Problems
 from sprung.results import Result, load
@@ -166,7 +167,8 @@ class Comparison:
             By quantity and result: ``value``, ``std`` and ``unit``; and ``difference`` from the first result with its
             ``difference_std``, ``percent``, ``z``, ``p_holm`` and ``finding``, which the first result itself has not.
         """
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         rows = [
             {"quantity": name, "result": one.name, "value": told.value, "std": told.std, "unit": row.unit}

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from sprung.analysis import AnalysisOptions, analyse, result_of, to_design
-from sprung.campaign import Campaign, CampaignSource, Drop, Given, ModelChoice, campaign_from, read_vehicle
+from sprung.campaign import Campaign, CampaignSource, Drop, KnownValueLike, ModelChoice, read_vehicle, resolve_campaign
 from sprung.errors import InputError, Problems
 from sprung.planning import MeasurementSetup, Plan, PlannedDrop, PlannedTest, tabulate_alternatives, tabulate_rejected
 from sprung.progress import Progress, Step, silent
 from sprung.selection import choose_structure
-from sprung.simulation import DEFAULT_HEIGHT, Setup
+from sprung.simulation import DEFAULT_HEIGHT, SimulationSetup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
 
@@ -37,7 +37,7 @@ def plan(
     rate: float | None = None,
     noise: float | Mapping[str, float] | None = None,
     duration: float | None = None,
-    known: Mapping[str, Given] | None = None,
+    known: Mapping[str, KnownValueLike] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
     progress: Progress = silent,
 ) -> Plan:
@@ -82,7 +82,7 @@ def plan(
                 do = f"Leave {name} out, or plan from a vehicle."
                 problems.add(f"plan: {name}", found, "nothing: a campaign brings its own along", do)
         problems.raise_if_any()
-        return _plan_further(campaign_from(source, progress), wanted, progress)
+        return _plan_further(resolve_campaign(source, progress), wanted, progress)
     if isinstance(source, Vehicle):
         vehicle = source
     else:
@@ -96,7 +96,7 @@ def plan(
     rate = RATE if rate is None else rate
     noise = NOISE if noise is None else noise
     duration = DURATION if duration is None else duration
-    setup = Setup.of(
+    setup = SimulationSetup.of(
         vehicle,
         sensors=sensors,
         loads=loads,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import UnknownNameError
 
@@ -56,6 +57,7 @@ class Covariance:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return it as a table, parameters down and across."""
-        import pandas as pd  # noqa: PLC0415 (slow to import, and nothing else here needs it)
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
 
         return pd.DataFrame(self.matrix, index=list(self.names), columns=list(self.names))

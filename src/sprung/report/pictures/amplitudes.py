@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.assessment import ModeAmplitude
-from sprung.report.axis import Axis, room
-from sprung.report.picture import Curve, Mark, Panel, Picture, Points, Role, Rule
+from sprung.report.drawing.axis import Axis, room
+from sprung.report.drawing.picture import Curve, Mark, Panel, Picture, Points, Role, Rule
 
 Real = NDArray[np.float64]
 

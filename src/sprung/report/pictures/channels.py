@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sprung.report.axis import Axis
-from sprung.report.picture import Panel, Picture
+from sprung.report.drawing.axis import Axis
+from sprung.report.drawing.picture import Panel, Picture
 from sprung.report.pictures.motions import compared
 from sprung.results import Series
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.assessment import MOTIONS, DropValidation
-from sprung.report.axis import Axis, room
-from sprung.report.picture import Curve, Panel, Picture, Rule
+from sprung.report.drawing.axis import Axis, room
+from sprung.report.drawing.picture import Curve, Panel, Picture, Rule
 from sprung.results import Series
 
 Real = NDArray[np.float64]

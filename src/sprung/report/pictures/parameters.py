@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from sprung.report.axis import Axis
-from sprung.report.picture import Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.drawing.axis import Axis
+from sprung.report.drawing.picture import Curve, Mark, Panel, Picture, Points, Rule
 from sprung.uncertainty import NORMAL_95, Estimate
 
 _SCALES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)

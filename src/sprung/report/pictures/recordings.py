@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from sprung.checking import DropReport, PlottedRecording
-from sprung.report.axis import Axis
-from sprung.report.lanes import Lane, lanes_of
-from sprung.report.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.drawing.axis import Axis
+from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.pictures.lanes import Lane, lanes_of
 
 _LANE = 0.42
 """Height of a lane."""

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import ModeEstimate
-from sprung.report.axis import Axis
-from sprung.report.decays import LoadDecays
-from sprung.report.picture import Curve, Panel, Picture, Rule, labelled_together
+from sprung.report.drawing.axis import Axis
+from sprung.report.drawing.picture import Curve, Panel, Picture, Rule, labelled_together
+from sprung.report.pictures.decays import LoadDecays
 
 Real = NDArray[np.float64]
 

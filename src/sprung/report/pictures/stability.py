@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.modal import StabilisationDiagram
-from sprung.report.axis import Axis
-from sprung.report.picture import Panel, Picture, Points, Rule, labelled_together
+from sprung.report.drawing.axis import Axis
+from sprung.report.drawing.picture import Panel, Picture, Points, Rule, labelled_together
 
 
 def stability_picture(load: str, diagram: StabilisationDiagram) -> Picture:

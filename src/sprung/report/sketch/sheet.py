@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from sprung.report.palette import LIGHT
+from sprung.report.drawing.palette import LIGHT
+from sprung.report.drawing.style import alone_style
 from sprung.report.sketch.composition import WIDTH
 from sprung.report.sketch.geometry import Geometry, Length
 from sprung.report.sketch.shapes import Drawing, Shape, Stroke, Words
 from sprung.report.sketch.sketch import VehicleSketch
 from sprung.report.sketch.svg import shapes_svg
 from sprung.report.sketch.views import plan_view, side_view
-from sprung.report.style import alone_style
 from sprung.tables import escaped
 
 _EDGE, _GAP, _TITLE = 16.0, 24.0, 20.0

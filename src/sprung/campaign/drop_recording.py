@@ -1,0 +1,155 @@
+"""One drop's recording from the files that hold it: one file, part of one, or one for each of several loggers."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import PurePath
+from typing import NamedTuple
+
+import numpy as np
+
+from sprung.campaign.drop import Drop
+from sprung.campaign.logger_merging import merge_loggers
+from sprung.campaign.logger_windows import cut_to_window
+from sprung.campaign.recording import Recording
+from sprung.campaign.signals import find_column, make_recording
+from sprung.errors import Fault, InputError, Problem, Problems
+from sprung.formats import Table
+from sprung.vehicle import Sensor
+
+
+class Wanted(NamedTuple):
+    """A sensor as the campaign file describes it, and as it is called from then on."""
+
+    written: Sensor
+    named: Sensor
+
+
+def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
+    """Give sensors of different loggers, whose channels have one name, the logger's name before it.
+
+    Parameters
+    ----------
+    sensors
+        As the campaign file describes them.
+    """
+    often = Counter(sensor.channel for sensor in sensors)
+    return tuple(
+        replace(sensor, channel=f"{sensor.logger} {sensor.channel}")
+        if often[sensor.channel] > 1 and sensor.logger
+        else sensor
+        for sensor in sensors
+    )
+
+
+def assemble_recording(tables: Mapping[str, Table], sensors: Sequence[Wanted], drop: Drop, name: str) -> Recording:
+    """Make the recording of one drop.
+
+    Parameters
+    ----------
+    tables
+        What its files hold, by their names.
+    sensors
+        The campaign's.
+    drop
+        The drop.
+    name
+        What to call it.
+
+    Returns
+    -------
+    Recording
+        Of several loggers as if they had all been started at one moment: `prepare` looks where the release is.
+
+    Raises
+    ------
+    InputError
+        If a channel's logger cannot be told, or one of the files cannot be used; all problems at once.
+    """
+    if len(tables) == 1:
+        ((only, table),) = tables.items()
+        recording = make_recording(_within(table, drop.window), [sensor.written for sensor in sensors], only)
+        return replace(recording, name=name, channels=tuple(sensor.named.channel for sensor in sensors))
+    problems = Problems()
+    loggers = {sensor.written.logger for sensor in sensors if sensor.written.logger}
+    of_file: dict[str, list[Wanted]] = {file: [] for file in tables}
+    faults: list[Fault] = []
+    for sensor in sensors:
+        with problems.collecting():
+            file = _file_of(sensor.written, tables, loggers)
+            if file is None:
+                faults.append(_nowhere(sensor.written, name))
+            else:
+                of_file[file].append(sensor)
+    parts: list[Recording] = []
+    for of, own in of_file.items():
+        with problems.collecting():
+            if own:
+                part = make_recording(tables[of], [sensor.written for sensor in own], of)
+                parts.append(replace(part, channels=tuple(sensor.named.channel for sensor in own)))
+    if drop.window is not None and not of_file[drop.files[0]]:
+        where, found = f"{name}: window", f"no sensor of the campaign in {drop.files[0]}, on whose clock it is"
+        problems.add(where, found, "a window on the clock of a file that is used", "Name another file first in files.")
+    problems.raise_if_any()
+    if drop.window is not None:
+        parts = list(cut_to_window(parts, drop.window))
+    channels = tuple(sensor.named.channel for sensor in sensors)
+    faults += [fault for part in parts for fault in part.faults]
+    nothing = np.full((len(channels), 0), np.nan)
+    whole = Recording(name, channels, nothing, 0.0, 1.0, faults=tuple(faults), parts=tuple(parts))
+    return merge_loggers(whole, [part.start for part in parts])
+
+
+def _within(table: Table, window: tuple[float, float] | None) -> Table:
+    """Give the part of a table that lies within a window of its clock, s."""
+    if window is None:
+        return table
+    time = table.time
+    return table.part(int(np.searchsorted(time, window[0])), int(np.searchsorted(time, window[1], side="right")))
+
+
+def _file_of(sensor: Sensor, tables: Mapping[str, Table], loggers: Collection[str]) -> str | None:
+    """Say which file a sensor's logger wrote: one named after it, or else the only one with such a channel.
+
+    Where no file has its name, one named after another logger is not its own.
+    """
+    own = find_logger_files(tables, sensor.logger) if sensor.logger else []
+    taken = {file for other in loggers for file in find_logger_files(tables, other)} if sensor.logger else set()
+    free = [file for file in tables if file not in taken]
+    files = [file for file in own or free if find_column(tables[file], sensor.channel)]
+    if len(files) > 1:
+        found = f"'{sensor.channel}' in {', '.join(files)}"
+        do = 'Give the sensor logger = "...": a part of the file name that only its own files have.'
+        raise InputError([Problem(f"sensor '{sensor.channel}'", found, "the channel in one file of each drop", do)])
+    return next(iter(files), None)
+
+
+def find_logger_files(files: Iterable[str], logger: str) -> list[str]:
+    """Give the files with a logger's name in theirs: as words of their own, or else as any part.
+
+    Parameters
+    ----------
+    files
+        The recordings.
+    logger
+        Its name.
+
+    Returns
+    -------
+    list of str
+    """
+    stems = {file: PurePath(file).stem.casefold() for file in files}
+    name = logger.casefold()
+    word = re.compile(rf"(?<![^\W_]){re.escape(name)}(?![^\W_])")
+    return [file for file, stem in stems.items() if word.search(stem)] or [
+        f for f, stem in stems.items() if name in stem
+    ]
+
+
+def _nowhere(sensor: Sensor, name: str) -> Fault:
+    logger = f" of the logger '{sensor.logger}'" if sensor.logger else ""
+    what = f"no file of this drop has a column '{sensor.channel}'{logger}; the channel is left out of this drop"
+    return Fault("missing", f"{name}: {sensor.channel}", what, "Check the logger, and the names in the campaign file.")

@@ -1,0 +1,187 @@
+"""Samples that are missing, and samples on another clock: what the samples around them say beyond doubt is filled in.
+
+Between two samples a quarter of a period of wheel hop apart, 20 ms, a cubic spline follows what a vehicle does. Over a
+longer gap nobody knows. Such a gap does no harm where nothing moves: before the release, or once the motion has died away.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from sprung.errors import Fault
+
+Real = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Place = Callable[[int], str]
+
+LONGEST_GAP = 0.02
+"""s between the samples beside a gap that may be filled: a quarter of a period of wheel hop."""
+
+MAX_MISSING = 0.05
+"""Part of a channel's samples that may be filled in."""
+
+_REST = 0.3
+"""s of rest that have to be left before the release."""
+
+_SMALL = 0.03
+"""Part of a channel's peak below which it does not move any more."""
+
+_FEW = 20
+"""Samples whose median is the level of rest."""
+
+_DO = "Check the sensor's cable and the logger, or export the recording again."
+
+
+class FilledSamples(NamedTuple):
+    """What is left of a recording's samples.
+
+    Attributes
+    ----------
+    values
+        Shape (channel, time); a channel that is left out NaN throughout, no NaN in the others.
+    first
+        Sample of what was there before at which they begin now.
+    faults
+        What was missing, and what was done about it.
+    left_out
+        Those of the faults that cost a channel.
+    """
+
+    values: Real
+    first: int
+    faults: tuple[Fault, ...]
+    left_out: tuple[Fault, ...]
+
+
+def fill_short_gaps(signal: Real, rate: float) -> Real:
+    """Fill the short gaps of one channel.
+
+    Parameters
+    ----------
+    signal
+        Shape (time,); NaN where a sample is missing.
+    rate
+        Samples per second.
+
+    Returns
+    -------
+    ndarray
+        Shape (time,); NaN still where the gap is too long, and at the ends.
+    """
+    there = np.flatnonzero(np.isfinite(signal))
+    placeholders = np.flatnonzero(np.diff(there) > 1)
+    short = placeholders[np.diff(there)[placeholders] <= max(LONGEST_GAP * rate * (1 + 1e-9), 1)]
+    if not short.size or there.size < 4:
+        return signal
+    wanted = np.concatenate([np.arange(there[i] + 1, there[i + 1]) for i in short])
+    mended = signal.copy()
+    mended[wanted] = CubicSpline(there, signal[there])(wanted)
+    return mended
+
+
+def fill_gaps(values: Real, lost: Flags, rate: float, wheres: Sequence[str], place: Place) -> FilledSamples:
+    """Fill what may be filled, cut off what is at rest, and leave out the channels that cannot be mended.
+
+    Parameters
+    ----------
+    values
+        Shape (channel, time), any unit; NaN where a sample is missing, throughout in a channel that is left out already.
+    lost
+        Samples that no channel has, and that have been told already; shape (time,).
+    rate
+        Samples per second.
+    wheres
+        File and channel of each, for the faults.
+    place
+        Says where in the file a sample stands.
+    """
+    missing = np.isnan(values) & ~lost
+    given: Flags = np.logical_not(np.isnan(values).all(axis=1))
+    if not np.isnan(values[given]).any():
+        return FilledSamples(values, 0, (), ())
+    whole = np.array([fill_short_gaps(row, rate) for row in values])
+    first, last, spoilt = _stretch(whole, rate, given)
+    spoilt |= given & (missing[:, first:last].mean(axis=1) > MAX_MISSING)
+    faults, left_out = [], []
+    for channel in np.flatnonzero(missing.any(axis=1) & given).tolist():
+        own = missing[channel]
+        count = f"{own.sum()} of {own.size} samples {'is' if own.sum() == 1 else 'are'} missing"
+        inside = int(own[first:last].sum())
+        if spoilt[channel]:
+            done = "the channel is left out of this drop"
+        elif inside == own.sum():
+            done = "filled in from the samples around"
+        else:
+            done = f"{inside} were filled in, and " if inside else ""
+            done += "the recording is cut off there, as nothing moves"
+        what = f"{count}, the first in {place(int(own.argmax()))}; {done}"
+        faults.append(Fault("missing", wheres[channel], what, _DO))
+        if spoilt[channel]:
+            left_out.append(faults[-1])
+    whole[spoilt] = np.nan
+    return FilledSamples(whole[:, first:last], first, tuple(faults), tuple(left_out))
+
+
+def find_rest(values: Real, rate: float) -> tuple[int, int]:
+    """Find the rest at both ends of a recording.
+
+    Parameters
+    ----------
+    values
+        Shape (channel, time), any unit; NaN where a sample is missing.
+    rate
+        Samples per second.
+
+    Returns
+    -------
+    until
+        First sample at which any channel has left the level of the recording's beginning.
+    since
+        Sample from which on every channel stays at the level of its end.
+    """
+    some = values[~np.isnan(values).all(axis=1)]
+    if not some.size:
+        return 0, values.shape[1]
+    few = max(_FEW, round(_REST * rate))
+    beginning, end = (
+        np.array([np.nanmedian(_known(row, part)) for row in some]) for part in (slice(few), slice(-few, None))
+    )
+    noise = np.array([_spread(row) for row in some])[:, None]
+    from_beginning, from_end = (np.abs(some - level[:, None]) for level in (beginning, end))
+    allowed = np.maximum(_SMALL * np.nanmax(from_beginning, axis=1, keepdims=True), 5 * noise)
+    left = (from_beginning > allowed).any(axis=0)
+    back = (from_end > allowed).any(axis=0)
+    until = int(left.argmax()) if left.any() else left.size
+    since = int(back.size - back[::-1].argmax()) if back.any() else 0
+    return until, since
+
+
+def _known(signal: Real, part: slice) -> Real:
+    return signal[np.isfinite(signal)][part]
+
+
+def _spread(signal: Real) -> float:
+    """Give the noise of a channel from its steps, which slow motion does not touch."""
+    steps = np.abs(np.diff(_known(signal, slice(None))))
+    return float(1.4826 * np.median(steps) / np.sqrt(2)) if steps.size else 0.0
+
+
+def _stretch(values: Real, rate: float, given: Flags) -> tuple[int, int, Flags]:
+    """Give the samples to keep, and the channels that are not whole there."""
+    first, last, spoilt = 0, values.shape[1], np.zeros(len(values), dtype=bool)
+    until, since = find_rest(values, rate)
+    for channel in np.flatnonzero(np.isnan(values).any(axis=1) & given).tolist():
+        placeholders = np.flatnonzero(np.isnan(values[channel]))
+        early, late = placeholders[placeholders + _REST * rate < until], placeholders[placeholders >= since]
+        # Where nothing moves at all there is no motion to keep.
+        if until >= since or early.size + late.size < placeholders.size:
+            spoilt[channel] = True
+            continue
+        first = max(first, int(early[-1]) + 1) if early.size else first
+        last = min(last, int(late[0])) if late.size else last
+    return first, last, spoilt

@@ -1,0 +1,268 @@
+"""The time stamps of samples: even, jittering, with lines lost between them, or with a pause."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+from scipy.optimize import minimize_scalar
+from scipy.signal import savgol_filter
+
+from sprung.campaign.gap_filling import LONGEST_GAP, Place, fill_short_gaps, find_rest
+from sprung.errors import Fault
+from sprung.formats import interpolate
+
+Real = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Index = NDArray[np.int64]
+
+UNEVEN = 0.2
+"""By how much, relative to the usual step, a step of an even clock may differ without a word."""
+
+_JUMP = 1.6
+"""Usual steps from which a step is one over lost lines, as long as there are few such."""
+
+_FEW = 0.05
+"""Part of the steps that may be jumps; where more are, the stamps jitter."""
+
+_PACKETS = 3
+"""Pauses from which it is asked whether they are any."""
+
+_EXACT = 1e-2
+"""Part of the last digit of a stamp that two of them differ by if they are the same."""
+
+_SLIGHT = 0.02
+"""Part of a step by which stamps may be off before it is asked what that means."""
+
+_LATE = 0.1
+"""s by which a logger may stamp samples early or late, in bursts, and still have taken them evenly."""
+
+_SLOPE = 0.006
+"""s before and after a sample that its slope is taken from."""
+
+_ROUGH = 5.0
+"""Times what is usual around from which a sample's difference from its neighbours counts as no more than this."""
+
+_ENOUGH = 100.0
+"""Sum of squares of what is expected, in units of what is usual, from which the samples tell how they were taken."""
+
+_SETTLED = 0.1
+"""s of rest that have to follow a pause before the release."""
+
+
+class RegularTimeBase(NamedTuple):
+    """Samples at even steps.
+
+    Attributes
+    ----------
+    values
+        Shape (channel, time); NaN where a line was lost.
+    start
+        Time of the first on the file's clock, s.
+    rate
+        Samples per second.
+    lost
+        Samples that no channel has, shape (time,).
+    origin
+        The sample of the file that each was, or is next to, shape (time,).
+    faults
+        What was wrong with the stamps, and what was done about it.
+    """
+
+    values: Real
+    start: float
+    rate: float
+    lost: Flags
+    origin: Index
+    faults: tuple[Fault, ...] = ()
+
+
+def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> RegularTimeBase:
+    """Put samples at even steps, as their stamps and they themselves tell how they were taken.
+
+    Parameters
+    ----------
+    time
+        Stamps, s, increasing, shape (time,).
+    values
+        Shape (channel, time), any unit; NaN where a sample is missing.
+    place
+        Says where in the file a sample stands.
+    file
+        Its name.
+
+    Returns
+    -------
+    Evened
+        All its values NaN where nothing can be made of the clock.
+
+    Notes
+    -----
+    Stamps that jitter say one of two things: that the samples were taken evenly and stamped carelessly, or that they
+    were taken at those times. A vehicle moves smoothly: the right reading is the one in which the samples do.
+    """
+    steps = np.diff(time)
+    usual = float(np.median(steps))
+    jumps = steps > _JUMP * usual
+    jumps &= bool(jumps.mean() <= _FEW)
+    if _is_even(time, jumps):
+        return _as_they_are(time, values)
+    without = _line(time, np.zeros_like(jumps))
+    pauses = np.flatnonzero(jumps & (steps > LONGEST_GAP * (1 + 1e-6)))
+    # Samples stamped packet by packet show many pauses, and none in the long run.
+    if pauses.size > _PACKETS and without.off <= _LATE:
+        jumps[:] = False
+    elif pauses.size:
+        return _without_pauses(time, values, pauses, place, file)
+    # A long step over a lost line stays long; one after a late stamp is made good by the next.
+    number, step, start, off = min((_line(time, jumps), without), key=lambda line: line.off)
+    uneven = np.flatnonzero(np.abs(steps - step * np.diff(number)) > UNEVEN * usual)
+    if off > _LATE:
+        what = f"{_steps(steps, uneven, usual, off, place)}; the drop is left out"
+        do = "Export the recording at a fixed rate, or repeat the drop."
+        return _nothing(time, values, Fault("clock", file, what, do))
+    if off > _SLIGHT * usual and _believed(values, time - start - step * number, 1 / step):
+        return _resampled(time, values, step, _steps(steps, uneven, usual, off, place), file)
+    lost = np.ones(int(number[-1]) + 1, dtype=bool)
+    lost[number.astype(int)] = False
+    faults = []
+    if lost.any():
+        which = f"{lost.sum()} of {lost.size} lines {'is' if lost.sum() == 1 else 'are'} missing"
+        what = f"{which}, the first before {place(int(np.argmax(np.diff(number) > 1)) + 1)}; filled in from the samples around"
+        faults.append(Fault("clock", file, what, "Check how the logger stores or sends its samples."))
+    if uneven.size:
+        what = (
+            f"{_steps(steps, uneven, usual, off, place)}; the samples are no smoother at those times, and were taken to "
+            f"be even, {1 / step:.6g} a second"
+        )
+        faults.append(Fault("clock", file, what, "Export the recording at a fixed rate."))
+    spread = np.full((len(values), lost.size), np.nan)
+    spread[:, ~lost] = values
+    origin = np.searchsorted(number, np.arange(lost.size))
+    return RegularTimeBase(spread, start if uneven.size else float(time[0]), 1 / step, lost, origin, tuple(faults))
+
+
+class _Line(NamedTuple):
+    """Even steps through stamps: each sample's number, step and start, s, and by how much the stamps are off at most, s."""
+
+    number: Real
+    step: float
+    start: float
+    off: float
+
+
+def _line(time: Real, jumps: Flags) -> _Line:
+    steps = np.diff(time)
+    index = np.concatenate([[0.0], np.cumsum(np.where(jumps, np.round(steps / np.median(steps)), 1.0))])
+    step, start = np.polyfit(index, time - time[0], 1).tolist()
+    return _Line(index, step, start + float(time[0]), float(np.abs(time - time[0] - start - step * index).max()))
+
+
+def _is_even(time: Real, jumps: Flags) -> bool:
+    """Say whether a clock is even, or written with too few digits to look even.
+
+    Where a step is one digit, a lost line looks like a step rounded up. But rounding, and nothing else, keeps all stamps
+    within one digit of each other about a straight line: steps are rounded up at even distances.
+    """
+    digits = next((digits for digits in range(10) if np.allclose(time, time.round(digits), rtol=0, atol=1e-12)), 10)
+    digit, off = 10.0**-digits, time - np.linspace(time[0], time[-1], len(time))
+    if np.abs(off).max() > digit:
+        return False
+    if not jumps.any() or _line(time, jumps).off > _EXACT * digit:
+        return True
+    index = np.linspace(0.0, 1.0, len(time))
+    best = minimize_scalar(lambda tilt: np.ptp(off - tilt * index), bounds=(-2 * digit, 2 * digit), method="bounded")
+    return bool(best.fun <= (1 + _EXACT) * digit)
+
+
+def _as_they_are(time: Real, values: Real) -> RegularTimeBase:
+    rate = float((len(time) - 1) / (time[-1] - time[0]))
+    return RegularTimeBase(values, float(time[0]), rate, np.zeros(len(time), dtype=bool), np.arange(len(time)))
+
+
+def _nothing(time: Real, values: Real, fault: Fault) -> RegularTimeBase:
+    return _as_they_are(time, np.full_like(values, np.nan))._replace(faults=(fault,))
+
+
+def _steps(steps: Real, uneven: Index, usual: float, off: float, place: Place) -> str:
+    said = f"the clock is uneven: its stamps are up to {1e3 * off:.2g} ms off even ones"
+    if not uneven.size:
+        return said
+    first = int(uneven[0])
+    return (
+        f"{said}, and {uneven.size} of {steps.size} steps differ from the usual {usual:.6g} s by more than {UNEVEN:.0%}, "
+        f"the first, {steps[first]:.6g} s, up to {place(first + 1)}"
+    )
+
+
+def _without_pauses(time: Real, values: Real, pauses: Index, place: Place, file: str) -> RegularTimeBase:
+    """Keep the stretch between two pauses that holds the landing, if it also holds the release or nothing moved before."""
+    edges = np.concatenate([[0], pauses + 1, [time.size]])
+    level = np.nanmedian(np.where(np.isnan(values).all(axis=1, keepdims=True), 0.0, values), axis=1, keepdims=True)
+    deviation = np.nan_to_num(np.abs(values - level))
+    landing = int((deviation / np.maximum(deviation.max(axis=1, keepdims=True), 1e-300)).sum(axis=0).argmax())
+    piece = int(np.searchsorted(edges, landing, side="right")) - 1
+    first, last = int(edges[piece]), int(edges[piece + 1])
+    rate = 1 / float(np.median(np.diff(time)))
+    longest = int(pauses[np.diff(time)[pauses].argmax()])
+    what = (
+        f"the logger paused {pauses.size} time{'s' * (pauses.size > 1)}, the longest for "
+        f"{time[longest + 1] - time[longest]:.3g} s up to {place(longest + 1)}"
+    )
+    do = "Let the logger run through, or export the recording again."
+    if first > 0 and find_rest(values, rate)[0] < first + _SETTLED * rate:
+        fault = Fault("clock", file, f"{what}, between the release and the landing; the drop is left out", do)
+        return _nothing(time, values, fault)
+    what += f"; only the stretch with the landing is used, {time[first]:.6g} to {time[last - 1]:.6g} s"
+    kept = regularise_time_base(time[first:last], values[:, first:last], lambda sample: place(first + sample), file)
+    return kept._replace(origin=kept.origin + first, faults=(Fault("clock", file, what, do), *kept.faults))
+
+
+def _believed(values: Real, off: Real, rate: float) -> bool:
+    """Say whether the samples were taken at their stamps.
+
+    A sample taken late by δ is off by δ times the slope of its signal. What the samples differ from their neighbours is
+    compared with what it would be then: the factor between the two is 1 where the stamps are right, and 0 where the
+    samples are even.
+    """
+    window = 2 * max(round(_SLOPE * rate), 1) + 1
+    believed = weight = 0.0
+    for signal in values:
+        even = fill_short_gaps(signal, rate)
+        if np.isnan(even).any() or even.size < 4 * window:
+            continue
+        expected = _unlike_neighbours(off * savgol_filter(even, window, 2, deriv=1, delta=1 / rate))
+        found = _unlike_neighbours(even)
+        # Against what is usual around: a landing is rough by itself.
+        usual = np.maximum(median_filter(np.abs(found), 2 * window + 1), 1e-3 * np.abs(found).max() + 1e-300)
+        expected, found = expected / usual, np.clip(found / usual, -_ROUGH, _ROUGH)
+        told = np.abs(expected) < _ROUGH
+        believed += float(found[told] @ expected[told])
+        weight += float(expected[told] @ expected[told])
+    return weight > _ENOUGH and believed > weight / 2
+
+
+def _unlike_neighbours(signal: Real) -> Real:
+    """Give by how much each sample differs from the cubic through its four neighbours; shape (time less 4,)."""
+    return signal[2:-2] - (4 * (signal[1:-3] + signal[3:-1]) - signal[:-4] - signal[4:]) / 6
+
+
+def _resampled(time: Real, values: Real, step: float, what: str, file: str) -> RegularTimeBase:
+    grid = time[0] + step * np.arange(int((time[-1] - time[0]) / step * (1 + 1e-12)) + 1)
+    origin = np.minimum(np.searchsorted(time, grid), time.size - 1)
+    read = np.full((len(values), grid.size), np.nan)
+    for row, signal in zip(read, values, strict=True):
+        there = np.isfinite(signal)
+        if there.sum() > 3:
+            row[:] = interpolate(signal[there], time[there], grid)
+            # What a channel lacks is told of and filled in later, as with any clock.
+            known = np.flatnonzero(there)
+            before = np.clip(np.searchsorted(time[known], grid, side="right") - 1, 0, known.size - 2)
+            apart = time[known[before + 1]] - time[known[before]] > max(LONGEST_GAP, _JUMP * step)
+            row[apart | (np.diff(known)[before] > 1)] = np.nan
+    what += f"; the samples are smooth at the times stamped, and were interpolated to {1 / step:.6g} a second"
+    fault = Fault("clock", file, what, "Export the recording at a fixed rate.")
+    lost = np.zeros(grid.size, dtype=bool)
+    return RegularTimeBase(read, float(time[0]), 1 / step, lost, origin, (fault,))

@@ -1,0 +1,58 @@
+"""The text of a TOML file, and where it is none."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import TYPE_CHECKING, Any
+
+from sprung.errors import InputError, Problem, did_you_mean
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Raises
+    ------
+    InputError
+        If it is missing, unreadable or not TOML; the message names line and column.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except FileNotFoundError:
+        beside = [other.name for other in path.parent.glob("*.toml")]
+        do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
+        if not beside:
+            do = "Correct the path, or write that file: `sprung demo` writes an example to copy."
+        raise InputError([Problem(str(path), "no such file", "a campaign file or vehicle file", do)]) from None
+    except IsADirectoryError:
+        do = "Name the file in it." if path.suffix != ".toml" else "Rename the folder, and put the file in its place."
+        raise InputError([Problem(str(path), "a folder", "a campaign file or vehicle file", do)]) from None
+    except OSError as error:
+        found = f"a file that cannot be read ({error.strerror})"
+        raise InputError([Problem(str(path), found, "a readable file", "See to its permissions.")]) from error
+    except UnicodeDecodeError as error:
+        line = path.read_bytes()[: error.start].count(b"\n") + 1
+        found = "a character that is not UTF-8"
+        do = "Save the file as UTF-8 in your editor."
+        raise InputError([Problem(f"{path.name}: line {line}", found, "text in UTF-8, as TOML needs it", do)]) from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError([_syntax_problem(path, text, str(error))]) from None
+
+
+def _syntax_problem(path: Path, text: str, message: str) -> Problem:
+    match = re.fullmatch(r"(?P<what>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)", message)
+    what = match["what"] if match else message
+    lines = text.splitlines() or [""]
+    line = int(match["line"]) if match and match["line"] else len(lines)
+    written = lines[min(line, len(lines)) - 1].strip()
+    column = int(match["column"]) if match and match["column"] else len(lines[-1]) + 1
+    do = "Correct this line: text stands in double quotes, lists in [ ], and numbers have a decimal point."
+    if path.suffix.lower() != ".toml":
+        do = "Give the campaign file, which ends in .toml and names the recordings."
+    return Problem(f"{path.name}: line {line}, column {column}", f"`{written[:60]}`", f"TOML ({what})", do)

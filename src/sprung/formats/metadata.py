@@ -1,0 +1,143 @@
+"""What a word or a number in a file of nested names is about: which vectors it speaks for, and what it says of them.
+
+A word or a number speaks for the innermost struct or group around it that holds vectors, and for everything in there,
+unless something nearer speaks: ``car.axle.unit`` for the vectors of ``car.axle``, ``car.Properties.SampleRate``, beside
+which no vector stands, for all of ``car``.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, TypeVar
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+    from sprung.formats.nested import Content, Number, Path, Text
+
+Said = TypeVar("Said", "Text", "Number")
+
+NAMES = frozenset(("name", "label", "channel", "channelname", "column", "columnname", "signal", "signalname"))
+NAMES |= {"variable", "variablename", "title", "longname"}
+UNITS = frozenset(("unit", "unitstr", "unitstring", "unitsymbol", "unitlabel", "einheit", "einheiten", "engunit"))
+UNITS |= {"variableunit", "channelunit", "yunit"}
+GENERIC = frozenset(("", "data", "value", "values", "sample", "samples", "raw", "y", "signal"))
+"""Names that say that something is the content of what they lie in, and no more."""
+
+
+def normalise_name(name: str) -> str:
+    """Strip a name of capitals and separators, so that ``Sample_Rate`` and ``sampleRate`` are one.
+
+    Parameters
+    ----------
+    name
+        As the file has it.
+
+    Returns
+    -------
+    str
+    """
+    return re.sub(r"[\s_.-]", "", name).lower()
+
+
+def matches_any(name: str, words: Collection[str]) -> bool:
+    """Say whether a name is one of some plain words, or the plural of one.
+
+    Parameters
+    ----------
+    name
+        As the file has it.
+    words
+        In the singular.
+    """
+    return normalise_name(name) in words or (normalise_name(name).endswith("s") and normalise_name(name)[:-1] in words)
+
+
+class MetadataScope:
+    """Who speaks for whom in one file.
+
+    Parameters
+    ----------
+    content
+        What the file holds.
+    """
+
+    def __init__(self, content: Content) -> None:
+        self._texts = content.texts
+        held = [number.path for number in content.numbers if normalise_name(number.path[-1]) in GENERIC]
+        self._homes = {block.path[:depth] for block in content.blocks for depth in range(len(block.path))}
+        self._homes |= {path[:-1] for path in held}
+
+    def home(self, path: Path) -> Path:
+        """Give the innermost thing around a name that holds vectors."""
+        depth = len(path) - 1
+        while depth > 0 and path[:depth] not in self._homes:
+            depth -= 1
+        return path[:depth]
+
+    def nearest(self, said: Collection[Said], to: Path) -> Said | None:
+        """Give what stands nearest among those that speak for the vector of that path; None if none does."""
+        speaking = [one for one in said if to[: len(self.home(one.path))] == self.home(one.path)]
+        return min(speaking, key=lambda one: (-len(self.home(one.path)), len(one.path)), default=None)
+
+    def called(self, path: Path) -> Path:
+        """Give the path that ends with what something is called: ``ch1.data`` is ``ch1``, or as ``ch1.name`` says."""
+        if not path or normalise_name(path[-1]) not in GENERIC:
+            return path
+        for text in self._texts:
+            beside = text.path[:-1] == path[:-1] and matches_any(text.path[-1], NAMES)
+            if beside and len(text.words) == 1 and text.words[0].strip():
+                return (*path[:-2], text.words[0].strip())
+        return path[:-1] or path
+
+    def column_names(self, path: Path, count: int) -> tuple[str, ...] | None:
+        """Give the names of a matrix's columns: words of their number, rather those that are called names."""
+        lists = {text: _listed(text, count) for text in self._texts if text.path}
+        lists = {text: words for text, words in lists.items() if not matches_any(text.path[-1], UNITS)}
+        fitting = [text for text, words in lists.items() if words]
+        named = [text for text in fitting if matches_any(text.path[-1], NAMES)]
+        near = self.nearest(named, path) or self.nearest(fitting, path)
+        return lists[near] if near else None
+
+    def unit_of(self, path: Path, name: str) -> str | None:
+        """Give the unit that is said of this one vector, as ``acc_unit`` or ``units.acc`` say it of ``acc``."""
+        name = normalise_name(name)
+        for text in self._texts:
+            by_name = len(text.path) > 1 and matches_any(text.path[-2], UNITS) and normalise_name(text.path[-1]) == name
+            join_samples = normalise_name(text.path[-1]) in {
+                f"{name}unit",
+                f"{name}units",
+                f"unit{name}",
+                f"units{name}",
+            }
+            if (by_name or join_samples) and len(text.words) == 1 and self.nearest([text], path):
+                return text.words[0].strip() or None
+        return None
+
+    def unit_lists(self) -> tuple[Text, ...]:
+        """Give all words that are called units."""
+        return tuple(text for text in self._texts if text.path and matches_any(text.path[-1], UNITS))
+
+
+def split_list(text: Text) -> tuple[str, ...]:
+    """Give the words of a list, also where they stand in one text: ``s, m/s^2``.
+
+    Parameters
+    ----------
+    text
+        What the file says.
+
+    Returns
+    -------
+    tuple of str
+    """
+    words = re.split(r"[,;|\t\n]", text.words[0]) if len(text.words) == 1 else text.words
+    return tuple(word.strip() for word in words)
+
+
+def _listed(text: Text, count: int) -> tuple[str, ...] | None:
+    """Give as many names as there are columns, of a list that may name the time as well, which stands elsewhere."""
+    words = split_list(text) if matches_any(text.path[-1], NAMES) else text.words
+    if len(words) == count + 1 and normalise_name(words[0]) in {"t", "time"}:
+        words = words[1:]
+    return words if len(words) == count > 1 and all(words) else None

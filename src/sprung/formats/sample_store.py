@@ -1,0 +1,173 @@
+"""Columns of numbers that stay in their file until somebody asks for some of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from sprung.errors import Problem
+
+Read: TypeAlias = Callable[[Sequence[int], int, int, int], Iterator[NDArray[np.float64]]]
+"""``read(columns, first, last, step)``: the samples from first up to last, last apart, of some columns in any order,
+in pieces of step samples that follow one another, the last one shorter; each of shape (column, time)."""
+
+BUDGET = 1 << 25
+"""Bytes that the pieces may take of which a whole is put together: large against what a read costs, and small."""
+
+
+def _nothing_spoilt(column: int, first: int, last: int) -> None:
+    """Say that every sample is a number, or missing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Store:
+    """Columns of one length.
+
+    Attributes
+    ----------
+    width, length
+        Number of columns, and of the samples of each.
+    read
+        Gives samples, NaN where there is no number. Nothing of the file need be open between two calls. Raises an
+        InputError if the file is damaged there.
+    spoilt
+        ``find_non_number(column, first, last)``: what stands in that part of a column that is no number; None if nothing does.
+    """
+
+    width: int
+    length: int
+    read: Read
+    find_non_number: Callable[[int, int, int], Problem | None] = _nothing_spoilt
+
+
+class Samples(NamedTuple):
+    """One column of a store."""
+
+    store: Store
+    column: int
+
+    def all(self) -> NDArray[np.float64]:
+        """Give every sample; shape (time,)."""
+        length = self.store.length
+        return next(self.store.read([self.column], 0, length, length))[0] if length else np.empty(0)
+
+    def pieces(self) -> Iterator[NDArray[np.float64]]:
+        """Give the samples piece by piece, each of shape (time,)."""
+        return (piece[0] for piece in self.store.read([self.column], 0, self.store.length, BUDGET // 8))
+
+
+def split_range(first: int, last: int, step: int) -> Iterator[tuple[int, int]]:
+    """Cut a range into parts of a length, the last one shorter."""
+    return ((begin, min(begin + step, last)) for begin in range(first, last, step))
+
+
+def store_by_ranges(
+    width: int, length: int, get: Callable[[Sequence[int], int, int], NDArray[np.float64]], at_once: int = BUDGET // 8
+) -> Store:
+    """Make a store of which any range can be read at once.
+
+    Parameters
+    ----------
+    width, length
+        Number of columns and of samples.
+    get
+        ``get(columns, first, last)``: their samples, shape (column, time).
+    at_once
+        How many samples it is asked for at the most.
+    """
+
+    def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
+        for begin, end in split_range(first, last, step):
+            if end - begin <= at_once:
+                yield get(columns, begin, end)
+                continue
+            values = np.empty((len(columns), end - begin))
+            for low, high in split_range(begin, end, at_once):
+                values[:, low - begin : high - begin] = get(columns, low, high)
+            yield values
+
+    return Store(width, length, read)
+
+
+def samples_per_read(size: int) -> int:
+    """Say how many samples to read at once of which each takes so many bytes in the file."""
+    return max((BUDGET >> 3) // max(size, 1), 1)
+
+
+def store_in_memory(values: NDArray[np.generic]) -> Store:
+    """Make a store of numbers that are in memory.
+
+    Parameters
+    ----------
+    values
+        Shape (column, time).
+    """
+
+    def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
+        with np.errstate(invalid="ignore"):  # of what is no number
+            return values[list(columns), first:last].astype(np.float64)
+
+    return store_by_ranges(len(values), values.shape[1], get)
+
+
+def missing_samples(length: int, problem: Problem) -> Samples:
+    """Make a column without a single number.
+
+    Parameters
+    ----------
+    length
+        Number of samples.
+    problem
+        Why there is none.
+    """
+    missing = store_by_ranges(1, length, lambda columns, first, last: np.full((len(columns), last - first), np.nan))
+    return Samples(Store(1, length, missing.read, lambda _column, _first, _last: problem), 0)
+
+
+def join_samples(members: Sequence[Samples]) -> Store:
+    """Make one store of columns of one length, of however many stores.
+
+    Parameters
+    ----------
+    members
+        The columns, one or more.
+    """
+
+    def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
+        rows: dict[int, list[int]] = {}
+        for row, column in enumerate(columns):
+            rows.setdefault(id(members[column].store), []).append(row)
+        reading = [
+            (own, members[columns[own[0]]].store.read([members[columns[row]].column for row in own], first, last, step))
+            for own in rows.values()
+        ]
+        for begin, end in split_range(first, last, step):
+            values = np.empty((len(columns), end - begin))
+            for own, pieces in reading:
+                values[own] = next(pieces)
+            yield values
+
+    def find_non_number(column: int, first: int, last: int) -> Problem | None:
+        return members[column].store.find_non_number(members[column].column, first, last)
+
+    return Store(len(members), members[0].store.length, read, find_non_number)
+
+
+def regroup(pieces: Iterable[NDArray[np.float64]], step: int) -> Iterator[NDArray[np.float64]]:
+    """Cut and join pieces of any lengths to ones of step samples, the last one shorter."""
+    held: list[NDArray[np.float64]] = []
+    count = 0
+    for piece in pieces:
+        held.append(piece)
+        count += piece.shape[1]
+        if count >= step:
+            together = np.concatenate(held, axis=1) if len(held) > 1 else piece
+            yield from (together[:, end - step : end] for end in range(step, count + 1, step))
+            held, count = [together[:, count - count % step :]], count % step
+    if count:
+        yield np.concatenate(held, axis=1)

@@ -1,0 +1,91 @@
+"""The legend of a picture, and the labels of its lines, above the first panel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from sprung.report.drawing.axis import Axis
+from sprung.report.drawing.marks import Box
+from sprung.report.drawing.picture import Curve, Picture, Points, Rule
+from sprung.tables import escaped
+
+WIDTH = 440
+"""Units across a picture: so few that it can be read on a telephone, and two stand beside each other on a desk."""
+
+RIGHT = 8.0
+"""Units right of the panels."""
+
+LINE = 13.0
+"""Units from line to line of words."""
+
+LETTER = 5.6
+"""Width of a letter, on average, at the size of labels."""
+
+
+def legend_rows(picture: Picture, left: float) -> Iterator[list[tuple[float, Curve | Points]]]:
+    """Part the legend into rows that fit, each entry with its place from the left, units."""
+    row: list[tuple[float, Curve | Points]] = []
+    x = left
+    for mark in picture.legend:
+        width = 24 + LETTER * len(mark.label) + 10
+        if row and x + width > WIDTH:
+            yield row
+            row, x = [], left
+        row.append((x, mark))
+        x += width
+    if row:
+        yield row
+
+
+def legend(rows: list[list[tuple[float, Curve | Points]]]) -> Iterator[str]:
+    """Draw the rows of a legend."""
+    for line, row in enumerate(rows):
+        y = 10 + LINE * line
+        for x, mark in row:
+            if isinstance(mark, Curve):
+                dashes = " dashed" if mark.dashed else ""
+                yield f'<path class="curve {mark.role}{dashes}" stroke-width="{mark.width:g}" d="M{x:.0f} {y - 3:.0f}h18"/>'
+            else:
+                dot = f'd="M{x + 9:.0f} {y - 3:.0f}h0"'
+                yield f'<path class="points {mark.role}" stroke-width="{4.4 * mark.size:.2g}" {dot}/>'
+                if mark.hollow:
+                    yield f'<path class="points paper" stroke-width="{2.4 * mark.size:.2g}" {dot}/>'
+            yield f'<text class="tick" x="{x + 23:.0f}" y="{y:.0f}">{escaped(mark.label)}</text>'
+
+
+def label_levels(labels: list[Rule], axis: Axis, width: float) -> list[int]:
+    """Say on which line above the panels each label stands, so that none lies on another: 0 for the lowest."""
+    order = sorted(range(len(labels)), key=lambda i: float(axis.at(np.array(labels[i].at))))
+    ends: list[float] = []
+    levels = [0] * len(labels)
+    for i in order:
+        half = LETTER * len(labels[i].label) / 2 + 2
+        middle = _held(float(axis.at(np.array(labels[i].at))) * width, half, width)
+        level = next((level for level, end in enumerate(ends) if middle - half > end), len(ends))
+        ends[level : level + 1] = [middle + half]
+        levels[i] = level
+    return levels
+
+
+def _held(middle: float, half: float, width: float) -> float:
+    """Move a label so that it does not stand out of the picture."""
+    return min(max(middle, half), width + RIGHT - half)
+
+
+def rule_labels(labels: list[Rule], levels: list[int], box: Box, again: bool = False) -> Iterator[str]:
+    """Write the labels above the first panel; lines from the higher ones go behind the lower ones."""
+    words = []
+    for mark, level in zip(labels, levels, strict=True):
+        place = float(box.x.at(np.array(mark.at))) * box.width
+        if not 0 <= place <= box.width:
+            continue
+        half, key = LETTER * len(mark.label) / 2, f' data-x="{mark.at:.9g}"' if again else ""
+        x, y = box.left + _held(place, half, box.width), box.top - 5 - LINE * level
+        if level:
+            yield f'<path class="rule {mark.role}"{key} d="M{box.left + place:.1f} {box.top:.1f}V{y + 3:.1f}"/>'
+        words.append(
+            f'<text class="tick {mark.role}"{key} x="{x:.1f}" y="{y:.1f}" text-anchor="middle">{escaped(mark.label)}</text>'
+        )
+    yield from words

@@ -1,0 +1,101 @@
+"""Drawings of a check and of a validation, one SVG file per drop."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import PurePath
+
+from sprung.assessment import DropValidation
+from sprung.checking import Check, DropReport
+from sprung.report.drawing.sheet import sheet
+from sprung.report.pictures.amplitudes import amplitude_pictures
+from sprung.report.pictures.motions import motion_picture
+from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.terminal.validation import AMPLITUDES
+from sprung.study import Validation
+
+
+def draw_check(check: Check) -> dict[str, str]:
+    """Draw every drop: its channels one above the other, when what happened, which part is used, what is wrong where.
+
+    Parameters
+    ----------
+    check
+        From `sprung.check`.
+
+    Returns
+    -------
+    dict
+        SVG text by file name, in the campaign's order, of the recordings that could be read; the same for the same recordings.
+    """
+    drawn = {}
+    for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=False):
+        pictures = [picture for picture in (whole_picture(drop, recorded), near_picture(drop, recorded)) if picture]
+        drawn[name] = sheet(drop.label, list(_drop_lines(drop)), pictures)
+    return drawn
+
+
+def _drop_lines(drop: DropReport) -> Iterator[tuple[str, bool]]:
+    """Say what a drop is, which part of it is used and why, each line with whether it tells of something wrong."""
+    wheels = "" if drop.kind == " ".join(drop.wheels) else f" ({', '.join(drop.wheels)})"
+    rate = "" if drop.rate is None else f", {drop.rate:.6g} samples per second"
+    yield f"{drop.kind or 'wheels not known'}{wheels}, load {drop.load or 'not stated'}{rate}", False
+    if drop.start is None or drop.end is None:
+        yield f"left out: {', '.join(drop.faults)}", True
+    else:
+        yield f"decay from {drop.start:.3f} s: {drop.why_start}", False
+        yield f"to {drop.end:.3f} s: {drop.why_end}", False
+    if drop.contradicted:
+        yield f"the release shows {', '.join(drop.wheels_seen or ()) or 'no wheel'} to have fallen", True
+
+
+def draw_validation(validation: Validation) -> dict[str, str]:
+    """Draw a validation: each drop in coordinates of the body, and the modes of the body against amplitude.
+
+    Parameters
+    ----------
+    validation
+        From `sprung.validate`.
+
+    Returns
+    -------
+    dict
+        SVG text by file name; the same for the same recordings.
+    """
+    result = validation.result
+    drawn = {}
+    if pictures := amplitude_pictures(validation.amplitudes):
+        title = f"{result.name}, {validation.load}: modes of the body against amplitude"
+        drawn["amplitude.svg"] = sheet(title, [(AMPLITUDES, False)], pictures)
+    names = file_names(["amplitude", *result.series])
+    next(names)  # taken by the drawing above
+    for name, (drop, series) in zip(names, result.series.items(), strict=True):
+        picture = motion_picture(drop, series, result.validation[drop])
+        drawn[name] = sheet(drop, [(_error_text(result.validation[drop]), False)], [picture])
+    return drawn
+
+
+def _error_text(drop: DropValidation) -> str:
+    text = f"all channels: error {100 * drop.fitted:.1f} % of the signal, {drop.residual:.2f} times the noise"
+    if drop.predicted is not None and drop.predicted_residual is not None:
+        text += f"; predicted by the other drops: {100 * drop.predicted:.1f} %, {drop.predicted_residual:.2f} times"
+    return text
+
+
+def _names(check: Check) -> Iterator[str]:
+    """Name each drop's drawing after its recording, no two alike."""
+    return file_names([drop.title or str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
+
+
+def file_names(drops: Iterable[str]) -> Iterator[str]:
+    """Name a drawing after each drop, no two alike."""
+    taken: set[str] = set()
+    for drop in drops:
+        plain = re.sub(r'[\\/:*?"<>|\s]+', "_", drop).lstrip("._")
+        name, count = f"{plain}.svg", 1
+        while name.lower() in taken:  # some file systems take A.svg for a.svg
+            count += 1
+            name = f"{plain}_{count}.svg"
+        taken.add(name.lower())
+        yield name

@@ -1,0 +1,1 @@
+"""HTML pages: the report of a result, and that of a check."""

@@ -1,0 +1,25 @@
+"""What each part of the report shows: the context of its template, or None where a result has nothing for it."""
+
+from sprung.report.page.sections.drops import motions, recordings
+from sprung.report.page.sections.geometry import geometry
+from sprung.report.page.sections.numbers import characteristics, correlation, known, parameters
+from sprung.report.page.sections.provenance import literature, next_step, settings, trace
+from sprung.report.page.sections.vibrations import amplitude, modes, spectra, stabilisation
+
+__all__ = [
+    "amplitude",
+    "characteristics",
+    "correlation",
+    "geometry",
+    "known",
+    "literature",
+    "modes",
+    "motions",
+    "next_step",
+    "parameters",
+    "recordings",
+    "settings",
+    "spectra",
+    "stabilisation",
+    "trace",
+]

@@ -1,0 +1,142 @@
+"""A small car of wire whose nodes move with the coordinates of the vehicle: how a mode is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.report.drawing.picture import Real
+from sprung.results import Result
+from sprung.vibration import largest_entry
+
+_DECK, _ROOF, _HUB = 0.3, 0.62, 0.13
+"""Heights of the wire car, parts of its wheelbase: nothing in a result tells a vehicle's outline."""
+
+_OVERHANG, _INSET = 0.2, 0.12
+"""Body beyond the axles, part of the wheelbase; and roof within the deck, part of the track."""
+
+_TRACK = 0.27
+"""Half the track beside the wheelbase, where nothing tells it."""
+
+_AWAY = (0.42, 0.30)
+"""How far to the right and up on the picture what is away from who looks is drawn."""
+
+_SWING = 0.15
+"""Largest displacement on the picture, part of the wheelbase."""
+
+BODY_EDGES = ((0, 1), (1, 3), (3, 2), (2, 0), (4, 5), (5, 7), (7, 6), (6, 4), (0, 4), (1, 5), (2, 6), (3, 7))
+"""Between nodes: deck, roof, pillars."""
+
+STRUTS = ((12, 8), (13, 9), (14, 10), (15, 11))
+"""From the hubs to the deck above them."""
+
+HUBS = (12, 13, 14, 15)
+"""Nodes that are wheels: A front left, B front right, C rear left, D rear right."""
+
+_ENGINE = 0.4
+"""Radius of an engine beside a wheel's."""
+
+
+@dataclass(frozen=True, eq=False)
+class WireCar:
+    """The car on the picture.
+
+    Attributes
+    ----------
+    places
+        Of its nodes at rest: to the right and down, units, shape (node, 2). The last is an engine on its mounts, if there
+        is one.
+    rows
+        How far each node rises with each coordinate, the engine's the last, units, shape (node, 8).
+    wheel
+        Radius of a wheel, units.
+    width, height
+        Of the picture, units.
+    """
+
+    places: Real
+    rows: Real
+    wheel: float
+    width: float
+    height: float
+
+    def swing(self, motion: Sequence[tuple[float, float]]) -> NDArray[np.complex128]:
+        """Give how far each node rises in a mode, so that the largest is well to be seen.
+
+        Parameters
+        ----------
+        motion
+            Of the vehicle's coordinates, real and imaginary parts.
+
+        Returns
+        -------
+        ndarray
+            Units, shape (node,).
+        """
+        shape = np.array([complex(*part) for part in motion])
+        moved: NDArray[np.complex128] = self.rows[:, : len(shape)] @ shape
+        # In the phase in which what moves most is furthest up.
+        largest = moved[largest_entry(moved)]
+        return moved * (_SWING * self._wheelbase / largest) if largest else moved
+
+    @property
+    def circles(self) -> tuple[tuple[int, float], ...]:
+        """Nodes that are drawn as circles, and their radii, units: the wheels, and an engine."""
+        engine = range(HUBS[-1] + 1, len(self.places))
+        return (*((hub, self.wheel) for hub in HUBS), *((node, _ENGINE * self.wheel) for node in engine))
+
+    @property
+    def _wheelbase(self) -> float:
+        return float(abs(self.places[HUBS[0], 0] - self.places[HUBS[2], 0]))
+
+
+def wire_car(result: Result, width: float = 220.0) -> WireCar:
+    """Make a car of the proportions that a result tells.
+
+    Parameters
+    ----------
+    result
+        With what was known beforehand, where it holds that.
+    width
+        Of the picture, units.
+
+    Returns
+    -------
+    WireCar
+    """
+    told = {name: found.value for name, found in result.parameters.items() if found.value is not None}
+    wheelbase = result.setup.known["wheelbase"].value if "wheelbase" in result.setup.known else 1.0
+    a, b = told.get("a"), told.get("b")
+    a, b = (a, b) if a and b else (wheelbase / 2, wheelbase / 2)
+    length = a + b
+    half = _half_track(result, told, length)
+    front, rear = a + _OVERHANG * length, -b - _OVERHANG * length
+    inner = half * (1 - _INSET)
+    corners = [(x, y) for x in (front, rear) for y in (half, -half)]
+    roof = [(x, y) for x in (0.5 * front, 0.94 * rear) for y in (inner, -inner)]
+    stations = [(x, y) for x in (a, -b) for y in (half, -half)]
+    engine = [(a + told["x_e"], 0.0)] if "x_e" in told else []
+    flat = np.array([*corners, *roof, *stations, *stations, *engine])
+    heights = length * np.array([*np.repeat([_DECK, _ROOF, _DECK, _HUB], 4), *([_DECK] * len(engine))])
+    rows = np.zeros((len(flat), 8))
+    rows[:12, 0], rows[:12, 1], rows[:12, 2] = 1, -flat[:12, 0], flat[:12, 1]
+    rows[HUBS, range(3, 7)] = 1
+    rows[16:, 7] = 1
+    across, up = flat[:, 0] + _AWAY[0] * flat[:, 1], heights + _AWAY[1] * flat[:, 1]
+    radius = _HUB * length
+    scale = (width - 12) / (np.ptp(across) + 1e-9)
+    swing = _SWING * length
+    top, bottom = up.max() + swing, up[list(HUBS)].min() - radius - swing
+    places = np.stack([6 + scale * (across - across.min()), scale * (top - up)], axis=1)
+    return WireCar(places, rows * scale, scale * radius, width, float(scale * (top - bottom)))
+
+
+def _half_track(result: Result, told: Mapping[str, float], wheelbase: float) -> float:
+    """Give half the track: where springs or dampers are widest apart, or else the body's sensors."""
+    places = [value for name, value in told.items() if name.startswith(("t_f", "t_r"))]
+    if not places:
+        places = [abs(one.position[1]) for one in result.setup.sensors if one.position is not None]
+    return max(places, default=0.0) or _TRACK * wheelbase

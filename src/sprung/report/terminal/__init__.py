@@ -1,0 +1,1 @@
+"""Text for the terminal: tables and lists that fit any width."""

@@ -1,0 +1,104 @@
+"""Sensors, loads and drops: the default ones, and those made from mappings as they stand in a campaign file."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any, TypeVar, cast
+
+from pydantic import ValidationError
+
+from sprung.campaign import Drop
+from sprung.errors import Problems
+from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel, parse_record, problems_of_record
+
+Record = TypeVar("Record")
+
+FIVE_DROPS: tuple[tuple[Wheel, ...], ...] = (WHEELS, ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
+"""The wheels of the paper's bounce, front, rear, left and right drop."""
+
+
+def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
+    """Give eight accelerometers as in the paper: one at each corner of the body, one on each wheel.
+
+    Parameters
+    ----------
+    vehicle
+        The corners are 0.1 m ahead of its front and behind its rear axle, at the wider of its half-distances.
+
+    Returns
+    -------
+    tuple of Sensor
+    """
+    corners = []
+    for station in WHEELS:
+        x = 0.1 if station[0] == "f" else -vehicle.wheelbase - 0.1
+        half = max(getattr(vehicle, f"t_{station[0]}{suffix}") for suffix in "12")
+        y = half if station[1] == "l" else -half
+        corners.append(Sensor(channel=f"body_{station}", on="body", position=(x, y, 0.5)))
+    return (*corners, *(Sensor(channel=f"wheel_{station}", on=station) for station in WHEELS))
+
+
+def default_drops(loads: Iterable[Load]) -> tuple[Drop, ...]:
+    """Give the paper's drops of all, front, rear, left and right wheels with each load.
+
+    Parameters
+    ----------
+    loads
+        All of them, ``empty`` among them where it is wanted.
+
+    Returns
+    -------
+    tuple of Drop
+    """
+    return tuple(Drop(load=load.name, wheels=wheels) for load in loads for wheels in FIVE_DROPS)
+
+
+def records(
+    model: type[Record], kind: str, given: Sequence[Record | Mapping[str, Any]], problems: Problems
+) -> tuple[Record, ...]:
+    """Make records of one kind; the faulty ones are left out and added to the problems."""
+    made = [record(model, f"{kind}[{i}]", one, problems) for i, one in enumerate(given)]
+    return tuple(one for one in made if one is not None)
+
+
+def record(model: type[Record], where: str, given: Record | Mapping[str, Any], problems: Problems) -> Record | None:
+    """Make a record from a mapping; None, and what is wrong added to the problems, if that cannot be."""
+    try:
+        return given if isinstance(given, model) else parse_record(model, cast("Mapping[str, Any]", given))
+    except ValidationError as error:
+        for problem in problems_of_record(model, error, f"simulate: {where}"):
+            problems.add(problem.where, problem.found, problem.expected, problem.do)
+        return None
+
+
+def name_files(drops: Sequence[Drop], what: str | None = None) -> tuple[Drop, ...]:
+    """Give every drop without one a file name of its own, numbered where it repeats.
+
+    Parameters
+    ----------
+    drops
+        The drops.
+    what
+        Follows the name of the load; None for the drop's own name, which tells the wheels.
+    """
+    taken = {drop.file for drop in drops}
+    named = []
+    for drop in drops:
+        stem = re.sub(r"[^\w.-]+", "_", drop.label if what is None else f"{drop.load}_{what}")
+        numbered = (f"{stem}{end}.csv" for end in itertools.chain([""], map("_{}".format, itertools.count(2))))
+        file = drop.file or next(name for name in numbered if name not in taken)
+        taken.add(file)
+        named.append(replace(drop, file=file))
+    return tuple(named)
+
+
+def check_unique(kind: str, key: str, names: Iterable[str], problems: Problems) -> None:
+    """Add a problem for every name that is used twice."""
+    for name, count in Counter(names).items():
+        if count > 1:
+            found = f"'{name}' {count} times"
+            problems.add(f"simulate: {kind}", found, f"a {key} of its own for each", "Rename all but one.")
