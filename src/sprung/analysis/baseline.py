@@ -26,7 +26,9 @@ def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
     fit = fit_baseline_model(run, run.prepared.decays, progress)
     search = select_roll_axis_height(ModelSearch(structure, fit, run.prepared.decays, (), progress))
     search = fit_requested_terms(search, [term for term in requested.linear_terms if term not in structure.terms])
-    run = replace(run, requested=requested, search=from_contact(search), fits=run.fits + 2)
+    converged = from_contact(search)
+    is_moved = any(decay.start != before.start for decay, before in zip(converged.decays, search.decays, strict=True))
+    run = replace(run, requested=requested, search=converged, fits=run.fits + 1 + is_moved)
     return run.noted(
         "fit_baseline", described(run.model), f"{run.fit.starts_agreeing} of {run.fit.starts} starts agree"
     )

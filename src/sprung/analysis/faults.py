@@ -75,11 +75,7 @@ def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
         return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
     progress(Step("isolating faults"))
     run, isolation = _with_isolation(run, consistency)
-    base = isolation.base
-    if base.fit is not run.fit and consistency_of(base.campaign, base.decays, base.fit) == "consistent":
-        found = Isolated((), False, 0)
-    else:
-        found = isolate(isolation, progress)
+    found = isolate(isolation, progress)
     run = replace(run, isolated=(run.fit, found), fits=run.fits + found.fits)
     faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "no fault"
     explains = "explains the recordings" if found.is_explained else "explains a part of the recordings at most"
@@ -89,20 +85,23 @@ def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
 def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, FaultIsolation]:
     """Return the fit against which hypotheses are held, with the larger of the models that are open.
 
-    Where nothing explains the recordings, a wheel sensor at fault may have shown a wrong landing: then the decays begin
-    where they would without any.
+    A wheel sensor at fault may have shown a wrong landing: where the fit does not describe the recordings, the decays begin
+    where they would without any, unless too little of the motion is left then to show what is wrong.
     """
-    structure, decays = run.model.structure, run.decays
+    structure = run.model.structure
     tracks: Tracks = "separate" if structure.tracks_open else structure.tracks
     if consistency == "misfit":
-        safe = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
-        if any(other.start > decay.start for other, decay in zip(safe, decays, strict=True)):
-            decays = safe
         run = replace(run, preparations=run.preparations + 1)
-    is_same = decays is run.decays and tracks == structure.tracks and not structure.is_time_stepped
+        decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
+        if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
+            run = replace(run, fits=run.fits + 1)
+            isolation = FaultIsolation.of(run.campaign, decays, None, tracks, structure.linear_terms)
+            if not isolation.base.is_explained:
+                return run, isolation
+    is_same = tracks == structure.tracks and not structure.is_time_stepped
     run = replace(run, fits=run.fits + (not is_same))
     fit = run.fit if is_same else None
-    return run, FaultIsolation.of(run.campaign, decays, fit, tracks, structure.linear_terms)
+    return run, FaultIsolation.of(run.campaign, run.decays, fit, tracks, structure.linear_terms)
 
 
 def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:

@@ -12,7 +12,7 @@ from sprung.analysis.profiles import check_asked
 from sprung.analysis.stages import analyse
 from sprung.analysis.starting import start_values
 from sprung.assessment import ModeAmplitude, body_motions
-from sprung.campaign import CampaignSource, campaign_from
+from sprung.campaign import CampaignSource, resolve_campaign
 from sprung.errors import Omissions
 from sprung.progress import Progress, silent
 from sprung.results import Result
@@ -111,7 +111,7 @@ def identify_campaign(
     """
     tracks, terms = model_options(tracks, extras)
     begin = start_values(start)
-    campaign = campaign_from(campaign, progress)
+    campaign = resolve_campaign(campaign, progress)
     asked = check_asked(profile, campaign, tracks, terms)
     texts: dict[str, object] = {"tracks": tracks, "extras": terms, "fall": fall, "profile": asked}
     if begin:

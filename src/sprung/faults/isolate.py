@@ -11,7 +11,7 @@ from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_pas
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.channel_deletion import ChannelDeletion
-from sprung.faults.consistency import SHARE, SIGNIFICANT
+from sprung.faults.consistency import SHARE, SIGNIFICANT, consistency_of
 from sprung.faults.correction import Correction, exclude_drops, mask_channel
 from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
@@ -22,11 +22,9 @@ from sprung.progress import Progress, Step, silent
 _FEW = 0.85
 """Share of a misfit that a first fault may leave while a second one is looked for."""
 
-_WORTHWHILE = 0.3
-"""Share of the largest possible gain by leaving out a part, from which that part is examined."""
-
 _RIVALS = 0.9
-"""The same share, from which a part is examined although another one explains everything."""
+"""Share of the largest possible gain by leaving out a part, from which that part is examined although another one explains
+everything."""
 
 _MOST_PARTS, _MOST_FITS, _MOST_STATEMENTS, _MOST_FAULTS = 3, 3, 2, 3
 """Parts that are left out by a fit, fits of hypotheses and of statements for each fault, and faults of a campaign."""
@@ -68,6 +66,9 @@ def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
     -------
     Isolated
     """
+    base = isolation.base
+    if consistency_of(base.campaign, base.decays, base.fit) == "consistent":
+        return Isolated((), False, 0)
     first, fits = isolation, 0
     accepted: list[Hypothesis] = []
     sufficient = 0
@@ -151,26 +152,25 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
 
 def _of_parts(isolation: FaultIsolation, progress: Progress) -> tuple[list[Hypothesis], int]:
     """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
-    table, start = isolation.base.table, isolation.base.fit
+    table = isolation.base.table
     channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
     parts: list[tuple[float, ChannelDeletion | DropDeletion, Correction]] = []
-    progress(Step("leaving out each channel and each drop by one step"))
+    progress(Step("leaving out each channel and each drop"))
     for channel in channels if len(channels) > 1 else ():
         correction = mask_channel(channel)
-        deletion = ChannelDeletion(isolation, channel, isolation.step(correction, start))
+        deletion = ChannelDeletion(isolation, channel, isolation.delete(correction))
         parts.append((table.cost - deletion.limit.cost, deletion, correction))
     for drop in drops if len(drops) > 1 else ():
         correction = exclude_drops(isolation.recordings[drop])
-        without = DropDeletion(isolation, drop, isolation.step(correction, start), DROP_HYPOTHESES)
+        without = DropDeletion(isolation, drop, isolation.delete(correction), DROP_HYPOTHESES)
         parts.append((table.cost - without.limit.cost, without, correction))
     parts.sort(key=lambda part: part[0], reverse=True)
     largest = parts[0][0] if parts else 0.0
     hypotheses: list[Hypothesis] = []
     fits = 0
     for gain, part, correction in parts[:_MOST_PARTS]:
-        if gain <= max(_WORTHWHILE * largest, SIGNIFICANT):
-            break
-        if gain < _RIVALS * largest and any(one.is_specific and one.is_explained for one in hypotheses):
+        is_found = any(one.is_specific and one.is_explained for one in hypotheses)
+        if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * largest):
             break
         progress(Step(f"fitting without {part.name}"))
         hypotheses += replace(part, candidate=isolation.fit(correction)).hypotheses()
