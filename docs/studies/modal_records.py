@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal import cramer_rao_bound
-from sprung.vehicle import TABLE_1_CAR, Vehicle, Wheel, drive_over_half_sine_bump, free_decay, tyre_rates
+from sprung.simulation import drive_over_half_sine_bump, tyre_rates
+from sprung.vehicle import TABLE_1_CAR, Vehicle, Wheel, free_decay
 from sprung.vibration import Mode, compute_modes
 
 Real = NDArray[np.float64]

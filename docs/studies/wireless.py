@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.campaign import Campaign, Recording, merge_loggers
-from sprung.simulation import default_sensors
+from sprung.simulation import default_sensors, drop_from_blocks
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, drop_from_blocks, parse_record
+from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, parse_record
 
 Real = NDArray[np.float64]
 

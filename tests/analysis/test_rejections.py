@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 import sprung
-from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle, drop_from_blocks
+from sprung.simulation import drop_from_blocks
+from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle
 from sprung.vehicle.kinematics import body_point
 
 Array = NDArray[np.float64]

@@ -15,7 +15,8 @@ from sprung.campaign import Campaign
 from sprung.checking import Check, DropReport
 from sprung.checking.check import check_prepared
 from sprung.preprocess import prepare
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, drop_from_blocks
+from sprung.simulation import drop_from_blocks
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 
 REST = 0.4  # s before the release, as `simulate` has it
 

@@ -9,7 +9,7 @@ import pytest
 
 from sprung.estimation import FitStatistics, characteristics_of
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, characteristic, wheel_loads
+from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, evaluate_quantity, wheel_loads
 
 UNEVEN = replace(TABLE_1_CAR, y_s=0.02, d_ksf=600.0, name="uneven")
 
@@ -54,7 +54,7 @@ def test_uncertainties_are_those_of_draws(vehicle: Vehicle) -> None:
     ]
     for name, estimate in found.items():
         if name in CHARACTERISTICS:
-            values = np.array([characteristic(name, fit.names, one)[0] for one in drawn])
+            values = np.array([evaluate_quantity(name, fit.names, one)[0] for one in drawn])
             assert estimate.std == pytest.approx(values.std(), rel=4 * 0.029), name
     loads = np.array([wheel_loads(vehicle.model(), one)[0] for one in drawn])
     names = [name for name in found if name.endswith("wheel_load")]

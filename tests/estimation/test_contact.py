@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle, drop_from_blocks
+from sprung.simulation import drop_from_blocks
+from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle
 
 # Light damping and high blocks: wheels that leave the ground again after they have landed.
 HOPPING = Vehicle.from_parameters({**TABLE_1_CAR.parameters, "c_sf": 500.0, "c_sr": 500.0}, name="hopping")

@@ -84,7 +84,7 @@ def test_it_says_when_it_cannot() -> None:
 @given(vehicle=vehicles)
 def test_the_poles_are_the_same_seen_from_the_front_axle(vehicle: Vehicle) -> None:
     model, values = vehicle.model(BAGS), list(vehicle.parameters.values())
-    moved = model.seen_from_front_axle(vehicle.wheelbase)
+    moved = model.referred_to_front_axle(vehicle.wheelbase)
     here, there = (np.poly(one.matrices(values).state / 50) for one in (model, moved))
     np.testing.assert_allclose(here, there, rtol=1e-7, atol=1e-9 * np.abs(here).max())
     # Nothing but the mass depends on where the centre of gravity is.

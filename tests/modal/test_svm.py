@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from sprung.errors import InputError
 from sprung.modal import state_matrix, state_variable_method
-from sprung.vehicle import TABLE_1_CAR, Vehicle, drive_over_half_sine_bump, free_decay, tyre_rates
+from sprung.simulation import drive_over_half_sine_bump, tyre_rates
+from sprung.vehicle import TABLE_1_CAR, Vehicle, free_decay
 from sprung.vibration import compute_modes
 from strategies import vehicles
 

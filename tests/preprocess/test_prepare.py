@@ -10,8 +10,8 @@ from hypothesis import HealthCheck, given, settings
 
 from sprung.campaign import Campaign, Drop
 from sprung.preprocess import prepare
-from sprung.simulation import simulate
-from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle, drop_from_blocks
+from sprung.simulation import drop_from_blocks, simulate
+from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle
 from strategies import vehicles
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from sprung.simulation import half_sine_bumps
+from sprung.simulation import drive_over_half_sine_bump, half_sine_bumps, tyre_rates
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import TABLE_1_CAR, WHEELS, Added, Load, Sensor, drive_over_half_sine_bump, free_decay, tyre_rates
+from sprung.vehicle import TABLE_1_CAR, WHEELS, Added, Load, Sensor, free_decay
 
 # Ten per cent of every mass of Table 1, the paper's lost eq. (20).
 TENTH = Load(name="tenth", added=Added(mass=138, I_yy=244, I_xx=38, m_uf=4.05, m_ur=4.54))

@@ -6,22 +6,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from sprung.campaign import Drop, ModelChoice
 from sprung.errors import InputError
-from sprung.simulation import default_drops, default_sensors, simulate
+from sprung.simulation import default_drops, default_sensors, drop_from_blocks, simulate, static_wheel_loads
 from sprung.uncertainty import KnownValue
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import (
-    EMPTY,
-    SCHOOL_BUS,
-    TABLE_1_CAR,
-    WHEELS,
-    Added,
-    Item,
-    Load,
-    Sensor,
-    Vehicle,
-    drop_from_blocks,
-    static_wheel_loads,
-)
+from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, WHEELS, Added, Item, Load, Sensor, Vehicle
 
 SANDBAGS = Load(name="sandbags", items=(Item(mass=140, position=(-1.0, 0.2, 0.6)),))
 

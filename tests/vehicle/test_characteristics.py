@@ -11,16 +11,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from sprung.simulation import static_wheel_loads
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import (
-    CHARACTERISTICS,
-    SCHOOL_BUS,
-    TABLE_1_CAR,
-    Vehicle,
-    characteristic,
-    static_wheel_loads,
-    wheel_loads,
-)
+from sprung.vehicle import CHARACTERISTICS, SCHOOL_BUS, TABLE_1_CAR, Vehicle, evaluate_quantity, wheel_loads
 from strategies import vehicles
 
 UNEVEN = replace(
@@ -31,7 +24,7 @@ UNEVEN = replace(
 
 def of(vehicle: Vehicle, name: str) -> float:
     names = tuple(vehicle.parameters)
-    return characteristic(name, names, np.array(list(vehicle.parameters.values())))[0]
+    return evaluate_quantity(name, names, np.array(list(vehicle.parameters.values())))[0]
 
 
 def test_they_are_what_textbooks_say() -> None:
@@ -89,7 +82,7 @@ def test_uneven_loads_are_in_equilibrium() -> None:
 
 
 def value_of(name: str, names: tuple[str, ...], values: np.ndarray) -> float:
-    return characteristic(name, names, values)[0]
+    return evaluate_quantity(name, names, values)[0]
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, UNEVEN], ids=lambda one: one.name)
@@ -105,7 +98,7 @@ def test_gradients_are_those_of_differences(vehicle: Vehicle) -> None:
 
     for name, one in CHARACTERISTICS.items():
         if one.needs <= set(names):
-            value, gradient = characteristic(name, names, values)
+            value, gradient = evaluate_quantity(name, names, values)
             expected = differences(partial(value_of, name, names))
             assert gradient * values == pytest.approx(expected * values, abs=1e-8 * max(abs(value), 1e-3))
     loads, gradient = wheel_loads(model, values)

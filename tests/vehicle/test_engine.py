@@ -8,7 +8,8 @@ from numpy.testing import assert_allclose
 
 import sprung
 from sprung.errors import InputError
-from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, drop_from_blocks, parse_record, static_wheel_loads
+from sprung.simulation import drop_from_blocks, static_wheel_loads
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, coordinates, parse_record
 from sprung.vibration import compute_modes
 
 HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held

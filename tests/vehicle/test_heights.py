@@ -80,7 +80,7 @@ def test_what_is_carried_sideways_counts_as_inertia() -> None:
 
 def test_heights_that_do_not_tell_enough_change_nothing() -> None:
     for heights in (LEVEL, Heights(wheel_height=0.3), Heights(cg_height=0.5), Heights(roll_axis_height=0.1)):
-        assert not heights.known
+        assert not heights.has_effect
         car = Vehicle.from_parameters(TABLE_1_CAR.parameters, name="told little", **heights.by_key)
         for one, other in zip(car.matrices(), TABLE_1_CAR.matrices(), strict=True):
             assert_allclose(one, other)
@@ -88,8 +88,8 @@ def test_heights_that_do_not_tell_enough_change_nothing() -> None:
 
 def test_where_the_body_is_carried_decides_how_gravity_tips_it() -> None:
     both = Heights(CG, WHEEL, 0.1)
-    assert both.undecided
-    assert both.tipping() == pytest.approx(G * (CG - WHEEL))
-    assert both._replace(carried_at="roll axis").tipping() == pytest.approx(G * (CG - 0.1))
-    assert Heights(CG, None, 0.1).tipping() == pytest.approx(G * (CG - 0.1))
-    assert not Heights(CG, WHEEL).undecided
+    assert both.is_ambiguous
+    assert both.gravity_stiffness() == pytest.approx(G * (CG - WHEEL))
+    assert both._replace(carried_at="roll axis").gravity_stiffness() == pytest.approx(G * (CG - 0.1))
+    assert Heights(CG, None, 0.1).gravity_stiffness() == pytest.approx(G * (CG - 0.1))
+    assert not Heights(CG, WHEEL).is_ambiguous

@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from sprung.errors import InputError
-from sprung.vehicle import DERIVED, EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle, static_wheel_loads, with_separate_tracks
+from sprung.simulation import static_wheel_loads
+from sprung.vehicle import DERIVED, EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle, with_separate_tracks
 
 TABLE_1 = TABLE_1_CAR.parameters
 
@@ -52,7 +53,7 @@ def test_derived_quantities() -> None:
     assert SCHOOL_BUS.total_mass == pytest.approx(5240)
     assert SCHOOL_BUS.wheelbase == pytest.approx(3.95)
     for vehicle in (TABLE_1_CAR, SCHOOL_BUS):
-        front, rear = (DERIVED[name](vehicle.parameters)[0] for name in ("front_axle_mass", "rear_axle_mass"))
+        front, rear = (DERIVED[name].value(vehicle.parameters) for name in ("front_axle_mass", "rear_axle_mass"))
         assert_allclose(
             static_wheel_loads(vehicle, EMPTY, 2.0), [front, front, rear, rear], rtol=1e-12
         )  # half of 2 m/s²

@@ -11,17 +11,8 @@ from numpy.testing import assert_allclose
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import solve_ivp
 
-from sprung.vehicle import (
-    SCHOOL_BUS,
-    TABLE_1_CAR,
-    WHEELS,
-    Matrices,
-    Vehicle,
-    affine_response,
-    drive_over_half_sine_bump,
-    free_decay,
-    tyre_rates,
-)
+from sprung.simulation import drive_over_half_sine_bump, tyre_rates
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Matrices, Vehicle, affine_response, free_decay
 
 Array = NDArray[np.float64]
 

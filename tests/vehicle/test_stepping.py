@@ -60,22 +60,22 @@ def test_without_any_force_the_steps_are_exact() -> None:
     names, values = values_of(("progressive",))
     values = np.where([name.startswith("p_") for name in names], 0.0, values)
     states = some_states(2)
-    path = stepper(("progressive",), 0.01, values).follow(states, np.zeros((2, 0)), 100)
+    trajectory = stepper(("progressive",), 0.01, values).integrate(states, np.zeros((2, 0)), 100)
     exact = free_decay(CAR.matrices(), states[0], 0.01, 101)
-    np.testing.assert_allclose(path.states[:, 0, :7].T, exact.displacement, atol=1e-12)
-    np.testing.assert_allclose(path.states[:, 0, 7:].T, exact.velocity, atol=1e-11)
+    np.testing.assert_allclose(trajectory.states[:, 0, :7].T, exact.displacement, atol=1e-12)
+    np.testing.assert_allclose(trajectory.states[:, 0, 7:].T, exact.velocity, atol=1e-11)
 
 
 def test_a_load_pushes_with_its_weight() -> None:
     """From rest without the load, the loaded vehicle comes to rest where K X = -ΔM g (1, 0, 0, 1, 1, 1, 1)."""
     names, values = values_of(("progressive",))
     values = np.where([name.startswith("p_") for name in names], 0.0, values)
-    path = stepper(("progressive",), 0.05, values).follow(np.zeros((2, 14)), np.zeros((2, 0)), 400)
+    trajectory = stepper(("progressive",), 0.05, values).integrate(np.zeros((2, 14)), np.zeros((2, 0)), 400)
     heave = np.array([1.0, 0, 0, 1, 1, 1, 1])
     added = CAR.matrices(BALLAST).M - CAR.matrices().M
     rest = np.linalg.solve(CAR.matrices().K, -9.80665 * added @ heave)
-    np.testing.assert_allclose(path.states[-1, 1, :7], rest, atol=1e-6)
-    np.testing.assert_allclose(path.states[-1, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(trajectory.states[-1, 1, :7], rest, atol=1e-6)
+    np.testing.assert_allclose(trajectory.states[-1, 0], 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("extras", [("friction",), ("rebound",), ("friction", "rebound", "progressive")])
@@ -107,13 +107,13 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
 
     memories = 4 if "friction" in extras else 0
     step, steps = 0.0005, 1000
-    path = stepper(extras, step).follow(np.array([state, state]), np.zeros((2, memories)), steps)
+    trajectory = stepper(extras, step).integrate(np.array([state, state]), np.zeros((2, memories)), steps)
     there = solve_ivp(
         slope, (0, step * steps), np.concatenate([state, np.zeros(memories)]), "Radau", rtol=1e-9, atol=1e-10,
         t_eval=step * np.arange(0, steps + 1, 50), max_step=0.001,
     )  # fmt: skip
-    scale = np.abs(path.states[:, 0]).max(axis=0)
-    assert np.all(np.abs(path.states[::50, 0] - there.y[:14].T) < 3e-4 * scale)
+    scale = np.abs(trajectory.states[:, 0]).max(axis=0)
+    assert np.all(np.abs(trajectory.states[::50, 0] - there.y[:14].T) < 3e-4 * scale)
 
 
 @pytest.mark.parametrize("ground", [False, True])
@@ -124,13 +124,13 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     if ground:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
-    path = before.follow(states, memories, steps)
-    chunks = list(before.changes(path))
-    found = np.concatenate([np.concatenate([one.states, one.forces], axis=2) for one in chunks])
-    assert [one.first for one in chunks] == [0, 128]
+    trajectory = before.integrate(states, memories, steps)
+    chunks = list(before.sensitivities(trajectory))
+    found = np.concatenate([np.concatenate([states, forces], axis=2) for _, states, forces in chunks])
+    assert [first for first, _, _ in chunks] == [0, 128]
     if ground:
-        assert np.any(path.forces[0, :, -4:] < 0)
-        assert not np.any(path.forces[-1, :, -4:] < 0)
+        assert np.any(trajectory.forces[0, :, -4:] < 0)
+        assert not np.any(trajectory.forces[-1, :, -4:] < 0)
 
     def moved(unknown: int, by: float) -> Array:
         p, x, m = values.copy(), states.copy(), memories.copy()
@@ -140,7 +140,7 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
             x[:, unknown - len(names)] += by
         else:
             m[:, unknown - len(names) - 14] += by
-        there = stepper(extras, step, p, ground).follow(x, m, steps)
+        there = stepper(extras, step, p, ground).integrate(x, m, steps)
         return np.concatenate([there.states, there.forces], axis=2)
 
     for unknown in range(len(names) + 18):
@@ -160,28 +160,28 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
 )  # fmt: skip
 def test_laws_tell_their_own_derivatives(law: ForceLaw, parameters: tuple[float, ...]) -> None:
     random = np.random.default_rng(2)
-    travel, rate, way = 0.01 * random.standard_normal((3, 3, 50))
-    felt = ElementInput(travel, rate, way, law.remembers * random.uniform(-0.9, 0.9, (3, 50)))
+    travel, rate, increment = 0.01 * random.standard_normal((3, 3, 50))
+    given = ElementInput(travel, rate, increment, law.has_memory * random.uniform(-0.9, 0.9, (3, 50)))
     p = np.array(parameters)[:, None] * np.ones(50)
-    answer = law.answer(p, felt)
+    found = law.evaluate(p, given)
     e = 1e-9
     for field, total in (
-        ("travel", answer.by_travel), ("rate", answer.by_rate),
-        ("way", answer.by_memory * answer.memory_by_travel), ("memory", answer.by_memory * answer.memory_by_memory),
+        ("travel", found.by_travel), ("rate", found.by_rate),
+        ("increment", found.by_memory * found.memory_by_travel), ("memory", found.by_memory * found.memory_by_memory),
     ):  # fmt: skip
-        if field in ("way", "memory") and not law.remembers:
+        if field in ("increment", "memory") and not law.has_memory:
             continue
-        up, down = (law.answer(p, felt._replace(**{field: getattr(felt, field) + side})).force for side in (e, -e))
+        up, down = (law.evaluate(p, given._replace(**{field: getattr(given, field) + side})).force for side in (e, -e))
         np.testing.assert_allclose(total, (up - down) / (2 * e), atol=1e-4 * np.abs(total).max() + 1e-6)
-    sensitivity = law.sensitivity(p, felt)
+    of_force, of_memory = law.differentiate(p, given)
     for which in range(len(parameters)):
         if law is FRICTION and parameters[0] == 0:
             continue  # a corner: what F does to the way over which it builds up has no slope there
         step = np.zeros_like(p)
         step[which] = 1e-6 * max(parameters[which], 1e-3)
-        more, less = (law.answer(p + side * step, felt).force for side in (1, -1))
+        more, less = (law.evaluate(p + side * step, given).force for side in (1, -1))
         width = 2 * step[which]
-        total = sensitivity.force[which] + answer.by_memory * sensitivity.memory[which]
+        total = of_force[which] + found.by_memory * of_memory[which]
         np.testing.assert_allclose(total, (more - less) / width, atol=1e-4 * np.abs(total).max() + 1e-9, rtol=1e-5)
 
 
@@ -189,6 +189,6 @@ def test_friction_slides_at_its_force_and_holds_at_its_stiffness() -> None:
     """Dahl: far along one way the force is F; over ways much shorter than F/s it is a spring of s."""
     p = np.array([[100.0], [2e5]])
     far = ElementInput(*(np.array([value]) for value in (0.1, 0.0, 0.1, -1.0)))
-    assert FRICTION.answer(p, far).force[0] == pytest.approx(100.0)
+    assert FRICTION.evaluate(p, far).force[0] == pytest.approx(100.0)
     near = ElementInput(*(np.array([value]) for value in (1e-7, 0.0, 1e-7, 0.0)))
-    assert FRICTION.answer(p, near).force[0] == pytest.approx(2e5 * 1e-7, rel=1e-3)
+    assert FRICTION.evaluate(p, near).force[0] == pytest.approx(2e5 * 1e-7, rel=1e-3)

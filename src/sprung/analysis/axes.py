@@ -20,7 +20,7 @@ def axes_of(heights: Heights) -> str:
     heights
         How high things are, as far as it was measured.
     """
-    if not heights.known:
+    if not heights.has_effect:
         return (
             "no heights are given; I_xx and I_yy refer to the actual roll and pitch axes and include the lateral motion of "
             "the wheels"

@@ -8,7 +8,6 @@ from dataclasses import replace
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.campaign import Campaign
 from sprung.faults import (
-    SIGNIFICANT,
     Consistency,
     FaultIsolation,
     Hypothesis,
@@ -16,17 +15,23 @@ from sprung.faults import (
     consistency_of,
     decays_without_wheel_sensors,
     isolate,
-    score_faults_of,
+    reference_noise,
+    residual_table,
 )
 from sprung.progress import Progress, Step
 from sprung.selection import score_linear_terms
 from sprung.vehicle import Tracks
 
+_NEARLY_ALL = 0.9
+"""Share of a misfit that a model term has to explain by its score test to be tried before any fault."""
+
 
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains the recordings wholly, before any further model term is tried."""
-    if _is_term_more_likely(run):
-        return run.noted("isolate_evident_faults", "a model term is tried first", "its score is the largest")
+    term = None if _is_consistent(run) else _explaining_term(run)
+    if term is not None:
+        why = f"by its score test it explains {100 * _NEARLY_ALL:.0f} % of the misfit and more"
+        return run.noted("isolate_evident_faults", f"{term} is tried first", why)
     run = _with_isolated(run, progress)
     found = _found(run)
     if found is None or not found.is_explained:
@@ -50,14 +55,25 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     return _corrected(run, corrected, "isolate_faults") if corrected else run
 
 
-def _is_term_more_likely(run: Analysis) -> bool:
-    """Whether a model term would gain more than any fault of small size: both are scored in the same fit."""
+def _is_consistent(run: Analysis) -> bool:
+    """Whether the residuals of the present fit are noise alone."""
+    recordings = [decay.file for decay in run.decays]
+    return residual_table(recordings, run.decays, run.fit).is_explained(reference_noise(run.decays, run.fit))
+
+
+def _explaining_term(run: Analysis) -> str | None:
+    """Return the model term that explains nearly all of the misfit by its score test; None where none does."""
     if run.model.structure.is_time_stepped:
-        return False
-    faults = score_faults_of(run.campaign, run.decays, run.fit)
-    largest = max((score.gain for score in faults), default=0.0)
+        return None
     terms = score_linear_terms(run.model)
-    return max((gain - run.model.asked(term) for term, gain in terms.items()), default=0.0) > max(largest, SIGNIFICANT)
+    best = max(terms, key=terms.__getitem__, default=None)
+    table, noise = (
+        residual_table([decay.file for decay in run.decays], run.decays, run.fit),
+        reference_noise(run.decays, run.fit),
+    )
+    if best is None or terms[best] * run.fit.disagreement < _NEARLY_ALL * table.explicable(noise):
+        return None
+    return best if terms[best] > run.model.asked(best) else None
 
 
 def _found(run: Analysis) -> Isolated | None:

@@ -20,7 +20,8 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, BlockSupport, Rows, Vehicle, coordinates, evaluate_quantity, simulate_nonlinear_drops
+from sprung.simulation import BlockSupport, simulate_nonlinear_drops
+from sprung.vehicle import WHEELS, Rows, Vehicle, coordinates, evaluate_quantity
 
 Real = NDArray[np.float64]
 

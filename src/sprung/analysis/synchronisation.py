@@ -22,7 +22,8 @@ from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
 from sprung.estimation import FitResult, Likelihood
 from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
-from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, drop_from_blocks, with_separate_tracks
+from sprung.simulation import drop_from_blocks
+from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
 

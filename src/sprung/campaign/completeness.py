@@ -84,7 +84,7 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
                 _item(("sensor", index, "position")), Problem(where, "no position", "where it sits, m", do)
             )
     for index, load in zip(parsed.numbered("load"), file.load, strict=True):
-        if load.name != EMPTY.name and not load.described and ("load", index, "items") not in parsed.placeholders:
+        if load.name != EMPTY.name and not load.is_described and ("load", index, "items") not in parsed.placeholders:
             where, do = parsed.where("load", index), "A load needs items = [...] or added = {...}."
             yield MissingEntry(
                 _item(("load", index, "items")), Problem(where, "neither items nor added", "what it is", do)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sprung.estimation.estimates import estimate_of
 from sprung.estimation.statistics import FitStatistics
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue
-from sprung.vehicle import CHARACTERISTICS, DERIVED, WHEELS, LinearModel, characteristic, wheel_loads
+from sprung.vehicle import CHARACTERISTICS, DERIVED, WHEELS, LinearModel, evaluate_quantity, wheel_loads
 
 Real = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ def characteristics_of(fit: FitStatistics, known: Mapping[str, KnownValue], empt
         if name in DERIVED:
             found[name] = estimate_of(fit, known, name)
         elif one.needs <= set(fit.names):
-            value, gradient = characteristic(name, fit.names, fit.values)
+            value, gradient = evaluate_quantity(name, fit.names, fit.values)
             found[name] = _estimate(fit, value, gradient, one.unit, one.signed)
     return found | _wheel_loads(fit, empty)
 

@@ -104,7 +104,7 @@ class Likelihood:
     @cached_property
     def loads(self) -> LinearModel:
         """The models of all loads side by side."""
-        return LinearModel.side_by_side(self.model_of)
+        return LinearModel.stack(self.model_of)
 
     @cached_property
     def span(self) -> float:

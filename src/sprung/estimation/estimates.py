@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import LOAD_MASS, PARAMETERS, evaluate_quantity
+from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -27,8 +27,6 @@ _HARDLY = (
     "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
     "would determine it"
 )
-
-_DERIVED_UNITS = {"total_mass": "kg", "front_axle_mass": "kg", "rear_axle_mass": "kg", "wheelbase": "m"}
 
 _PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
 
@@ -140,7 +138,7 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) 
     Estimate
     """
     value, gradient = evaluate_quantity(name, fit.names, fit.values)
-    unit = _DERIVED_UNITS[name] if name in _DERIVED_UNITS else PARAMETERS[name].unit
+    unit = DERIVED[name].unit if name in DERIVED else PARAMETERS[name].unit
     if name in known and known[name].is_exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")

@@ -64,9 +64,9 @@ def modulating_function_estimate(
         Parameters, SI, by name; None where the sensors do not see every coordinate, or no vehicle explains the records.
     """
     wheelbase = outline.wheelbase
-    moved = [model.seen_from_front_axle(wheelbase) for model in models]
+    moved = [model.referred_to_front_axle(wheelbase) for model in models]
     names = moved[0].names
-    seen = Rows.of([sensor.row.seen_from_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
+    seen = Rows.of([sensor.row.referred_to_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
     sprung, ahead = 1 + names.index("m_s"), 1 + names.index("a")
     # m_s a² stands where I_yy does: only their sum can be found.
     keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))

@@ -110,7 +110,7 @@ def _of_drop(
     way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
     felt = ElementInput(travel.T, rate.T, way.T, np.zeros_like(travel.T))
     chosen = [model.names.index(name) for name in brought]
-    unit = model.forces.sensitivity(here, felt).force[:, :, chosen]
+    unit = model.forces.differentiate(here, felt)[0][:, :, chosen]
     pushes = -np.linalg.solve(model.linear.matrices(here).M, G.T)
     into = left[:, len(X) :] @ pushes
     modal = np.einsum("jf,tfb->jbt", into, unit, optimize=True)

@@ -1,6 +1,6 @@
 """Modal coordinates: poles and shapes at the sensors, and their derivatives by the parameters.
 
-Every array may have leading axes: of loads where the model is one of several `side_by_side`, of vehicles where the values
+Every array may have leading axes: of loads where several models are stacked, of vehicles where the values
 have them.
 """
 

@@ -114,7 +114,7 @@ class SteppedLikelihood:
             centred = decay.values - decay.values.mean(axis=1, keepdims=True)
             record[:, : decay.samples] = np.where(decay.usable[:, None], centred, 0.0)
         one = next(iter(models.values()))
-        begin = np.zeros((len(decays), one.state + len(one.forces.remembering)))
+        begin = np.zeros((len(decays), one.state_size + len(one.forces.with_memory)))
         given = min(begin.shape[1], states.shape[1])
         begin[:, :given] = states[:, :given]
         return cls(
@@ -153,13 +153,13 @@ class SteppedLikelihood:
     @cached_property
     def reach(self) -> Real:
         """How far from rest a decay may begin, in standard deviations; shape (state + memory,)."""
-        state = self.models[0].state
+        state = self.models[0].state_size
         return np.concatenate([reach(state), np.full(self.begin.shape[1] - state, _MEMORY)])
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> SteppedLikelihood:
         """Return the likelihood of other decays, their initial states being those of the vehicle without nonlinear forces."""
         one = next(iter(self.by_load.values()))
-        begin = np.zeros((len(decays), one.state + len(one.forces.remembering)))
+        begin = np.zeros((len(decays), one.state_size + len(one.forces.with_memory)))
         return SteppedLikelihood.of(decays, self.by_load, self.sensors, begin, bool(self.tilting), self.longest)
 
     def beginning(self, states: Real) -> SteppedLikelihood:
@@ -204,8 +204,8 @@ class SteppedLikelihoodAt:
     @cached_property
     def _path(self) -> Trajectory:
         steps = self.likelihood.every * (self.likelihood.values.shape[2] - 1)
-        states, memories = np.split(self.begin, [self.likelihood.models[0].state], axis=1)
-        return self._stepper.follow(states, memories, steps)
+        states, memories = np.split(self.begin, [self.likelihood.models[0].state_size], axis=1)
+        return self._stepper.integrate(states, memories, steps)
 
     @cached_property
     def _accelerations(self) -> tuple[Real, Real]:
@@ -262,10 +262,10 @@ class SteppedLikelihoodAt:
         drops, channels, _ = likelihood.values.shape
         parameters, unknown = len(self.values), len(self.values) + self.begin.shape[1]
         total, squares = np.zeros((drops, channels, unknown + 1)), np.zeros((drops, channels, unknown + 1, unknown + 1))
-        for change in self._stepper.changes(self._path):
-            chosen = slice(-change.first % every, None, every)
-            first = (change.first + (-change.first % every)) // every
-            driven = np.concatenate([change.states[chosen], change.forces[chosen]], axis=2)
+        for step, states, forces in self._stepper.sensitivities(self._path):
+            chosen = slice(-step % every, None, every)
+            first = (step + (-step % every)) // every
+            driven = np.concatenate([states[chosen], forces[chosen]], axis=2)
             if not len(driven):
                 continue
             last = first + len(driven)
@@ -275,7 +275,7 @@ class SteppedLikelihoodAt:
             all_of = np.empty((drops, channels, last - first, unknown + 1))
             readings = S @ moved
             readings[..., :parameters] += np.einsum("kdi,cip->kdcp", self._motion[first:last], by_S, optimize=True)
-            turned = inputs[:, :, None, 1:3] @ change.states[chosen][:, :, 1:3]
+            turned = inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3]
             readings -= likelihood.tilting * STANDARD_GRAVITY * turned
             all_of[..., :unknown] = readings.transpose(1, 2, 0, 3)
             all_of[..., :unknown] *= likelihood.there[:, None, first:last, None]
@@ -329,17 +329,17 @@ class SteppedLikelihoodAt:
         all forces are what they were.
         """
         forces, likelihood = self._stepper.forces, self.likelihood
-        state = likelihood.models[0].state
+        state = likelihood.models[0].state_size
         X, V, remembered = np.split(self.begin, [state // 2, state], axis=1)
         gone = np.abs(remembered) > _MOST
         if not gone.any():
             return None
         rows = forces.rows.at(self.values)
         memory = np.zeros((len(remembered), forces.number))
-        memory[:, forces.remembering] = remembered
+        memory[:, forces.with_memory] = remembered
         travel = X @ rows.T
-        answer = forces.answer(self.values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
-        lost = np.where(gone, remembered, 0.0) * answer.by_memory[:, forces.remembering] @ rows[forces.remembering]
+        answer = forces.evaluate(self.values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
+        lost = np.where(gone, remembered, 0.0) * answer.by_memory[:, forces.with_memory] @ rows[forces.with_memory]
         stiffness = np.array([model.linear.matrices(self.values).K for model in likelihood.models])[likelihood.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
         return np.hstack([X, V, np.where(gone, 0.0, remembered)]) - likelihood.sag(self.values)
@@ -363,7 +363,7 @@ class SteppedLikelihoodAt:
         What was before nobody knows: friction cannot be followed backward in time.
         """
         path, chosen = self._path, slice(None, self.likelihood.every * after, self.likelihood.every)
-        memories = path.memories[chosen, position][:, self._stepper.forces.remembering]
+        memories = path.memories[chosen, position][:, self._stepper.forces.with_memory]
         whole = np.hstack([path.states[chosen, position], memories])
         motion: Real = (whole - self.likelihood.sag(self.values)[position]).T
         return motion

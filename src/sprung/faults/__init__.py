@@ -6,15 +6,15 @@ fitted, and none is accepted on suspicion: it has to explain the recordings, bey
 well.
 """
 
-from sprung.faults.consistency import SIGNIFICANT, Consistency, consistency_of, score_faults_of
+from sprung.faults.consistency import Consistency, consistency_of
 from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import Isolated, isolate
 from sprung.faults.isolation import FaultIsolation, decays_without_wheel_sensors
+from sprung.faults.residual_table import reference_noise, residual_table
 from sprung.faults.statements.search import Examined, examine
 
 __all__ = [
-    "SIGNIFICANT",
     "Consistency",
     "Examined",
     "FaultIsolation",
@@ -25,5 +25,6 @@ __all__ = [
     "detect_drift",
     "examine",
     "isolate",
-    "score_faults_of",
+    "reference_noise",
+    "residual_table",
 ]

@@ -12,7 +12,7 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
 from sprung.faults.isolation import CandidateFit
-from sprung.preprocess import FreeDecay, is_ac_coupled
+from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Rows, Sensor
 
@@ -108,11 +108,11 @@ class ChannelPrediction:
 
     def gravity_allows(self, gain: float) -> bool:
         """Whether the reading at rest agrees with a gain: a sensor that shows gravity shows it with the same gain."""
-        levels = [decay.rest.level[self.channel] for decay in self.decays if not is_ac_coupled(decay)[self.channel]]
-        level = float(np.median(levels)) if levels else np.nan
-        if not np.isfinite(level):  # AC-coupled, zeroed at rest, or no rest was recorded
+        levels = [decay.rest.level[self.channel] for decay in self.decays]
+        level = float(np.median(levels)) / STANDARD_GRAVITY
+        if not np.isfinite(level) or abs(level) < _OFFSET * abs(gain):  # AC-coupled, zeroed at rest, or no rest
             return True
-        return abs(gain - level / STANDARD_GRAVITY) < _OFFSET * max(abs(gain), 1.0)
+        return abs(gain - level) < _OFFSET * max(abs(gain), 1.0)
 
     def delayed_motion(self, delay: float) -> tuple[Real, Real]:
         """Return the accelerations that a channel with a delay, s, shows, and their rates; shape (coordinate, sample) each."""

@@ -39,6 +39,8 @@ class Hypothesis:
         The recording that is left out altogether; None where none is.
     is_specific
         Whether it says what is wrong, not only where.
+    is_rough
+        Whether the residuals are those of one step from far away, which a fit may leave much smaller.
     """
 
     fault: Fault
@@ -49,6 +51,7 @@ class Hypothesis:
     free: int = 0
     recording: str | None = None
     is_specific: bool = True
+    is_rough: bool = False
 
     @property
     def is_explained(self) -> bool:
@@ -73,7 +76,7 @@ class Hypothesis:
         if self.remedy != "corrected":
             return self, 0
         candidate = isolation.fit(self.correction, self.candidate.fit)
-        return replace(self, table=candidate.table, candidate=candidate), 1
+        return replace(self, table=candidate.table, candidate=candidate, is_rough=False), 1
 
     def score(self, overdispersion: float = 1.0) -> float:
         """Return the information criterion (Schwarz, Ann. Stat. 6 (1978) 461); the smallest is the best."""

@@ -192,7 +192,7 @@ def _confirm_best(
     fits
         How many were made.
     """
-    remaining, rest, fits = [one for one in hypotheses if one.is_specific], list(hypotheses), 0
+    remaining, rest, fits = [one for one in hypotheses if _is_promising(isolation, one)], list(hypotheses), 0
     while remaining and fits < _MOST_FITS:
         best = best_of(remaining, SIGNIFICANT)
         remaining.remove(best)
@@ -205,6 +205,17 @@ def _confirm_best(
         if _is_convincing(isolation, confirmed, rest):
             return confirmed, rest, fits
     return None, rest, fits
+
+
+def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
+    """Whether a fit of a hypothesis may be convincing, by what it predicts."""
+    base = isolation.base
+    if not hypothesis.is_specific:
+        return False
+    if hypothesis.is_rough:
+        return not base.is_explained
+    explains = base.is_explained or hypothesis.table.misfit(hypothesis.candidate.noise) < _FEW * base.misfit
+    return explains and base.table.cost - hypothesis.score() > SIGNIFICANT
 
 
 def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:

@@ -73,6 +73,11 @@ class ResidualTable:
         there = counts > 0
         return float(np.sum(counts[there] * np.log(np.maximum(residual[there] / counts[there], 1e-24))))
 
+    def explicable(self, noise: ReferenceNoise) -> float:
+        """Return what twice the log-likelihood would gain if nothing but noise were left."""
+        counts = self.counts.sum(axis=0)
+        return self.cost - float(np.sum(counts * np.log(noise.level**2)))
+
     def ratio(self, noise: ReferenceNoise) -> Real:
         """Return residual over noise, root-mean-square, of each drop and channel; 0 for what is left out."""
         ratio: Real = np.sqrt(self.residual / np.maximum(self.counts, 1)) / noise.level

@@ -13,9 +13,9 @@ from sprung.estimation import parameters_from_matrices
 from sprung.modal import state_variable_method
 from sprung.paper.added_mass import added_mass
 from sprung.preprocess import prepare
-from sprung.simulation import DEFAULT_HEIGHT, half_sine_bumps, simulate
+from sprung.simulation import DEFAULT_HEIGHT, drop_from_blocks, half_sine_bumps, simulate
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel, drop_from_blocks
+from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel
 
 Real = NDArray[np.float64]
 

@@ -20,6 +20,7 @@ from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimation import Coordinates, Likelihood, PriorsAndConstraints
 from sprung.preprocess import FreeDecay, unknown_baseline
+from sprung.simulation import drop_from_blocks
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     LOAD_MASS,
@@ -31,7 +32,6 @@ from sprung.vehicle import (
     Tracks,
     Vehicle,
     Wheel,
-    drop_from_blocks,
     parameter_names,
     seven_degrees_of_freedom,
 )

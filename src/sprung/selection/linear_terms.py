@@ -25,7 +25,7 @@ _UNLIKELY = 0.25
 
 def select_roll_axis_height(way: ModelSearch) -> ModelSearch:
     """Let the records decide at which of two heights the body is carried, where they may."""
-    if not way.structure.heights.undecided:
+    if not way.structure.heights.is_ambiguous:
         return way
     other = way.refit(replace(way.structure, carried_at="roll axis"))
     return other if other.fit.loglikelihood > way.fit.loglikelihood else way

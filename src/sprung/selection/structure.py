@@ -186,7 +186,7 @@ def choose_structure(
         known |= load.uncertain_masses
     undecided = tracks is None and campaign.model.tracks is None and not apart and not together
     # Where heights are known they say all that gravity does.
-    said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.known else ()))
+    said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.has_effect else ()))
     free = tuple(extra for extra in EXTRAS if wanted is None and extra not in said)
     ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
     return ModelStructure(campaign, chosen, ordered, known, undecided, free)

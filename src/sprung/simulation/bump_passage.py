@@ -10,9 +10,11 @@ import numpy as np
 from sprung.campaign import Campaign, Drop, KnownValueLike, ModelChoice
 from sprung.errors import Problems
 from sprung.simulation.arguments import name_files
+from sprung.simulation.ground import tyre_rates
+from sprung.simulation.half_sine_bump import drive_over_half_sine_bump
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, Wheel, drive_over_half_sine_bump, tyre_rates
+from sprung.vehicle import Load, Sensor, Vehicle, Wheel
 
 
 def half_sine_bumps(

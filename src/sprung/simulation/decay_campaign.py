@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike
 from sprung.campaign import Campaign, Drop, KnownValueLike, ModelChoice
 from sprung.errors import Problems
 from sprung.simulation.arguments import name_files
+from sprung.simulation.nonlinear_motion import simulate_nonlinear_decays
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, coordinates, free_decay, nonlinear_elements, simulate_nonlinear_decays
+from sprung.vehicle import Load, Sensor, Vehicle, coordinates, free_decay, nonlinear_elements
 
 
 def free_decays(

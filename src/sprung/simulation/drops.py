@@ -13,17 +13,11 @@ import numpy as np
 from sprung.campaign import Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
+from sprung.simulation.linear_drop import drop_from_blocks
+from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_drops
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import (
-    BlockSupport,
-    Load,
-    Sensor,
-    Vehicle,
-    drop_from_blocks,
-    nonlinear_elements,
-    simulate_nonlinear_drops,
-)
+from sprung.vehicle import Load, Sensor, Vehicle, nonlinear_elements
 
 DEFAULT_HEIGHT = 0.05
 """Height of the blocks where a drop does not say, m."""

@@ -94,7 +94,7 @@ class SimulationSetup:
         )
         given_loads = records(Load, "loads", loads or (), problems)
         for i, load in enumerate(given_loads):
-            if not load.described:
+            if not load.is_described:
                 do = "A load needs items = [...] or added = {...}."
                 problems.add(f"simulate: loads[{i}]", "neither items nor added", "what the load adds", do)
         all_loads = (EMPTY, *(load for load in given_loads if load != EMPTY))

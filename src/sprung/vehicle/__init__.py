@@ -1,9 +1,14 @@
 """The only room that knows the equations of motion: parameters, elements, matrices, loads, sensors, exact response."""
 
-from sprung.vehicle.characteristics import CHARACTERISTICS, WHEEL_LOADS, Characteristic, characteristic, wheel_loads
+from sprung.vehicle.characteristics import (
+    CHARACTERISTICS,
+    DERIVED,
+    WHEEL_LOADS,
+    Characteristic,
+    evaluate_quantity,
+    wheel_loads,
+)
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
-from sprung.vehicle.derived import DERIVED, evaluate_quantity
-from sprung.vehicle.drop import ContactEvent, DropMotion, LinearSegment, drop_from_blocks
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -17,13 +22,11 @@ from sprung.vehicle.elements import (
     seven_degrees_of_freedom,
 )
 from sprung.vehicle.force_laws import ElementInput
-from sprung.vehicle.ground import static_wheel_loads, tyre_rates
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
 from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
-from sprung.vehicle.nonlinear_simulation import BlockSupport, simulate_nonlinear_decays, simulate_nonlinear_drops
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
     EXTRA_PARAMETERS,
@@ -36,9 +39,9 @@ from sprung.vehicle.parameters import (
     separate_track_names,
     with_separate_tracks,
 )
-from sprung.vehicle.response import Motion, affine_response, drive_over_half_sine_bump, free_decay
+from sprung.vehicle.response import Motion, affine_response, free_decay
 from sprung.vehicle.sensor import Sensor
-from sprung.vehicle.stepping import Sensitivities, Stepper, Trajectory
+from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
@@ -61,11 +64,8 @@ __all__ = [
     "WHEELS_AT",
     "WHEEL_LOADS",
     "Added",
-    "BlockSupport",
     "CarriedAt",
     "Characteristic",
-    "ContactEvent",
-    "DropMotion",
     "Element",
     "ElementInput",
     "Finite",
@@ -73,7 +73,6 @@ __all__ = [
     "Item",
     "LinearLaw",
     "LinearModel",
-    "LinearSegment",
     "Load",
     "Matrices",
     "Motion",
@@ -85,7 +84,6 @@ __all__ = [
     "Positive",
     "Row",
     "Rows",
-    "Sensitivities",
     "Sensor",
     "Stepper",
     "Tracks",
@@ -93,11 +91,8 @@ __all__ = [
     "Vehicle",
     "Wheel",
     "affine_response",
-    "characteristic",
     "checked_record",
     "coordinates",
-    "drive_over_half_sine_bump",
-    "drop_from_blocks",
     "evaluate_quantity",
     "free_decay",
     "ground_contact_elements",
@@ -109,10 +104,6 @@ __all__ = [
     "problems_of_record",
     "separate_track_names",
     "seven_degrees_of_freedom",
-    "simulate_nonlinear_decays",
-    "simulate_nonlinear_drops",
-    "static_wheel_loads",
-    "tyre_rates",
     "wheel_loads",
     "with_separate_tracks",
 ]

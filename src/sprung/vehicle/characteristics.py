@@ -1,30 +1,28 @@
-"""What a vehicle is first asked for: masses, loads, centre of gravity, ride and wheel-hop frequencies, damping ratios.
+"""Quantities that follow from the parameters: masses, centre of gravity, ride and wheel-hop frequencies, damping ratios.
 
-Every quantity follows from the parameters of the empty vehicle. Those of an axle are of the quarter car of that axle: one
-wheel, its spring and damper at their mean of left and right, and half the sprung mass that the axle carries (Gillespie,
-Fundamentals of Vehicle Dynamics, chapter 5). They are of the linear vehicle: springs that slide, a damper at the mean of its
-rates in compression and rebound.
+All are of the empty vehicle. Those of an axle are of the quarter car of that axle: one wheel, its spring and damper at their
+mean of left and right, and half the sprung mass that the axle carries (Gillespie, Fundamentals of Vehicle Dynamics,
+chapter 5). They are of the linear vehicle: sliding friction, a damper at the mean of its rates in compression and rebound.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.derived import DERIVED, evaluate_quantity
 from sprung.vehicle.kinematics import HEAVE, WHEELS_AT
 from sprung.vehicle.model import LinearModel
 
 Real = NDArray[np.float64]
-Values = Mapping[str, complex]
-"""Parameters by name, SI; complex, for differentiation by complex steps."""
+Values = Mapping[str, Any]
+"""Parameters by name, SI: numbers, or complex arrays for differentiation by complex steps."""
 
 _STEP = 1e-30
-"""Imaginary step relative to a parameter: no difference is taken, so it may be as small as the numbers allow."""
+"""Imaginary step: no difference is taken, so that it may be as small as the numbers allow."""
 
 
 class Characteristic(NamedTuple):
@@ -39,70 +37,70 @@ class Characteristic(NamedTuple):
     value
         Analytic function of the parameters by name, those that a model lacks left out.
     needs
-        Parameters without which it says nothing new.
+        Parameters without which it is of no interest.
     signed
         Whether it may be negative.
     """
 
     unit: str
     meaning: str
-    value: Callable[[Values], complex]
+    value: Callable[[Values], Any]
     needs: frozenset[str] = frozenset()
     signed: bool = False
 
 
-def _corner_mass(p: Values, axle: str) -> complex:
+def _corner_mass(p: Values, axle: str) -> Any:
     """Sprung mass on one wheel, kg: half of what the axle carries."""
-    other = p["b"] if axle == "f" else p["a"]
-    return p["m_s"] * other / (p["a"] + p["b"]) / 2
+    lever = p["b"] if axle == "f" else p["a"]
+    return p["m_s"] * lever / (p["a"] + p["b"]) / 2
 
 
-def _damper(p: Values, axle: str) -> complex:
+def _damper_rate(p: Values, axle: str) -> Any:
     """Damper rate, N s/m: the mean of compression and rebound, where these differ."""
     return p[f"c_s{axle}"] * (1 + p.get(f"r_{axle}", 1.0)) / 2
 
 
-def _ride_frequency(p: Values, axle: str) -> complex:
+def _ride_frequency(p: Values, axle: str) -> Any:
     spring, tyre = p[f"k_s{axle}"], p[f"k_t{axle}"]
     return (spring * tyre / (spring + tyre) / _corner_mass(p, axle)) ** 0.5 / (2 * np.pi)
 
 
-def _ride_damping(p: Values, axle: str) -> complex:
-    return _damper(p, axle) / (2 * (p[f"k_s{axle}"] * _corner_mass(p, axle)) ** 0.5)
+def _ride_damping(p: Values, axle: str) -> Any:
+    return _damper_rate(p, axle) / (2 * (p[f"k_s{axle}"] * _corner_mass(p, axle)) ** 0.5)
 
 
-def _hop_frequency(p: Values, axle: str) -> complex:
+def _hop_frequency(p: Values, axle: str) -> Any:
     return ((p[f"k_s{axle}"] + p[f"k_t{axle}"]) / p[f"m_u{axle}"]) ** 0.5 / (2 * np.pi)
 
 
-def _hop_damping(p: Values, axle: str) -> complex:
+def _hop_damping(p: Values, axle: str) -> Any:
     stiffness = p[f"k_s{axle}"] + p[f"k_t{axle}"]
-    return (_damper(p, axle) + p.get(f"c_t{axle}", 0.0)) / (2 * (stiffness * p[f"m_u{axle}"]) ** 0.5)
+    return (_damper_rate(p, axle) + p.get(f"c_t{axle}", 0.0)) / (2 * (stiffness * p[f"m_u{axle}"]) ** 0.5)
 
 
-def _total_mass(p: Values) -> complex:
+def _total_mass(p: Values) -> Any:
     return p["m_s"] + 2 * (p["m_uf"] + p["m_ur"])
 
 
-def _axle_mass(p: Values, axle: str) -> complex:
+def _axle_mass(p: Values, axle: str) -> Any:
     return 2 * (_corner_mass(p, axle) + p[f"m_u{axle}"])
 
 
-def _cg_from_front_axle(p: Values) -> complex:
+def _cg_from_front_axle(p: Values) -> Any:
     return _axle_mass(p, "r") / _total_mass(p) * (p["a"] + p["b"])
 
 
-def _cg_left(p: Values) -> complex:
+def _cg_left(p: Values) -> Any:
     return p["m_s"] * p["y_s"] / _total_mass(p)
 
 
-def _of_axle(function: Callable[[Values, str], complex], axle: str) -> Callable[[Values], complex]:
+def _of_axle(function: Callable[[Values, str], Any], axle: str) -> Callable[[Values], Any]:
     return lambda p: function(p, axle)
 
 
 _AXLES = {"front": "f", "rear": "r"}
 
-_AXLE_QUANTITIES: Mapping[str, tuple[str, str, Callable[[Values, str], complex]]] = {
+_AXLE_QUANTITIES: Mapping[str, tuple[str, str, Callable[[Values, str], Any]]] = {
     "ride_frequency": ("Hz", "natural frequency of the body on spring and tyre, {} quarter car", _ride_frequency),
     "ride_damping": ("1", "damping ratio of the body on its springs, {} quarter car", _ride_damping),
     "hop_frequency": ("Hz", "natural frequency of the wheel between spring and tyre, {} quarter car", _hop_frequency),
@@ -127,12 +125,18 @@ CHARACTERISTICS: Mapping[str, Characteristic] = {
         signed=True,
     ),
     **{
-        f"{name}_{of}": Characteristic(unit, meaning.format(name), _of_axle(function, axle))
-        for of, (unit, meaning, function) in _AXLE_QUANTITIES.items()
+        f"{name}_{quantity}": Characteristic(unit, meaning.format(name), _of_axle(function, axle))
+        for quantity, (unit, meaning, function) in _AXLE_QUANTITIES.items()
         for name, axle in _AXLES.items()
     },
 }
-"""By name, in the order in which tables show them. Static wheel loads, which matrices tell, are `wheel_loads`."""
+"""By name, in the order in which tables show them. Static wheel loads, which follow from the matrices, are `wheel_loads`."""
+
+DERIVED: Mapping[str, Characteristic] = {
+    **{name: CHARACTERISTICS[name] for name in ("total_mass", "front_axle_mass", "rear_axle_mass")},
+    "wheelbase": Characteristic("m", "front axle to rear axle", lambda p: p["a"] + p["b"]),
+}
+"""Those that a campaign may state as known beforehand, by the names it gives them."""
 
 WHEEL_LOADS: Mapping[str, str] = {
     "front_wheel_load": "static load of each front wheel of the empty vehicle",
@@ -145,13 +149,13 @@ WHEEL_LOADS: Mapping[str, str] = {
 """Meaning of the static wheel loads, N, by name: one for each axle where left and right are alike."""
 
 
-def characteristic(name: str, names: Sequence[str], values: Real) -> tuple[float, Real]:
-    """Return a characteristic and its gradient.
+def evaluate_quantity(name: str, names: Sequence[str], values: Real) -> tuple[float, Real]:
+    """Return a parameter or a quantity that follows from the parameters, and its gradient.
 
     Parameters
     ----------
     name
-        One of `CHARACTERISTICS`.
+        One of `names`, of `DERIVED` or of `CHARACTERISTICS`.
     names, values
         Parameters of a vehicle, SI; values of shape (parameter,).
 
@@ -162,13 +166,15 @@ def characteristic(name: str, names: Sequence[str], values: Real) -> tuple[float
     gradient
         By each parameter, SI, shape (parameter,); exact to rounding.
     """
-    if name in DERIVED:
-        return evaluate_quantity(name, names, values)
-    function = CHARACTERISTICS[name].value
-    told = dict(zip(names, values.tolist(), strict=True))
-    # f(p + ih) = f(p) + ih f'(p) + O(h²): the derivative is read off the imaginary part, without any cancellation.
-    slopes = [complex(function(told | {one: complex(value, _STEP)})).imag / _STEP for one, value in told.items()]
-    return complex(function(told)).real, np.array(slopes)
+    if name in names:
+        position = names.index(name)
+        return float(values[position]), np.eye(1, len(names), position)[0]
+    characteristic = DERIVED.get(name) or CHARACTERISTICS[name]
+    # f(p + ih) = f(p) + ih f'(p) + O(h²): the imaginary part holds the derivative, without any cancellation (Squire and Trapp,
+    # SIAM Rev. 40 (1998) 110). One evaluation takes a step in every parameter.
+    steps = values[:, None] + 1j * _STEP * np.eye(len(names))
+    found = np.broadcast_to(characteristic.value(dict(zip(names, steps, strict=True))), len(names))
+    return float(found[0].real), found.imag / _STEP
 
 
 def wheel_loads(model: LinearModel, values: Real, gravity: float = STANDARD_GRAVITY) -> tuple[Real, Real]:
@@ -196,7 +202,7 @@ def wheel_loads(model: LinearModel, values: Real, gravity: float = STANDARD_GRAV
     M, _, K = model.matrices(values)
     dM, _, dK = model.slopes(values)
     heave = HEAVE[: len(M)]
-    # Lifting everything alike strains nothing but the tyres: what K makes of it is their rates.
+    # Heave strains nothing but the tyres: K times it is their rates.
     tyres, tyre_slopes = (K @ heave)[WHEELS_AT], (dK @ heave)[:, WHEELS_AT]
     sag = np.linalg.solve(K, gravity * M @ heave)
     sag_slopes = np.linalg.solve(K, (gravity * dM @ heave - dK @ sag).T).T

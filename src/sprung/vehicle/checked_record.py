@@ -16,7 +16,7 @@ from sprung.errors import InputError, Problem, did_you_mean
 Record = TypeVar("Record")
 
 UNKNOWN_KEY = "unexpected_keyword_argument"
-"""What the validation calls a key that the record does not have."""
+"""Error type of the validation for a key that the record does not have."""
 
 _CHECKED = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
@@ -38,7 +38,7 @@ def checked_record(model: type[Record]) -> type[Record]:
     Raises
     ------
     InputError
-        By the constructor of what is returned, if a value is wrong; with every problem.
+        By the constructor of the class returned, if a value is wrong; with every problem.
     """
     made = dataclass(frozen=True, kw_only=True, slots=True, config=_CHECKED)(model)
     construct = cast("Callable[..., None]", made.__init__)
@@ -57,12 +57,12 @@ def checked_record(model: type[Record]) -> type[Record]:
 
 
 def parse_record(model: type[Record], keys: Mapping[str, Any]) -> Record:
-    """Return the record that a mapping of its keys describes, the tables in it records too.
+    """Return the record that a mapping of its keys describes, with records for the tables in it.
 
     Parameters
     ----------
     model
-        Made by `checked_record`.
+        A class made by `checked_record`.
     keys
         As a campaign file holds them.
 
@@ -73,7 +73,7 @@ def parse_record(model: type[Record], keys: Mapping[str, Any]) -> Record:
     Raises
     ------
     pydantic.ValidationError
-        If they describe none; see `problems_of_record`.
+        If they describe no valid record; see `problems_of_record`.
     """
     return cast("Record", _adapter(cast("Any", model)).validate_python(dict(keys)))
 
@@ -84,16 +84,16 @@ def _adapter(model: Any) -> TypeAdapter[Any]:
 
 
 def problems_of_record(model: type, error: ValidationError, where: str) -> Iterator[Problem]:
-    """Yield what is wrong with the values of a record.
+    """Yield the problems of the values of a record.
 
     Parameters
     ----------
     model
         The record's class.
     error
-        What its validation found.
+        Of its validation.
     where
-        What to call the record.
+        Name of the record in the problems.
 
     Yields
     ------
@@ -102,14 +102,14 @@ def problems_of_record(model: type, error: ValidationError, where: str) -> Itera
     for fault in error.errors(include_url=False):
         place, message = ".".join(str(part) for part in (where, *fault["loc"])), fault["msg"]
         if fault["type"] == UNKNOWN_KEY:
-            # Of a record inside this one the keys are not known here.
+            # The keys of a nested record are not known here.
             known = [field.name for field in fields(model)] if len(fault["loc"]) == 1 else []
             do = did_you_mean(str(fault["loc"][-1]), known) if known else "Correct it."
             yield Problem(place, f"the unknown key '{fault['loc'][-1]}'", "a key that sprung knows", do)
         elif fault["type"] == "value_error":
             sentence = message.removeprefix("Value error, ")
             do = f"{sentence[0].upper()}{sentence[1:]}."
-            yield Problem(place, "values that do not go together", "a record that holds together", do)
+            yield Problem(place, "inconsistent values", "consistent values", do)
         elif fault["type"].startswith("missing"):
             yield Problem(place, "nothing", "a value", f"Add {fault['loc'][-1]} = ... to it.")
         else:

@@ -1,4 +1,4 @@
-"""Elements: everything that stores, dissipates or carries energy, as a row and a law.
+"""Elements: everything that stores or dissipates energy, as a row and a law.
 
 The equations of motion are nothing but sums over elements: an element with the coefficient κ and the row g adds κ g gᵀ
 to M (a mass), C (a damper) or K (a spring). Summed over the elements of `seven_degrees_of_freedom` this is eq. (2) of
@@ -7,7 +7,7 @@ the paper, entry by entry and without its misprints.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -22,16 +22,16 @@ Tracks = Literal["shared", "separate"]
 """Whether springs and dampers of an axle share their half-distance."""
 
 LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine")
-"""Extras, by the name used in a campaign's ``[model]``, which the linear model can carry."""
+"""Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
-"""All extras; those beyond the linear ones are forces with laws of their own."""
+"""All extras; those beyond the linear ones are nonlinear elements."""
 
 
 @shown
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One linear force law.
+    """A linear element: a mass, a damper or a spring.
 
     Attributes
     ----------
@@ -40,9 +40,9 @@ class Element:
     coefficient
         Name of the parameter that multiplies it, or a known number in SI.
     row
-        The displacement it feels.
+        Its displacement.
     factor
-        By which the coefficient is multiplied, dimensionless.
+        Factor of the coefficient, dimensionless.
     """
 
     law: LinearLaw
@@ -54,18 +54,18 @@ class Element:
 @shown
 @dataclass(frozen=True, slots=True)
 class NonlinearElement:
-    """An element with a law of its own.
+    """An element with a nonlinear force law.
 
     Attributes
     ----------
     law
-        What force it makes.
+        Its force law.
     parameters
         Names of the law's parameters, in its order.
     row
-        The travel it feels, and on which it acts.
+        Its travel, on which its force acts.
     weightless
-        Whether the travel counts from where the empty vehicle would be without gravity, not from where it rests.
+        Whether the travel counts from the empty vehicle without gravity, not from its rest position.
     """
 
     law: ForceLaw
@@ -75,7 +75,7 @@ class NonlinearElement:
 
 
 def half_distances(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
-    """Name the half-distance of each axle's springs and dampers.
+    """Return the names of the half-distances of springs and dampers.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def half_distances(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
 
 
 def inboard_shares(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
-    """Name where each axle's springs and dampers stand on a rigid axle, as parts of its wheels' half-distance.
+    """Return the names of the places of springs and dampers on a rigid axle, as parts of its wheels' half-distance.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def _by_place(letter: str, tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
 def seven_degrees_of_freedom(
     tracks: Tracks = "shared", extras: Collection[str] = (), heights: Heights = LEVEL
 ) -> tuple[Element, ...]:
-    """List the elements of the paper's seven-degree-of-freedom vehicle.
+    """Return the linear elements of the paper's seven-degree-of-freedom vehicle.
 
     Parameters
     ----------
@@ -124,22 +124,22 @@ def seven_degrees_of_freedom(
     extras
         Any of `EXTRAS`; only those of `LINEAR_EXTRAS` add elements.
     heights
-        How high things are, as far as anybody knows; roll and pitch then carry what follows from it.
+        Heights, as far as they are known; they add to the inertia and stiffness of roll and pitch.
 
     Returns
     -------
     tuple of Element
     """
-    return (*_elements(_Places(tracks, extras), extras), *_of_heights(heights))
+    return (*_basic_elements(tracks, extras), *_elements_of_heights(heights))
 
 
 def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
-    """List the forces that no matrix carries.
+    """Return the nonlinear elements of a vehicle.
 
     Parameters
     ----------
     tracks
-        Whether springs and dampers of an axle share their half-distance; friction sits at the springs.
+        Whether springs and dampers of an axle share their half-distance; friction acts at the springs.
     extras
         Any of `EXTRAS`; those of `LINEAR_EXTRAS` add none.
 
@@ -147,16 +147,29 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
     -------
     tuple of Force
     """
-    return tuple(_forces(_Places(tracks, extras), extras))
+    travel = _travels(tracks, extras)
+    elements = []
+    for station in kinematics.WHEELS:
+        axle, spring = station[0], travel(station, "spring")
+        if "friction" in extras:
+            elements.append(NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), spring))
+        if "rebound" in extras:
+            damper = travel(station, "damper")
+            elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
+        if "progressive" in extras:
+            elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
+        if "bump-stop" in extras:
+            elements.append(NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), spring))
+    return tuple(elements)
 
 
 def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
-    """List what the ground takes off the tyres' forces where they would pull.
+    """Return the elements of unilateral tyre contact: they cancel the tension of the linear tyres.
 
     Parameters
     ----------
     extras
-        Any of `EXTRAS`; with ``tyre-damping`` it damps too.
+        Any of `EXTRAS`; with ``tyre-damping`` the tension includes that of the tyre dampers.
 
     Returns
     -------
@@ -171,49 +184,29 @@ def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElem
     )
 
 
-class _Places:
-    """Where springs and dampers stand."""
-
-    def __init__(self, tracks: Tracks, extras: Collection[str]) -> None:
-        self._half_distance = half_distances(tracks)
-        self._share = inboard_shares(tracks) if "rigid-axle" in extras else {}
-
-    def travel(self, station: Wheel, law: LinearLaw) -> Row:
-        """Give what a spring or a damper feels."""
-        at = station[0], law
-        return kinematics.travel(station, self._half_distance[at], self._share.get(at))
+def _travels(tracks: Tracks, extras: Collection[str]) -> Callable[[Wheel, LinearLaw], Row]:
+    """Return the function that gives the travel of the spring or damper at a wheel station."""
+    distances = half_distances(tracks)
+    shares = inboard_shares(tracks) if "rigid-axle" in extras else {}
+    return lambda station, law: kinematics.travel(station, distances[station[0], law], shares.get((station[0], law)))
 
 
-def _forces(places: _Places, extras: Collection[str]) -> Iterator[NonlinearElement]:
-    for station in kinematics.WHEELS:
-        axle = station[0]
-        at_spring = places.travel(station, "spring")
-        if "friction" in extras:
-            yield NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), at_spring)
-        if "rebound" in extras:
-            yield NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), places.travel(station, "damper"))
-        if "progressive" in extras:
-            yield NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), at_spring)
-        if "bump-stop" in extras:
-            yield NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), at_spring)
-
-
-def _elements(places: _Places, extras: Collection[str]) -> Iterator[Element]:
-    uneven = "asymmetry" in extras
-    yield Element("mass", "m_s", kinematics.bounce(uneven))
+def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
+    asymmetric, travel = "asymmetry" in extras, _travels(tracks, extras)
+    yield Element("mass", "m_s", kinematics.bounce(asymmetric))
     yield Element("mass", "I_yy", kinematics.pitch())
     yield Element("mass", "I_xx", kinematics.roll())
     for station in kinematics.WHEELS:
         axle, side = station[0], kinematics.side(station)
         rates: list[tuple[LinearLaw, str, Row]] = [
-            ("spring", f"k_s{axle}", places.travel(station, "spring")),
-            ("damper", f"c_s{axle}", places.travel(station, "damper")),
+            ("spring", f"k_s{axle}", travel(station, "spring")),
+            ("damper", f"c_s{axle}", travel(station, "damper")),
             ("spring", f"k_t{axle}", kinematics.wheel(station)),
         ]
         yield Element("mass", f"m_u{axle}", kinematics.wheel(station))
         for law, rate, row in rates:
             yield Element(law, rate, row)
-            if uneven:
+            if asymmetric:
                 yield Element(law, f"d_{rate.replace('_', '')}", row, side)
         if "tyre-damping" in extras:
             yield Element("damper", f"c_t{axle}", kinematics.wheel(station))
@@ -221,7 +214,7 @@ def _elements(places: _Places, extras: Collection[str]) -> Iterator[Element]:
         yield Element("spring", "w_h", kinematics.roll(), -1.0)
         yield Element("spring", "w_h", kinematics.pitch(), -1.0)
     if "engine" in extras:
-        # It is part of the body's mass and inertia, and leaves it where it moves by itself.
+        # The sprung mass and its inertias include the engine, which is taken off the body and moves by itself.
         yield Element("mass", "m_e", kinematics.engine_bay(), -1.0)
         yield Element("mass", "m_e", kinematics.engine())
         yield Element("spring", "k_e", kinematics.engine_bay() - kinematics.engine())
@@ -229,16 +222,16 @@ def _elements(places: _Places, extras: Collection[str]) -> Iterator[Element]:
     for left, right in kinematics.AXLES:
         axle = left[0]
         if "anti-roll" in extras:
-            yield Element("spring", f"k_a{axle}", places.travel(left, "spring") - places.travel(right, "spring"))
+            yield Element("spring", f"k_a{axle}", travel(left, "spring") - travel(right, "spring"))
         if "rigid-axle" in extras:
             yield Element("mass", f"m_x{axle}", kinematics.wheel(left) - kinematics.wheel(right), 0.5)
 
 
-def _of_heights(heights: Heights) -> Iterator[Element]:
-    if not heights.known:
+def _elements_of_heights(heights: Heights) -> Iterator[Element]:
+    if not heights.has_effect:
         return
     yield Element("mass", "m_s", kinematics.roll(), heights.cg_arm**2)
     for row, arm in zip((kinematics.roll(), kinematics.pitch()), heights.wheel_arms, strict=True):
-        yield Element("spring", "m_s", row, -heights.tipping())
+        yield Element("spring", "m_s", row, -heights.gravity_stiffness())
         for axle in "fr":
             yield Element("mass", f"m_u{axle}", row, 2.0 * arm**2)

@@ -1,8 +1,8 @@
-"""Laws of force that no matrix carries: dry friction, damping that depends on the direction, springs that stiffen, stops.
+"""Force laws that no matrix holds: dry friction, rebound damping, progressive springs, bump stops, the ground.
 
-A law says what force an element makes of the travel and its rate, and of a memory where what went before matters. It gives
-its derivatives along with its values, so that whatever steps it can also differentiate what comes out. Every argument may
-have leading axes; the last one is that of the elements.
+A law returns the force of an element from the travel, its rate and, for hysteresis, a memory. It returns the derivatives
+with the values, so that a time-stepped response can be differentiated exactly. Every argument may have leading axes; the
+last axis is that of the elements.
 """
 
 from __future__ import annotations
@@ -17,42 +17,42 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _SHORTEST = 1e-7
-"""m over which a friction of no force is taken to build up: any length does, and none may be zero."""
+"""m: least travel over which friction builds up. It keeps a friction force of zero from dividing by zero."""
 
 
 class ElementInput(NamedTuple):
-    """What elements feel over a step of time; all of one shape.
+    """Input of elements over one time step; all of one shape.
 
     Attributes
     ----------
     travel, rate
-        At its end, m and m/s.
-    way
-        Travel since its beginning, m.
+        At the end of the step, m and m/s.
+    increment
+        Change of the travel over the step, m.
     memory
-        What was remembered at its beginning.
+        Internal state at the start of the step, dimensionless.
     """
 
     travel: Array
     rate: Array
-    way: Array
+    increment: Array
     memory: Array
 
 
 class ElementForce(NamedTuple):
-    """What a law makes of a travel; each of the travel's shape.
+    """Output of elements over one time step; each of the shape of the travel.
 
     Attributes
     ----------
     force
-        N, in the direction of the travel that it resists.
+        N, positive where it opposes the travel.
     memory
-        What is remembered of the way here.
+        Internal state at the end of the step.
     by_travel, by_rate, by_memory
-        Derivatives of the force, the memory held: N/m, N s/m and N.
+        Derivatives of the force with the memory at the end of the step held: N/m, N s/m and N.
     memory_by_travel, memory_by_memory
-        Derivatives of the memory by the travel, 1/m, and by what was remembered before. By the travel before it has the
-        opposite of the first: memories follow the way, not the place.
+        Derivatives of the memory by the travel, 1/m, and by the memory at the start. The derivative by the travel at the start
+        is the first with the opposite sign, as a memory follows the increment.
     """
 
     force: Array
@@ -64,142 +64,133 @@ class ElementForce(NamedTuple):
     memory_by_memory: Array
 
 
-class Sensitivity(NamedTuple):
-    """Derivatives by the law's own parameters, each of shape (parameter, ..., element)."""
-
-    force: Array
-    memory: Array
-
-
 @dataclass(frozen=True, slots=True)
 class ForceLaw:
-    """A law of force.
+    """A force law.
 
     Attributes
     ----------
     name
         Of the law.
-    remembers
-        Whether it has a memory; in one without, zero goes in and comes out.
-    answer
-        From the law's parameters, shape (parameter, element), and what is felt.
-    sensitivity
-        From the same.
+    has_memory
+        Whether the force depends on an internal state; the memory of a law without one is zero throughout.
+    evaluate
+        Forces from the law's parameters, shape (parameter, element), and the input.
+    differentiate
+        Derivatives of force and memory by the law's parameters, each of shape (parameter, ..., element), from the same.
     """
 
     name: str
-    remembers: bool
-    answer: Callable[[Array, ElementInput], ElementForce]
-    sensitivity: Callable[[Array, ElementInput], Sensitivity]
+    has_memory: bool
+    evaluate: Callable[[Array, ElementInput], ElementForce]
+    differentiate: Callable[[Array, ElementInput], tuple[Array, Array]]
 
 
-def _reach(parameters: Array) -> tuple[Array, Array]:
-    """Give the way over which friction builds up, m, and where it is as it should be and not held."""
+def _friction_length(parameters: Array) -> tuple[Array, Array]:
+    """Return the travel over which friction builds up, F/s, m, and whether it is above its lower limit."""
     force, stiffness = parameters
-    reach = np.abs(force) / stiffness
-    return np.maximum(reach, _SHORTEST), reach > _SHORTEST
+    length = np.abs(force) / stiffness
+    return np.maximum(length, _SHORTEST), length > _SHORTEST
 
 
-def _friction(parameters: Array, felt: ElementInput) -> ElementForce:
-    # Along a way in one direction the memory m of Dahl's law, dm/dx = (1 - m sign(x'))/reach, goes to that sign exponentially.
-    force, (reach, _) = parameters[0], _reach(parameters)
-    sign = np.sign(felt.way)
-    kept = np.exp(-np.abs(felt.way) / reach)
-    new = sign + (felt.memory - sign) * kept
-    slope = (1.0 - felt.memory * sign) * kept / reach
-    nothing = np.zeros_like(felt.travel)
-    return ElementForce(force * new, new, nothing, nothing, force + nothing, slope, kept)
+def _friction(parameters: Array, given: ElementInput) -> ElementForce:
+    # Over an increment of one sign the memory m of Dahl's law, dm/dx = (1 - m sign(x'))/length, decays to that sign.
+    force, (length, _) = parameters[0], _friction_length(parameters)
+    sign = np.sign(given.increment)
+    decay = np.exp(-np.abs(given.increment) / length)
+    memory = sign + (given.memory - sign) * decay
+    slope = (1.0 - given.memory * sign) * decay / length
+    zero = np.zeros_like(given.travel)
+    return ElementForce(force * memory, memory, zero, zero, force + zero, slope, decay)
 
 
-def _friction_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
-    (force, stiffness), (reach, free) = parameters, _reach(parameters)
-    sign = np.sign(felt.way)
-    far = np.abs(felt.way) / reach
-    kept = np.exp(-far)
-    by_reach = np.where(free, (felt.memory - sign) * kept * far / reach, 0.0)
-    by_force = np.stack([sign + (felt.memory - sign) * kept, np.zeros_like(felt.travel)])
-    return Sensitivity(by_force, np.stack([by_reach * np.sign(force) / stiffness, -by_reach * reach / stiffness]))
+def _friction_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    (force, stiffness), (length, above) = parameters, _friction_length(parameters)
+    sign = np.sign(given.increment)
+    ratio = np.abs(given.increment) / length
+    decay = np.exp(-ratio)
+    by_length = np.where(above, (given.memory - sign) * decay * ratio / length, 0.0)
+    by_force = np.stack([sign + (given.memory - sign) * decay, np.zeros_like(given.travel)])
+    return by_force, np.stack([by_length * np.sign(force) / stiffness, -by_length * length / stiffness])
 
 
-def _rebound(parameters: Array, felt: ElementInput) -> ElementForce:
+def _rebound(parameters: Array, given: ElementInput) -> ElementForce:
     ratio, damping = parameters
-    nothing = np.zeros_like(felt.travel)
-    up = np.maximum(felt.rate, 0.0)
-    more = (ratio - 1.0) * damping
-    return ElementForce(more * up, felt.memory, nothing, more * (felt.rate > 0), nothing, nothing, nothing)
+    zero = np.zeros_like(given.travel)
+    extension = np.maximum(given.rate, 0.0)
+    excess = (ratio - 1.0) * damping
+    return ElementForce(excess * extension, given.memory, zero, excess * (given.rate > 0), zero, zero, zero)
 
 
-def _rebound_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
+def _rebound_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
     ratio, damping = parameters
-    up = np.maximum(felt.rate, 0.0)
-    force = np.stack([damping * up, (ratio - 1.0) * up])
-    return Sensitivity(force, np.zeros_like(force))
+    extension = np.maximum(given.rate, 0.0)
+    force = np.stack([damping * extension, (ratio - 1.0) * extension])
+    return force, np.zeros_like(force)
 
 
-def _progressive(parameters: Array, felt: ElementInput) -> ElementForce:
-    per_metre, spring = parameters
-    nothing = np.zeros_like(felt.travel)
-    rise = per_metre * spring
-    return ElementForce(
-        -0.5 * rise * felt.travel**2, felt.memory, -rise * felt.travel, nothing, nothing, nothing, nothing
-    )
+def _progressive(parameters: Array, given: ElementInput) -> ElementForce:
+    growth, spring = parameters
+    zero = np.zeros_like(given.travel)
+    rise = growth * spring
+    return ElementForce(-0.5 * rise * given.travel**2, given.memory, -rise * given.travel, zero, zero, zero, zero)
 
 
-def _progressive_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
-    per_metre, spring = parameters
-    square = -0.5 * felt.travel**2
-    force = np.stack([spring * square, per_metre * square])
-    return Sensitivity(force, np.zeros_like(force))
+def _progressive_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    growth, spring = parameters
+    square = -0.5 * given.travel**2
+    force = np.stack([spring * square, growth * square])
+    return force, np.zeros_like(force)
 
 
-def _stop(parameters: Array, felt: ElementInput) -> ElementForce:
-    stiffness, gap = parameters
-    nothing = np.zeros_like(felt.travel)
-    into = np.maximum(-felt.travel - gap, 0.0)
-    return ElementForce(-stiffness * into, felt.memory, stiffness * (into > 0), nothing, nothing, nothing, nothing)
+def _bump_stop(parameters: Array, given: ElementInput) -> ElementForce:
+    stiffness, clearance = parameters
+    zero = np.zeros_like(given.travel)
+    depth = np.maximum(-given.travel - clearance, 0.0)
+    return ElementForce(-stiffness * depth, given.memory, stiffness * (depth > 0), zero, zero, zero, zero)
 
 
-def _stop_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
-    stiffness, gap = parameters
-    into = np.maximum(-felt.travel - gap, 0.0)
-    force = np.stack([-into, stiffness * (into > 0)])
-    return Sensitivity(force, np.zeros_like(force))
+def _bump_stop_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    stiffness, clearance = parameters
+    depth = np.maximum(-given.travel - clearance, 0.0)
+    force = np.stack([-depth, stiffness * (depth > 0)])
+    return force, np.zeros_like(force)
 
 
-def _pull(parameters: Array, felt: ElementInput) -> Array:
-    """Give what a tyre that held fast to the ground would pull with, N: by its damping as well where that is a parameter."""
+def _tyre_tension(parameters: Array, given: ElementInput) -> Array:
+    """Return the tension of a tyre that was fixed to the ground, N; zero where it is compressed."""
     stiffness, *damping = parameters
-    pull: Array = stiffness * felt.travel + sum((each * felt.rate for each in damping), np.zeros_like(felt.travel))
-    return np.maximum(pull, 0.0)
+    tension: Array = stiffness * given.travel + sum((c * given.rate for c in damping), np.zeros_like(given.travel))
+    return np.maximum(tension, 0.0)
 
 
-def _lifted(parameters: Array, felt: ElementInput) -> ElementForce:
+def _ground(parameters: Array, given: ElementInput) -> ElementForce:
     stiffness, *damping = parameters
-    pull, nothing = _pull(parameters, felt), np.zeros_like(felt.travel)
-    off = pull > 0
-    by_rate = -sum(damping, np.zeros_like(stiffness)) * off
-    return ElementForce(-pull, felt.memory, -stiffness * off, by_rate, nothing, nothing, nothing)
+    tension, zero = _tyre_tension(parameters, given), np.zeros_like(given.travel)
+    lifted = tension > 0
+    by_rate = -sum(damping, np.zeros_like(stiffness)) * lifted
+    return ElementForce(-tension, given.memory, -stiffness * lifted, by_rate, zero, zero, zero)
 
 
-def _lifted_sensitivity(parameters: Array, felt: ElementInput) -> Sensitivity:
-    off = _pull(parameters, felt) > 0
-    force = np.stack([-felt.travel * off, -felt.rate * off][: len(parameters)])
-    return Sensitivity(force, np.zeros_like(force))
+def _ground_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    lifted = _tyre_tension(parameters, given) > 0
+    force = np.stack([-given.travel * lifted, -given.rate * lifted][: len(parameters)])
+    return force, np.zeros_like(force)
 
 
-FRICTION = ForceLaw("friction", True, _friction, _friction_sensitivity)
-"""Dry friction that gives way before it slides: force F, N, and stiffness s at rest, N/m, after Dahl (Aerospace Corporation
+FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives)
+"""Dry friction with presliding: force F, N, and stiffness s at rest, N/m, after Dahl (Aerospace Corporation
 TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
 
-REBOUND = ForceLaw("rebound", False, _rebound, _rebound_sensitivity)
-"""What a damper resists more in rebound than in compression: ratio r of the two and damping c in compression, N s/m."""
+REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives)
+"""Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""
 
-PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_sensitivity)
-"""What a spring is stiffer in compression: growth p of its rate with compression, as a part per metre, and rate k, N/m."""
+PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_derivatives)
+"""Progressive spring: growth p of the rate with compression, as a part of the rate per metre, and rate k, N/m."""
 
-BUMP_STOP = ForceLaw("bump-stop", False, _stop, _stop_sensitivity)
-"""A stop: stiffness, N/m, and the compression at which the suspension meets it, m, from the empty vehicle at rest."""
+BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives)
+"""Bump stop: stiffness, N/m, and the compression at which it is met, m, from the empty vehicle at rest."""
 
-GROUND = ForceLaw("ground", False, _lifted, _lifted_sensitivity)
-"""The ground, which pushes and never pulls: what a linear tyre would pull with is taken off. Tyre rate, N/m, and tyre
-damping, N s/m, where there is any; the travel is the wheel's height above where its tyre just touches the ground."""
+GROUND = ForceLaw("ground", False, _ground, _ground_derivatives)
+"""Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre. Tyre rate, N/m, and tyre damping,
+N s/m, where it is a parameter; the travel is the height of the wheel above that at which its tyre just touches the ground."""

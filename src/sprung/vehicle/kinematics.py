@@ -1,8 +1,8 @@
-"""Rows: which displacement an element, a load or a sensor feels, as a linear function of the vehicle's coordinates.
+"""Rows: the displacement of an element, a load or a sensor, as a linear function of the vehicle's coordinates.
 
 Coordinates are the paper's, X = [z_s, θ, φ, z_uA, z_uB, z_uC, z_uD]: sprung-mass bounce, pitch (positive nose down),
 roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right; z_e of an engine on
-its mounts is one more, which only a vehicle with such an engine has. A row g says that something feels g·X. Every row is
+its mounts is one more, which only a vehicle with such an engine has. A row g has the displacement g·X. Every row is
 affine in the geometric parameters (a, b and the half-distances), so a row is its constant part and one slope per
 parameter; derivatives with respect to geometry need nothing else.
 """
@@ -29,13 +29,13 @@ AXLES: tuple[tuple[Wheel, Wheel], ...] = (("fl", "fr"), ("rl", "rr"))
 """Left and right wheel of each axle, front first."""
 
 COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD", "z_e")
-"""All that rows are over, displacements in m, angles in rad; the last only of a vehicle whose engine moves on its mounts."""
+"""Coordinates, displacements in m and angles in rad; the last only of a vehicle whose engine moves on its mounts."""
 
 WHEELS_AT = slice(3, 7)
-"""Where the wheels are among the coordinates."""
+"""Positions of the wheels among the coordinates."""
 
 HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
-"""Everything moving up by one unit, in the coordinates."""
+"""A unit of heave: everything moving up alike, in the coordinates."""
 
 _Z, _THETA, _PHI, *_WHEELS, _ENGINE = np.eye(len(COORDINATES))
 
@@ -57,34 +57,34 @@ class Row:
     slopes: Mapping[str, NDArray[np.float64]] = field(default_factory=lambda: MappingProxyType({}))
 
     def __sub__(self, other: Row) -> Row:
-        """Give the row of the difference of two displacements."""
+        """Return the row of the difference of two displacements."""
         names = self.slopes.keys() | other.slopes.keys()
-        nothing = np.zeros_like(self.constant)
+        zero = np.zeros_like(self.constant)
         return Row(
             self.constant - other.constant,
-            {name: self.slopes.get(name, nothing) - other.slopes.get(name, nothing) for name in names},
+            {name: self.slopes.get(name, zero) - other.slopes.get(name, zero) for name in names},
         )
 
-    def seen_from_front_axle(self, wheelbase: float) -> Row:
-        """Give the same displacement with the body's vertical motion taken above the front axle, not at its centre of gravity.
+    def referred_to_front_axle(self, wheelbase: float) -> Row:
+        """Return the row over coordinates with the body's vertical motion above the front axle, not at its centre of gravity.
 
-        Wherever the centre of gravity may be, springs, dampers and sensors are then where they are; it moves only the mass.
+        The rows of springs, dampers and sensors then do not depend on the centre of gravity, which moves the mass alone.
 
         Parameters
         ----------
         wheelbase
             a + b, m.
         """
-        # z_s is z above the front axle plus a θ, and b is what a leaves of the wheelbase.
-        nothing = np.zeros_like(self.constant)
-        by_b = self.slopes.get("b", nothing)
-        by_a = self.slopes.get("a", nothing) + self.constant[0] * _THETA - by_b
+        # z_s is z above the front axle plus a θ, and b is the wheelbase less a.
+        zero = np.zeros_like(self.constant)
+        by_b = self.slopes.get("b", zero)
+        by_a = self.slopes.get("a", zero) + self.constant[0] * _THETA - by_b
         rest = {name: slope for name, slope in self.slopes.items() if name not in ("a", "b")}
         return Row(self.constant + wheelbase * by_b, rest | ({"a": by_a} if by_a.any() else {}))
 
 
 def coordinates(names: Collection[str]) -> tuple[str, ...]:
-    """Name the coordinates of a vehicle.
+    """Return the names of the coordinates of a vehicle.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def engine() -> Row:
 
 
 def engine_bay() -> Row:
-    """Vertical displacement of the body where its engine is carried, on the centreline, x_e forward of the front axle."""
+    """Vertical displacement of the body at its engine mounts, on the centreline, x_e forward of the front axle."""
     return Row(_Z, {"a": -_THETA, "x_e": -_THETA})
 
 
@@ -173,7 +173,7 @@ def on_axle(station: Wheel, share: str) -> Row:
     station
         The wheel on whose side it is.
     share
-        Name of the parameter that says where: 0 in the middle, 1 at the wheel.
+        Name of the parameter of its place: 0 in the middle, 1 at the wheel.
     """
     left, right = AXLES["fr".index(station[0])]
     middle = 0.5 * (wheel(left).constant + wheel(right).constant)

@@ -1,4 +1,4 @@
-"""Known loads: what they add to the mass matrix, as elements like any other."""
+"""Known loads: the elements that they add to the mass matrix."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from sprung.vehicle.kinematics import Wheel
 from sprung.vehicle.parameters import LOAD_MASS
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-"""One above 0."""
+"""A positive number in a campaign file."""
 
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-"""One that is not below 0."""
+"""A number in a campaign file that is not negative."""
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 """A number in a campaign file: neither infinite nor NaN."""
 
 
-def _with_std(given: Any) -> Any:
-    """Take a mass apart that is written as { value = ..., std = ... }."""
+def _split_mass(given: Any) -> Any:
+    """Split a mass that is written as { value = ..., std = ... } into value and standard uncertainty."""
     keys = getattr(given, "kwargs", given)
     if not isinstance(keys, Mapping):
         return given
-    # Past this point values count as Python's, where strict typing takes no list for a tuple.
+    # From here on the values are Python's, and strict validation accepts no list as a tuple.
     plain = {name: tuple(value) if isinstance(value, list) else value for name, value in keys.items()}
     mass = plain.get("mass")
     if isinstance(mass, Mapping) and {"value"} <= mass.keys() <= {"value", "std"}:
@@ -44,7 +44,7 @@ def _with_std(given: Any) -> Any:
 
 @checked_record
 class Item:
-    """One piece of a load: a mass at a place."""
+    """One item of a load: a mass at a place."""
 
     mass: Positive
     """kg; in a campaign file also { value = ..., std = ... }."""
@@ -60,7 +60,7 @@ class Item:
     @model_validator(mode="before")
     @classmethod
     def _measured(cls, given: Any) -> Any:
-        return _with_std(given)
+        return _split_mass(given)
 
     @model_validator(mode="after")
     def _somewhere(self) -> Item:
@@ -69,12 +69,12 @@ class Item:
         return self
 
     def elements(self, heights: Heights, mass: str | float | None = None) -> Iterator[Element]:
-        """Give what the item adds to the vehicle.
+        """Yield the elements of the item.
 
         Parameters
         ----------
         heights
-            Of the empty vehicle; without them the item counts as level with the centre of gravity.
+            Of the empty vehicle; without them the item is level with the centre of gravity.
         mass
             Name of the parameter that is its mass, or kg; its own mass unless given.
         """
@@ -89,8 +89,8 @@ class Item:
             ):
                 yield Element("mass", own, row)
                 yield Element("mass", mass, row, arm**2)
-                if heights.known:
-                    yield Element("spring", mass, row, -heights.tipping(z))
+                if heights.has_effect:
+                    yield Element("spring", mass, row, -heights.gravity_stiffness(z))
 
 
 @checked_record
@@ -113,7 +113,7 @@ class Added:
     @model_validator(mode="before")
     @classmethod
     def _measured(cls, given: Any) -> Any:
-        return _with_std(given)
+        return _split_mass(given)
 
     @model_validator(mode="after")
     def _some_mass(self) -> Added:
@@ -122,7 +122,7 @@ class Added:
         return self
 
     def elements(self, mass: str | float | None = None) -> Iterator[Element]:
-        """Give what the load adds to the vehicle.
+        """Yield the elements of the load.
 
         Parameters
         ----------
@@ -145,9 +145,9 @@ class Load:
     name: Annotated[str, Field(min_length=1)]
     """What the drops call it."""
     items: tuple[Item, ...] = ()
-    """Its pieces, each a mass at a place."""
+    """Its items, each a mass at a place."""
     added: Added | None = None
-    """What it adds in all, where only totals are known."""
+    """Its totals, where only these are known."""
 
     @model_validator(mode="after")
     def _one_description(self) -> Load:
@@ -158,8 +158,8 @@ class Load:
         return self
 
     @property
-    def described(self) -> bool:
-        """Whether it is known what the load adds; without that nothing can be identified from its drops."""
+    def is_described(self) -> bool:
+        """Whether its masses are known; its drops identify nothing without them."""
         return self.name == "empty" or bool(self.items) or self.added is not None
 
     @property
@@ -183,23 +183,23 @@ class Load:
         return f"{LOAD_MASS}{self.name}, item {item + 1}" if several else f"{LOAD_MASS}{self.name}"
 
     def elements(self, heights: Heights = LEVEL, unknown: Collection[str] = ()) -> tuple[Element, ...]:
-        """Give the elements that the load adds; ΔM is the sum of the masses, full where the items are off centre.
+        """Return the elements of the load; ΔM is the sum of the masses, full where the items are off centre.
 
         Parameters
         ----------
         heights
-            Of the empty vehicle; without them every item counts as level with the centre of gravity. Where they tell what
-            carries the body, a load tips it the more the higher it stands.
+            Of the empty vehicle; without them every item is level with the centre of gravity. With them a load reduces the
+            stiffness of roll and pitch by its height above the lateral support.
         unknown
-            Names of parameters; masses of `uncertain_masses` among them are parameters, and not numbers.
+            Names of parameters; masses of `uncertain_masses` among them are parameters instead of numbers.
 
         Raises
         ------
         InputError
-            If it is not known what the load adds.
+            If its masses are not known.
         """
-        if not self.described:
-            expected, do = "items = [...] or added = {...}", "Write what the load consists of."
+        if not self.is_described:
+            expected, do = "items = [...] or added = {...}", "State the items of the load, or its totals."
             raise InputError([Problem(f"load '{self.name}'", "neither items nor added", expected, do)])
         if self.added is not None:
             name = self._name_of(0, several=False)

@@ -18,7 +18,7 @@ from sprung.vehicle.kinematics import HEAVE, Row, coordinates
 Array = NDArray[np.float64]
 
 LINEAR_LAWS: tuple[LinearLaw, ...] = ("mass", "damper", "spring")
-"""What adds to M, to C and to K."""
+"""Laws of the elements in M, in C and in K."""
 
 
 class Matrices(NamedTuple):
@@ -45,7 +45,7 @@ class Matrices(NamedTuple):
 
     @property
     def weight(self) -> Array:
-        """What weighs on each coordinate, kg, or kg m on an angle: M times everything moving up together; shape (..., n)."""
+        """Mass on each coordinate, kg, or kg m on an angle: M times a unit of heave; shape (..., n)."""
         weight: Array = self.M @ HEAVE[: self.M.shape[-1]]
         return weight
 
@@ -53,7 +53,7 @@ class Matrices(NamedTuple):
 @shown
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Several rows over one list of parameters.
+    """Several rows, compiled over one list of parameters.
 
     Attributes
     ----------
@@ -82,14 +82,14 @@ class Rows:
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
-        """Give the rows at parameter values of shape (..., parameter); shape (..., row, coordinate)."""
+        """Return the rows at parameter values of shape (..., parameter); shape (..., row, coordinate)."""
         factors = _with_one(values)
         rows: Array = factors @ self.affine.reshape(-1, factors.shape[-1]).T
         return rows.reshape(*factors.shape[:-1], *self.affine.shape[:2])
 
     @cached_property
     def slopes(self) -> Array:
-        """Change of each row with each parameter; shape (row, parameter, coordinate)."""
+        """Derivative of each row by each parameter; shape (row, parameter, coordinate)."""
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
 
 
@@ -99,8 +99,8 @@ class LinearModel:
     """M, C and K over one list of parameters, as polynomials in them.
 
     An element adds κ g gᵀ with κ a parameter and g affine in the geometry, so every entry is a sum of products of at
-    most three parameters: k_sf, k_sf a, k_sf a². The products are what depends on the parameters, and few; what they
-    multiply is constant.
+    most three parameters: k_sf, k_sf a, k_sf a². Only these products, which are few, depend on the parameters; their
+    coefficients are constant matrices.
 
     Attributes
     ----------
@@ -110,10 +110,10 @@ class LinearModel:
         The products of parameters that occur: their positions in the list of names counted from 1, in order, filled up
         with 0 in front for a product of fewer than three; shape (product, 3).
     terms
-        What each multiplies in M, C and K, SI: shape (product, 3, n, n) with n coordinates, or (product, model, 3, n, n) of
-        several models `side_by_side`, whose matrices then have a leading axis.
+        Coefficient of each product in M, C and K, SI: shape (product, 3, n, n) with n coordinates, or (product, model, 3, n, n)
+        of several models `stack`ed, whose matrices then have a leading axis.
     elements
-        What it was compiled from; none where it is several models.
+        The elements it was compiled from; none for several models.
     """
 
     names: tuple[str, ...]
@@ -140,7 +140,7 @@ class LinearModel:
         index = {name: i for i, name in enumerate(names, start=1)}
         terms: dict[tuple[int, ...], Array] = {}
         rows = Rows.of([element.row for element in elements], names).affine
-        size_of_each = (len(LINEAR_LAWS), rows.shape[1], rows.shape[1])
+        shape_of_term = (len(LINEAR_LAWS), rows.shape[1], rows.shape[1])
         for element, row in zip(elements, rows, strict=True):
             named = isinstance(element.coefficient, str)
             kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
@@ -149,14 +149,14 @@ class LinearModel:
             parts = size * row.T[factors]
             squares = parts[:, None, :, None] * row.T[factors][None, :, None, :]
             law = LINEAR_LAWS.index(element.law)
-            for one, of_one in zip(factors.tolist(), squares, strict=True):
-                for two, square in zip(factors.tolist(), of_one, strict=True):
-                    key = tuple(sorted((kappa, one, two)))
+            for first, products_of_first in zip(factors.tolist(), squares, strict=True):
+                for second, square in zip(factors.tolist(), products_of_first, strict=True):
+                    key = tuple(sorted((kappa, first, second)))
                     if key not in terms:
-                        terms[key] = np.zeros(size_of_each)
+                        terms[key] = np.zeros(shape_of_term)
                     terms[key][law] += square
         kept = {key: term for key, term in terms.items() if term.any()}
-        shape = (len(kept), *size_of_each)
+        shape = (len(kept), *shape_of_term)
         products, constants = (
             np.array(list(kept), dtype=np.int64).reshape(-1, 3),
             np.array(list(kept.values())).reshape(shape),
@@ -166,45 +166,43 @@ class LinearModel:
     def with_known(self, known: Mapping[str, float]) -> LinearModel:
         """Return the model in which some parameters that multiply elements are known numbers, SI by name."""
         elements = [
-            replace(one, coefficient=known[one.coefficient])
-            if isinstance(one.coefficient, str) and one.coefficient in known
-            else one
-            for one in self.elements
+            replace(element, coefficient=known[element.coefficient])
+            if isinstance(element.coefficient, str) and element.coefficient in known
+            else element
+            for element in self.elements
         ]
         return LinearModel.of(elements, [name for name in self.names if name not in known])
 
     @classmethod
-    def side_by_side(cls, models: Sequence[LinearModel]) -> LinearModel:
-        """Put models over the same parameters side by side, so that all of them are evaluated at once."""
+    def stack(cls, models: Sequence[LinearModel]) -> LinearModel:
+        """Stack models over the same parameters, so that all of them are evaluated at once."""
         keys = list(dict.fromkeys(tuple(key) for model in models for key in model.products.tolist()))
         terms = np.zeros((len(keys), len(models), *models[0].terms.shape[1:]))
         for i, model in enumerate(models):
             terms[[keys.index(tuple(key)) for key in model.products.tolist()], i] = model.terms
         return cls(models[0].names, np.array(keys), terms)
 
-    def seen_from_front_axle(self, wheelbase: float) -> LinearModel:
-        """Give the same equations for the body's motion above the front axle, a wheelbase in m being known."""
-        moved = [replace(element, row=element.row.seen_from_front_axle(wheelbase)) for element in self.elements]
+    def referred_to_front_axle(self, wheelbase: float) -> LinearModel:
+        """Return the equations over the body's motion above the front axle, for a known wheelbase in m; see `Row`."""
+        moved = [replace(element, row=element.row.referred_to_front_axle(wheelbase)) for element in self.elements]
         return LinearModel.of(moved, self.names)
 
     def matrices(self, values: ArrayLike) -> Matrices:
-        """Give M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
+        """Return M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
         factors = _with_one(values)[..., self.products]
         flat = factors.prod(axis=-1) @ self._flat
-        each = np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
-        return Matrices(*each)
+        return Matrices(*np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0))
 
     def slopes(self, values: ArrayLike) -> Matrices:
-        """Give the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n)."""
+        """Return the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n)."""
         first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
         others = np.array([second * third, first * third, first * second])
         changes = np.einsum("ik,ikp->pk", others, self._factors)
         flat = changes @ self._flat
-        each = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
-        return Matrices(*each)
+        return Matrices(*np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0))
 
     def accelerations(self, values: ArrayLike) -> tuple[Array, Array]:
-        """Give the lower half of the state matrix of eq. (4) and its derivatives.
+        """Return the lower half of the state matrix of eq. (4) and its derivatives.
 
         Returns
         -------
@@ -221,12 +219,12 @@ class LinearModel:
 
     @cached_property
     def _flat(self) -> Array:
-        """Give the terms with a row for each product."""
+        """The terms with a row for each product."""
         return self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
 
     @cached_property
     def _factors(self) -> Array:
-        """Give which parameter each factor of each product is; shape (3, product, parameter)."""
+        """Parameter of each factor of each product, as unit vectors; shape (3, product, parameter)."""
         factors: Array = np.eye(1 + len(self.names))[self.products.T, 1:]
         return np.ascontiguousarray(factors)
 

@@ -1,8 +1,8 @@
-"""The vehicle with forces that no matrix carries, and what one step of time makes of it.
+"""The nonlinear vehicle: the linear equations of motion with forces as feedback, and one exact time step of them.
 
-The linear vehicle is stepped exactly; the few forces beside it enter as feedback that runs straight from one step to the
-next (first-order hold). Displacements are from the empty vehicle at rest, so that a load pushes with its weight: where a
-spring stiffens with travel, a loaded vehicle has another rate.
+The linear vehicle is stepped exactly; the forces of the nonlinear elements are inputs that run linearly from one step to the
+next (first-order hold). Displacements are from static equilibrium of the empty vehicle, so that a load acts by its weight:
+where a spring is progressive, a loaded vehicle has another rate.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scipy.linalg import expm
 
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.elements import Element, NonlinearElement
-from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw, Sensitivity
+from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import coordinates
 from sprung.vehicle.load import EMPTY, Load
@@ -28,96 +28,80 @@ Index = NDArray[np.int64]
 
 
 class NonlinearForces(NamedTuple):
-    """Forces over one list of parameters, whose values are SI, shape (parameter,); those of one law beside each other.
+    """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,); those of one law adjacent.
 
     Attributes
     ----------
     rows
-        The travels they feel, one for each force.
+        Row of the travel of each element.
     laws
-        Each law, which of the forces have it, and where its parameters are in the list, shape (parameter, force).
-    remembering
-        Which forces have a memory, in the order of the memories; positions, shape (memory,).
+        Each law, the slice of its elements, and the positions of their parameters in the list, shape (parameter, element).
+    with_memory
+        Positions of the elements that have a memory, in the order of the memories, shape (memory,).
     weightless
-        1 for those whose travel counts from where the empty vehicle would be without gravity, else 0; dimensionless,
-        shape (force,).
+        1 for elements whose travel counts from the empty vehicle without gravity, else 0; dimensionless, shape (element,).
     """
 
     rows: Rows
     laws: tuple[tuple[ForceLaw, slice, Index], ...]
-    remembering: Index
+    with_memory: Index
     weightless: Array
 
     @classmethod
-    def of(cls, forces: Sequence[NonlinearElement], names: Sequence[str]) -> NonlinearForces:
-        """Compile forces over a list of parameter names."""
-        kinds = list({force.law.name: force.law for force in forces}.values())
-        ordered = [force for law in kinds for force in forces if force.law.name == law.name]
-        laws = []
-        for law in kinds:
-            own = [i for i, force in enumerate(ordered) if force.law.name == law.name]
-            positions = np.array([[names.index(name) for name in ordered[i].parameters] for i in own]).T
-            laws.append((law, slice(own[0], own[-1] + 1), positions))
-        remembering = np.array([i for i, force in enumerate(ordered) if force.law.remembers], dtype=np.int64)
-        weightless = np.array([float(force.weightless) for force in ordered])
-        return cls(Rows.of([force.row for force in ordered], names), tuple(laws), remembering, weightless)
+    def of(cls, elements: Sequence[NonlinearElement], names: Sequence[str]) -> NonlinearForces:
+        """Compile nonlinear elements over a list of parameter names."""
+        laws = list({element.law.name: element.law for element in elements}.values())
+        ordered = [element for law in laws for element in elements if element.law.name == law.name]
+        compiled = []
+        for law in laws:
+            chosen = [i for i, element in enumerate(ordered) if element.law.name == law.name]
+            positions = np.array([[names.index(name) for name in ordered[i].parameters] for i in chosen]).T
+            compiled.append((law, slice(chosen[0], chosen[-1] + 1), positions))
+        with_memory = np.array([i for i, element in enumerate(ordered) if element.law.has_memory], dtype=np.int64)
+        weightless = np.array([float(element.weightless) for element in ordered])
+        return cls(Rows.of([element.row for element in ordered], names), tuple(compiled), with_memory, weightless)
 
     @property
     def number(self) -> int:
-        """How many forces."""
+        """Number of elements."""
         return len(self.rows.affine)
 
-    def answer(self, values: Array, felt: ElementInput) -> ElementForce:
-        """Give all forces at parameter values; the last axis of what is felt is that of the forces."""
-        parts = [law.answer(values[at], _of(felt, own)) for law, own, at in self.laws]
+    def evaluate(self, values: Array, given: ElementInput) -> ElementForce:
+        """Return all forces at parameter values; the last axis of the input is that of the elements."""
+        parts = [law.evaluate(values[positions], _part(given, chosen)) for law, chosen, positions in self.laws]
         if len(parts) == 1:
             return parts[0]
-        return ElementForce(*(np.concatenate(each, axis=-1) for each in zip(*parts, strict=True)))
+        return ElementForce(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
 
-    def sensitivity(self, values: Array, felt: ElementInput) -> Sensitivity:
-        """Give the derivatives of forces and memories by the parameters, from what is felt; shape (..., force, parameter)."""
-        force = np.zeros((*felt.travel.shape, len(values)))
-        remembered = np.zeros_like(force)
-        for law, own, at in self.laws:
-            parts = law.sensitivity(values[at], _of(felt, own))
-            for which, row in enumerate(at):
+    def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
+        """Return the derivatives of forces and of memories by the parameters, each of shape (..., element, parameter)."""
+        force = np.zeros((*given.travel.shape, len(values)))
+        memory = np.zeros_like(force)
+        for law, chosen, positions in self.laws:
+            of_force, of_memory = law.differentiate(values[positions], _part(given, chosen))
+            for which, row in enumerate(positions):
                 for column, position in enumerate(row.tolist()):
-                    force[..., own.start + column, position] += parts.force[which][..., column]
-                    remembered[..., own.start + column, position] += parts.memory[which][..., column]
-        return Sensitivity(force, remembered)
+                    force[..., chosen.start + column, position] += of_force[which][..., column]
+                    memory[..., chosen.start + column, position] += of_memory[which][..., column]
+        return force, memory
 
 
-def _of(felt: ElementInput, own: slice) -> ElementInput:
-    return ElementInput(*(each[..., own] for each in felt))
-
-
-class Step(NamedTuple):
-    """What one step of time makes of the state {X, Ẋ}: Φ x + before u + after u' + constant, u' at its end.
-
-    Attributes
-    ----------
-    transition, before, after, constant
-        Shapes (2n, 2n), (2n, force), (2n, force) and (2n,) with n coordinates.
-    """
-
-    transition: Array
-    before: Array
-    after: Array
-    constant: Array
+def _part(given: ElementInput, chosen: slice) -> ElementInput:
+    return ElementInput(*(values[..., chosen] for values in given))
 
 
 @dataclass(frozen=True, eq=False)
 class NonlinearModel:
-    """Equations of motion with forces beside them, of one load, over values of the parameters, SI, shape (parameter,).
+    """Equations of motion with nonlinear elements, under one load, as functions of parameter values, SI, shape (parameter,).
 
     Attributes
     ----------
     linear
-        The loaded vehicle without them.
+        The loaded vehicle without the nonlinear elements.
     load
         What the load adds to the masses, over the same parameters.
     forces
-        The forces.
+        The nonlinear elements.
     gravity
         m/s².
     """
@@ -131,16 +115,16 @@ class NonlinearModel:
     def of(
         cls,
         elements: Sequence[Element],
-        forces: Sequence[NonlinearElement],
+        nonlinear: Sequence[NonlinearElement],
         names: Sequence[str],
         load: Load = EMPTY,
         heights: Heights = LEVEL,
         gravity: float = STANDARD_GRAVITY,
     ) -> NonlinearModel:
-        """Compile a vehicle with its heights and a load, elements and forces beside them, over a list of parameter names."""
+        """Compile the linear and nonlinear elements of a vehicle, and its load, over a list of parameter names."""
         added = load.elements(heights, names)
         linear = LinearModel.of([*elements, *added], names)
-        return cls(linear, LinearModel.of(added, names), NonlinearForces.of(forces, names), gravity)
+        return cls(linear, LinearModel.of(added, names), NonlinearForces.of(nonlinear, names), gravity)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -148,97 +132,98 @@ class NonlinearModel:
         return self.linear.names
 
     @property
-    def state(self) -> int:
-        """How many numbers a state {X, Ẋ} has."""
+    def state_size(self) -> int:
+        """Length of the state {X, Ẋ}."""
         return 2 * len(coordinates(self.names))
 
     def sag(self, values: Array) -> Array:
-        """Give where the load's weight brings the vehicle to rest without the forces, from the empty one; X, (coordinate,)."""
+        """Return the static deflection by the load's weight, without the nonlinear elements: X, shape (coordinate,)."""
         weight = self.load.matrices(values).weight * self.gravity
         return -np.asarray(np.linalg.solve(self.linear.matrices(values).K, weight), dtype=np.float64)
 
-    def offsets(self, values: Array) -> tuple[Array, Array]:
-        """Give the travels of the forces where the empty vehicle rests, m, each from where it counts.
+    def travel_offsets(self, values: Array) -> tuple[Array, Array]:
+        """Return the travel of each element where the empty vehicle rests, m, and its derivatives.
 
         Returns
         -------
         offsets
-            Shape (force,).
+            Zero but for elements whose travel counts from the vehicle without gravity; shape (element,).
         slopes
-            By each parameter, shape (force, parameter).
+            By each parameter, shape (element, parameter).
         """
-        both = (
-            (self.linear.matrices(values), self.load.matrices(values)),
-            (
-                self.linear.slopes(values),
-                self.load.slopes(values),
-            ),
+        M, C, K = (
+            loaded - load for loaded, load in zip(self.linear.matrices(values), self.load.matrices(values), strict=True)
         )
-        empty, moved = (Matrices(*(own - added for own, added in zip(*pair, strict=True))) for pair in both)
+        dM, dC, dK = (
+            loaded - load for loaded, load in zip(self.linear.slopes(values), self.load.slopes(values), strict=True)
+        )
+        empty, slopes = Matrices(M, C, K), Matrices(dM, dC, dK)
         sag = -np.linalg.solve(empty.K, empty.weight * self.gravity)
-        by_sag = -np.linalg.solve(empty.K, (moved.weight * self.gravity + moved.K @ sag).T)
-        G, by_row = self.forces.rows.at(values), self.forces.rows.slopes
-        counted = self.forces.weightless
-        return counted * (G @ sag), counted[:, None] * (by_row @ sag + G @ by_sag)
+        sag_slopes = -np.linalg.solve(empty.K, (slopes.weight * self.gravity + slopes.K @ sag).T)
+        G, row_slopes, weightless = self.forces.rows.at(values), self.forces.rows.slopes, self.forces.weightless
+        return weightless * (G @ sag), weightless[:, None] * (row_slopes @ sag + G @ sag_slopes)
 
     def accelerations(self, values: Array) -> tuple[Array, Array]:
-        """Give accelerations from {X, Ẋ, u, 1} and their derivatives.
+        """Return the accelerations as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
 
         Returns
         -------
         rows
-            Shape (n, 2n + 1 + force) with n coordinates.
+            Shape (n, 2n + element + 1) with n coordinates.
         slopes
-            By each parameter, shape (parameter, n, 2n + 1 + force).
+            By each parameter, shape (parameter, n, 2n + element + 1).
         """
         M, C, K = self.linear.matrices(values)
         dM, dC, dK = self.linear.slopes(values)
-        pull = self.load.matrices(values).weight * self.gravity
-        by_pull = self.load.slopes(values).weight * self.gravity
+        weight = self.load.matrices(values).weight * self.gravity
+        weight_slopes = self.load.slopes(values).weight * self.gravity
         G = self.forces.rows.at(values)
-        by_row = np.moveaxis(self.forces.rows.slopes, 1, 0)
-        driving = np.hstack([K, C, G.T, pull[:, None]])
-        rows: Array = -np.asarray(np.linalg.solve(M, driving), dtype=float)
-        by = np.concatenate([dK, dC, np.swapaxes(by_row, 1, 2), by_pull[:, :, None]], axis=2)
-        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ rows + by), dtype=float)
+        G_slopes = np.moveaxis(self.forces.rows.slopes, 1, 0)
+        rows: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C, G.T, weight[:, None]])), dtype=float)
+        right = np.concatenate([dK, dC, np.swapaxes(G_slopes, 1, 2), weight_slopes[:, :, None]], axis=2)
+        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ rows + right), dtype=float)
         return rows, slopes
 
-    def step(self, values: Array, time: float) -> tuple[Step, Step]:
-        """Give what a step makes of the state, and its derivatives by each parameter.
+    def step(self, values: Array, length: float) -> tuple[Array, Array]:
+        """Return one exact time step as a linear function, and its derivatives.
 
         Parameters
         ----------
         values
             Parameters, SI, shape (parameter,).
-        time
-            Length of the step, s.
+        length
+            Of the step, s.
 
         Returns
         -------
-        step, slopes
-            The second with a leading axis of the parameters.
+        step
+            [Φ, B, B', d]: the state at the end is Φ x + B u + B' u' + d, from the state x at the start and the forces u at the
+            start and u' at the end; shape (2n, 2n + 2 element + 1) with n coordinates.
+        slopes
+            By each parameter, shape (parameter, 2n, 2n + 2 element + 1).
         """
         rows, slopes = self.accelerations(values)
         n = len(rows)
         inputs = rows.shape[1] - 2 * n
         held, size = 2 * n + inputs, 2 * (n + inputs)
-        # The inputs run straight over the step: their rises over it are states of their own.
+        # The inputs run linearly over the step: their increments over it are states of their own.
         generator = np.zeros((size, size))
-        generator[:n, n : 2 * n] = time * np.eye(n)
-        generator[n : 2 * n, :held] = time * rows
+        generator[:n, n : 2 * n] = length * np.eye(n)
+        generator[n : 2 * n, :held] = length * rows
         generator[2 * n : held, held:] = np.eye(inputs)
-        moved = np.zeros((len(slopes), size, size))
-        moved[:, n : 2 * n, :held] = time * slopes
-        # The exponential of [[Z, dZ], [0, Z]] has that of Z, and its derivative beside it.
-        both = np.zeros((len(slopes), 2 * size, 2 * size))
-        both[:, :size, :size] = both[:, size:, size:] = generator
-        both[:, :size, size:] = moved
-        found = np.asarray(expm(both))
-        return _taken_apart(found[0, : 2 * n, :size]), _taken_apart(found[:, : 2 * n, size:])
+        change = np.zeros((len(slopes), size, size))
+        change[:, n : 2 * n, :held] = length * slopes
+        # The exponential of [[Z, dZ], [0, Z]] holds that of Z and its derivative (Van Loan, IEEE TAC 23, 1978).
+        block = np.zeros((len(slopes), 2 * size, 2 * size))
+        block[:, :size, :size] = block[:, size:, size:] = generator
+        block[:, :size, size:] = change
+        exponential = np.asarray(expm(block))
+        return _as_step(exponential[0, : 2 * n, :size]), _as_step(exponential[:, : 2 * n, size:])
 
 
-def _taken_apart(rows: Array) -> Step:
+def _as_step(rows: Array) -> Array:
+    """Turn functions of {x, u, 1, increments of u and 1} into functions of {x, u, u', 1}; the last input is the constant."""
     state = rows.shape[-2]
-    held, rising = np.split(rows[..., state:], 2, axis=-1)
-    before, after = held - rising, rising
-    return Step(rows[..., :state], before[..., :-1], after[..., :-1], held[..., -1])
+    held, increments = np.split(rows[..., state:], 2, axis=-1)
+    before, after = (held - increments)[..., :-1], increments[..., :-1]
+    return np.concatenate([rows[..., :state], before, after, held[..., -1:]], axis=-1)

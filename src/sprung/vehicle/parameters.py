@@ -9,7 +9,7 @@ from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
 
 
 class Parameter(NamedTuple):
-    """What one parameter is."""
+    """A parameter of the vehicle."""
 
     unit: str
     """SI, such as ``N/m``."""
@@ -24,15 +24,15 @@ class Parameter(NamedTuple):
 
 
 LOAD_MASS = "mass of "
-"""How the name of a parameter begins that is the mass of a load, or of one of its items, known with an uncertainty."""
+"""First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
 
 
 class _Parameters(dict[str, Parameter]):
-    """What each parameter of the vehicle is; the masses of loads, which every campaign names itself, are alike."""
+    """The parameters by name; a name that begins with `LOAD_MASS` is the mass of a load, which each campaign names itself."""
 
     def __missing__(self, name: str) -> Parameter:
         if name.startswith(LOAD_MASS):
-            return Parameter("kg", f"{name}, as the recordings and what was known of it say", True)
+            return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
         raise KeyError(name)
 
 
@@ -131,24 +131,21 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "asymmetry": ("y_s", "d_ksf", "d_ksr", "d_ktf", "d_ktr", "d_csf", "d_csr"),
     "rigid-axle": ("n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2", "m_xf", "m_xr"),
 }
-"""The parameters that each extra may bring; see `parameters_of_term`."""
+"""The parameters that each extra may add; see `parameters_of_term`."""
 
 _INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e"})
-"""Parameters of extras that do not matter where the extra does nothing."""
+"""Parameters of extras without effect where the others of the extra are neutral."""
 
 _FACTORS = frozenset({"r_f", "r_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
 
 NEUTRAL: Mapping[str, float] = {
-    name: float(name in _FACTORS)
-    for brought in EXTRA_PARAMETERS.values()
-    for name in brought
-    if name not in _INDIFFERENT
+    name: float(name in _FACTORS) for names in EXTRA_PARAMETERS.values() for name in names if name not in _INDIFFERENT
 }
-"""Values with which an extra does nothing; the others of its parameters then do not matter."""
+"""Values with which an extra has no effect; the others of its parameters then have none either."""
 
 
 def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Name the parameters of one model, in the order of `PARAMETERS`.
+    """Return the names of the parameters of a model, in the order of `PARAMETERS`.
 
     Parameters
     ----------
@@ -162,14 +159,14 @@ def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> 
     tuple of str
     """
     places = {*half_distances(tracks).values()}
-    absent = {name for one in ("shared", "separate") for name in half_distances(one).values()} - places
+    absent = {name for kind in ("shared", "separate") for name in half_distances(kind).values()} - places
     for extra, names in EXTRA_PARAMETERS.items():
         absent.update(set(names) - set(parameters_of_term(extra, tracks) if extra in extras else ()))
     return tuple(name for name in PARAMETERS if name not in absent)
 
 
 def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
-    """Name the parameters that an extra brings to a model.
+    """Return the names of the parameters that an extra adds to a model.
 
     Parameters
     ----------
@@ -188,17 +185,17 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
 
 
 def separate_track_names(name: str) -> tuple[str, ...]:
-    """Give what a parameter is called where springs and dampers of an axle have half-distances of their own.
+    """Return the names of a parameter in a model with separate half-distances of springs and dampers.
 
     Parameters
     ----------
     name
-        Any parameter's.
+        Of any parameter.
 
     Returns
     -------
     tuple of str
-        Two names for a half-distance that springs and dampers share; for any other parameter its own.
+        Two names for a half-distance that springs and dampers share; for any other parameter its own name.
 
     Examples
     --------
@@ -206,16 +203,15 @@ def separate_track_names(name: str) -> tuple[str, ...]:
     (('t_f1', 't_f2'), ('k_sf',))
     """
     places = [
-        (shared, separate[of])
-        for places_of in (half_distances, inboard_shares)
-        for separate in [places_of("separate")]
-        for of, shared in places_of("shared").items()
+        (shared, names_of("separate")[place])
+        for names_of in (half_distances, inboard_shares)
+        for place, shared in names_of("shared").items()
     ]
-    return tuple(sorted(own for shared, own in places if shared == name)) or (name,)
+    return tuple(sorted(separate for shared, separate in places if shared == name)) or (name,)
 
 
 def with_separate_tracks(parameters: Mapping[str, float]) -> dict[str, float]:
-    """Give the same vehicle with half-distances of springs and dampers each by their own names.
+    """Return the parameters of the same vehicle in a model with separate half-distances of springs and dampers.
 
     Parameters
     ----------
@@ -227,4 +223,4 @@ def with_separate_tracks(parameters: Mapping[str, float]) -> dict[str, float]:
     dict
         Values by name, SI.
     """
-    return {own: value for name, value in parameters.items() for own in separate_track_names(name)}
+    return {separate: value for name, value in parameters.items() for separate in separate_track_names(name)}

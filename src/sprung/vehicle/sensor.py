@@ -1,4 +1,4 @@
-"""Accelerometers: where they sit, which way they point, and the row of the motion they feel."""
+"""Accelerometers: their places and directions, and the rows of their displacements."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sprung.vehicle.load import Finite, Positive
 class Sensor:
     """One accelerometer, as a campaign file describes it."""
 
-    # Where they are not known yet, `on` is None for a wheel station, and a body sensor has no position.
+    # In a draft whose places are not known yet, `on` is None for a wheel station, and a body sensor has no position.
 
     channel: Annotated[str, Field(min_length=1)]
     """Column or channel name in the recordings."""
@@ -28,7 +28,7 @@ class Sensor:
     unit: str | None = None
     """Overrides what the file says; m/s² when neither says."""
     direction: Literal["up", "down"] = "up"
-    """Which way its positive reading points."""
+    """Direction of a positive reading."""
     range: Positive | None = None
     """Full scale, in the sensor's unit."""
     resolution: Positive | None = None
@@ -36,11 +36,11 @@ class Sensor:
     high_pass: Positive | None = None
     """Corner frequency of an AC-coupled sensor, Hz."""
     logger: str | None = None
-    """Name of the logger that recorded it, where several did."""
+    """Name of its logger, where there were several."""
 
     @property
     def row(self) -> Row:
-        """The displacement whose second derivative it feels, positive up.
+        """Row of the displacement whose second derivative it measures, positive up.
 
         Raises
         ------
@@ -51,5 +51,5 @@ class Sensor:
             return kinematics.wheel(self.on)
         if self.on is None or self.position is None:
             found, expected = ("no position", "[x, y, z], m") if self.on else ("no wheel station", "fl, fr, rl or rr")
-            raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "Write where the sensor sits.")])
+            raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "State the place of the sensor.")])
         return kinematics.body_point(self.position[0], self.position[1])

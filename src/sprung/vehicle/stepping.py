@@ -1,7 +1,8 @@
-"""Stepping: many motions of a vehicle with nonlinear forces at once, and what every unknown does to them.
+"""Time stepping: many motions of a vehicle with nonlinear elements at once, and their sensitivities.
 
-The motion itself has to be followed step by step, all drops side by side. Once it is known, what a step makes of a small
-change is a matrix for each step and drop, all made at once, and following the changes is one product of matrices per step.
+The motions themselves are followed step by step, all drops side by side. Once they are known, a step maps a small change of
+its start to one of its end by a matrix for each step and drop. These matrices are computed for many steps at once, and
+following the sensitivities takes one product of matrices per step.
 """
 
 from __future__ import annotations
@@ -15,16 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementForce, ElementInput
-from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel, Step
+from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 _CORRECTIONS = 3
-"""Times that the forces at the end of each step are put right: within it they hardly change what they follow from."""
+"""Evaluations of the forces at the end of each step: they depend little on their own effect within the step."""
 
 _CHUNK = 128
-"""Steps whose matrices are made at once: what they take stays in a processor's cache."""
+"""Steps whose matrices are computed at once: they fit into a processor's cache."""
 
 
 class Trajectory(NamedTuple):
@@ -35,9 +36,9 @@ class Trajectory(NamedTuple):
     states
         {X, Ẋ}, SI, shape (step + 1, drop, 2n) with n coordinates.
     forces
-        N, shape (step + 1, drop, force).
+        N, shape (step + 1, drop, element).
     memories
-        Shape (step + 1, drop, force).
+        Dimensionless, shape (step + 1, drop, element).
     """
 
     states: Array
@@ -45,271 +46,258 @@ class Trajectory(NamedTuple):
     memories: Array
 
 
-class Sensitivities(NamedTuple):
-    """What unknowns do to motions over some steps; unknowns are the parameters, then states and memories at the start.
-
-    Attributes
-    ----------
-    first
-        The step at which they begin.
-    states, forces
-        Shapes (step, drop, 2n, unknown) and (step, drop, force, unknown).
-    """
-
-    first: int
-    states: Array
-    forces: Array
-
-
 @dataclass(frozen=True, eq=False)
 class Stepper:
-    """Steps of several loads and lengths, for drops that belong to one of them each.
+    """Time steps of several loads and lengths, for drops that use one of them each.
 
     Attributes
     ----------
     forces
-        The forces, the same for all.
+        The nonlinear elements, the same for all.
     values
         Parameters, SI, shape (parameter,).
-    offsets, by_offset
-        Travel of each force where the empty vehicle rests, m, shape (force,), and by each parameter, (force, parameter).
+    offsets, offset_slopes
+        Travel of each element where the empty vehicle rests, m, shape (element,), and its derivatives, (element, parameter).
     steps, slopes
-        One step of each kind, and its derivatives by each parameter, stacked along a leading axis.
+        `NonlinearModel.step` of each load and length, and its derivatives by each parameter, stacked along a leading axis.
     kind
-        Which of them each drop takes, shape (drop,).
+        Which of them each drop uses, shape (drop,).
     """
 
     forces: NonlinearForces
     values: Array
     offsets: Array
-    by_offset: Array
-    steps: Step
-    slopes: Step
+    offset_slopes: Array
+    steps: Array
+    slopes: Array
     kind: Index
 
     @classmethod
-    def of(cls, models: Sequence[NonlinearModel], times: Sequence[float], kind: Index, values: Array) -> Stepper:
-        """Make the steps of models, each of a length of time in s."""
-        made = [model.step(values, time) for model, time in zip(models, times, strict=True)]
-        stacked = [Step(*(np.stack(each) for each in zip(*those, strict=True))) for those in zip(*made, strict=True)]
-        return cls(models[0].forces, values, *models[0].offsets(values), stacked[0], stacked[1], kind)
+    def of(cls, models: Sequence[NonlinearModel], lengths: Sequence[float], kind: Index, values: Array) -> Stepper:
+        """Compute the steps of models, each of a length in s."""
+        computed = [model.step(values, length) for model, length in zip(models, lengths, strict=True)]
+        steps, slopes = (np.stack(stacked) for stacked in zip(*computed, strict=True))
+        return cls(models[0].forces, values, *models[0].travel_offsets(values), steps, slopes, kind)
 
     @cached_property
-    def _travel(self) -> Array:
-        """The rows of the forces, shape (force, coordinate)."""
+    def _rows(self) -> Array:
+        """Rows of the travels, shape (element, coordinate)."""
         return self.forces.rows.at(self.values)
 
-    def follow(self, states: Array, memories: Array, steps: int) -> Trajectory:
-        """Follow motions from where they start.
+    @cached_property
+    def _row_slopes(self) -> Array:
+        """Derivatives of the rows by each parameter, shape (element, coordinate, parameter)."""
+        return np.ascontiguousarray(np.moveaxis(self.forces.rows.slopes, 1, 2))
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array, Array, Array]:
+        """Φ, B, B' and d of the step of each kind."""
+        elements, n = self._rows.shape
+        transition, before, after, constant = np.split(self.steps, np.cumsum([2 * n, elements, elements]), axis=2)
+        return transition, before, after, constant
+
+    def integrate(self, states: Array, memories: Array, steps: int) -> Trajectory:
+        """Integrate motions from their initial states.
 
         Parameters
         ----------
         states
-            {X, Ẋ} of each, SI, shape (drop, 2n).
+            {X, Ẋ} of each drop, SI, shape (drop, 2n).
         memories
-            Of the forces that remember, dimensionless, shape (drop, memory).
+            Of the elements that have one, dimensionless, shape (drop, memory).
         steps
             How many.
 
         Returns
         -------
-        Path
-            Not finite from where a motion runs away.
+        Trajectory
+            Not finite from where a motion diverges.
         """
-        rows, values = self._travel, self.values
-        count, n = rows.shape
-        feel = np.kron(np.eye(2), rows)
-        at = self.kind
-        # One product gives where a step ends without the force at its end, and travel and rate there.
-        whole = np.concatenate([self.steps.transition, self.steps.before, self.steps.constant[:, :, None]], axis=2)
-        whole = np.concatenate([whole, feel @ whole], axis=1)[at]
-        whole[:, 2 * n : 2 * n + count, -1] += self.offsets
-        after = self.steps.after[at]
-        yields = (feel @ self.steps.after)[at]
-        path = Trajectory(
-            np.empty((steps + 1, len(at), 2 * n)),
-            np.empty((steps + 1, len(at), count)),
-            np.zeros((steps + 1, len(at), count)),
+        rows, values = self._rows, self.values
+        elements, n = rows.shape
+        both = np.kron(np.eye(2), rows)
+        kind = self.kind
+        transition, before, after, constant = self._parts
+        # One product gives the end of a step without the forces there, and travel and rate there.
+        predictor = np.concatenate([transition, before, constant], axis=2)
+        predictor = np.concatenate([predictor, both @ predictor], axis=1)[kind]
+        predictor[:, 2 * n : 2 * n + elements, -1] += self.offsets
+        by_force = after[kind]
+        travel_by_force = (both @ after)[kind]
+        trajectory = Trajectory(
+            np.empty((steps + 1, len(kind), 2 * n)),
+            np.empty((steps + 1, len(kind), elements)),
+            np.zeros((steps + 1, len(kind), elements)),
         )
-        path.states[0] = states
-        path.memories[0][:, self.forces.remembering] = memories
+        trajectory.states[0] = states
+        trajectory.memories[0][:, self.forces.with_memory] = memories
         travel = states[:, :n] @ rows.T + self.offsets
-        at_rest = ElementInput(travel, states[:, n:] @ rows.T, np.zeros_like(travel), path.memories[0])
-        path.forces[0] = self.forces.answer(values, at_rest).force
-        now = np.ones((len(at), 2 * n + count + 1))
-        # What a force does to its own travel and rate: what it does to the others' within a step is less still.
-        spot = np.arange(count)
-        own_travel, own_rate = yields[:, spot, spot], yields[:, count + spot, spot]
+        at_start = ElementInput(travel, states[:, n:] @ rows.T, np.zeros_like(travel), trajectory.memories[0])
+        trajectory.forces[0] = self.forces.evaluate(values, at_start).force
+        start = np.ones((len(kind), 2 * n + elements + 1))
+        # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
+        diagonal = np.arange(elements)
+        own_travel, own_rate = travel_by_force[:, diagonal, diagonal], travel_by_force[:, elements + diagonal, diagonal]
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(steps):
-                now[:, : 2 * n], now[:, 2 * n : -1] = path.states[k], path.forces[k]
-                ahead = np.matmul(whole, now[:, :, None])[:, :, 0]
-                memory, force = path.memories[k], path.forces[k]
+                start[:, : 2 * n], start[:, 2 * n : -1] = trajectory.states[k], trajectory.forces[k]
+                predicted = np.matmul(predictor, start[:, :, None])[:, :, 0]
+                memory, force = trajectory.memories[k], trajectory.forces[k]
                 for correction in range(_CORRECTIONS):
-                    felt = ahead[:, 2 * n :] + np.matmul(yields, force[:, :, None])[:, :, 0]
-                    there = felt[:, :count]
-                    found = self.forces.answer(values, ElementInput(there, felt[:, count:], there - travel, memory))
+                    end = predicted[:, 2 * n :] + np.matmul(travel_by_force, force[:, :, None])[:, :, 0]
+                    increment = end[:, :elements] - travel
+                    given = ElementInput(end[:, :elements], end[:, elements:], increment, memory)
+                    found = self.forces.evaluate(values, given)
                     if correction < _CORRECTIONS - 1:
-                        along, over = _slopes(found)
-                        force = force + (found.force - force) / (1.0 - along * own_travel - over * own_rate)
-                path.forces[k + 1], path.memories[k + 1], travel = found.force, found.memory, there
-                path.states[k + 1] = ahead[:, : 2 * n] + np.matmul(after, found.force[:, :, None])[:, :, 0]
-        return path
+                        by_travel = found.by_travel + found.by_memory * found.memory_by_travel
+                        slope = 1.0 - by_travel * own_travel - found.by_rate * own_rate
+                        force = force + (found.force - force) / slope
+                trajectory.forces[k + 1], trajectory.memories[k + 1], travel = found.force, found.memory, given.travel
+                end_state = predicted[:, : 2 * n] + np.matmul(by_force, found.force[:, :, None])[:, :, 0]
+                trajectory.states[k + 1] = end_state
+        return trajectory
 
-    def changes(self, path: Trajectory) -> Iterator[Sensitivities]:
-        """Say what every unknown does to motions.
+    def sensitivities(self, trajectory: Trajectory) -> Iterator[tuple[int, Array, Array]]:
+        """Yield the derivatives of motions by the parameters, the initial states and the initial memories, in this order.
 
         Parameters
         ----------
-        path
+        trajectory
             The motions.
 
         Yields
         ------
-        Changes
-            Of a chunk of steps, one after the other, from the start on.
+        first
+            The step at which a chunk of steps begins; chunks follow each other from the start on.
+        states, forces
+            Derivatives of {X, Ẋ} and of the forces, shapes (step, drop, 2n, unknown) and (step, drop, element, unknown).
         """
-        parameters, remembering = len(self.values), self.forces.remembering
-        steps, drops, state = path.states.shape
-        own = np.zeros((drops, state + len(remembering), parameters + state + len(remembering)))
-        own[:, :, parameters:] = np.eye(state + len(remembering))
+        parameters, memories = len(self.values), len(self.forces.with_memory)
+        steps, drops, state = trajectory.states.shape
+        current = np.zeros((drops, state + memories, parameters + state + memories))
+        current[:, :, parameters:] = np.eye(state + memories)
         for first in range(0, steps, _CHUNK):
             last = min(first + _CHUNK, steps)
-            followed = np.empty((last - first, *own.shape))
-            followed[0] = own
+            chunk = np.empty((last - first, *current.shape))
+            chunk[0] = current
             if last > first + 1 or last < steps:
-                matrices, drive = self._linearised(path, first, min(last, steps - 1))
+                matrices, drive = self._linearise(trajectory, first, min(last, steps - 1))
                 for k in range(last - first):
-                    followed[k] = own
+                    chunk[k] = current
                     if first + k < steps - 1:
-                        own = matrices[k] @ own
-                        own[..., :parameters] += drive[k]
-            yield Sensitivities(first, followed[:, :, :state], self._of_forces(path, first, followed))
+                        current = matrices[k] @ current
+                        current[..., :parameters] += drive[k]
+            yield first, chunk[:, :, :state], self._force_sensitivities(trajectory, first, chunk)
 
-    def _answers(self, path: Trajectory, first: int, last: int) -> tuple[ElementForce, ElementInput]:
-        """Give the answers of the steps that end at each of first..last, and what they answered."""
-        X, V = np.split(path.states, 2, axis=-1)
-        travel, rate = X[first:last] @ self._travel.T + self.offsets, V[first:last] @ self._travel.T
+    def _evaluate(self, trajectory: Trajectory, first: int, last: int) -> tuple[ElementForce, ElementInput]:
+        """Return the forces of the steps that end at first ... last - 1, and their input."""
+        X, V = np.split(trajectory.states, 2, axis=-1)
+        travel, rate = X[first:last] @ self._rows.T + self.offsets, V[first:last] @ self._rows.T
         earlier = np.arange(first, last) - 1
         earlier[earlier < 0] = 0
-        way = travel - (X[earlier] @ self._travel.T + self.offsets)
-        asked = ElementInput(travel, rate, way, path.memories[earlier])
-        return self.forces.answer(self.values, asked), asked
+        increment = travel - (X[earlier] @ self._rows.T + self.offsets)
+        given = ElementInput(travel, rate, increment, trajectory.memories[earlier])
+        return self.forces.evaluate(self.values, given), given
 
-    def _of_forces(self, path: Trajectory, first: int, followed: Array) -> Array:
-        """Give what the unknowns do to the forces, from what they do to states and memories."""
-        last, parameters = first + len(followed), len(self.values)
-        answer, asked = self._answers(path, first, last)
-        rows, by_row = self._travel, self._by_row
+    def _force_sensitivities(self, trajectory: Trajectory, first: int, chunk: Array) -> Array:
+        """Return the derivatives of the forces from those of states and memories."""
+        last, parameters = first + len(chunk), len(self.values)
+        found, given = self._evaluate(trajectory, first, last)
+        rows, row_slopes = self._rows, self._row_slopes
         n = rows.shape[1]
-        along, over = followed[:, :, :n], followed[:, :, n : 2 * n]
-        forces = answer.by_travel[..., None] * (rows @ along) + answer.by_rate[..., None] * (rows @ over)
+        forces = found.by_travel[..., None] * (rows @ chunk[:, :, :n])
+        forces += found.by_rate[..., None] * (rows @ chunk[:, :, n : 2 * n])
         memory = np.zeros_like(forces)
-        memory[:, :, self.forces.remembering] = followed[:, :, 2 * n :]
-        forces += answer.by_memory[..., None] * memory
-        forces[..., :parameters] += self.forces.sensitivity(self.values, asked).force
-        X, V = np.split(path.states[first:last], 2, axis=-1)
-        forces[..., :parameters] += answer.by_travel[..., None] * (_moved(X, by_row) + self.by_offset)
-        forces[..., :parameters] += answer.by_rate[..., None] * _moved(V, by_row)
+        memory[:, :, self.forces.with_memory] = chunk[:, :, 2 * n :]
+        forces += found.by_memory[..., None] * memory
+        forces[..., :parameters] += self.forces.differentiate(self.values, given)[0]
+        X, V = np.split(trajectory.states[first:last], 2, axis=-1)
+        forces[..., :parameters] += found.by_travel[..., None] * (_by_geometry(X, row_slopes) + self.offset_slopes)
+        forces[..., :parameters] += found.by_rate[..., None] * _by_geometry(V, row_slopes)
         return forces
 
-    @cached_property
-    def _by_row(self) -> Array:
-        """Give what turns X into the change of the travels with the parameters: shape (force, n, parameter) as a stack."""
-        return np.ascontiguousarray(np.moveaxis(self.forces.rows.slopes, 1, 2))
-
-    def _linearised(self, path: Trajectory, first: int, last: int) -> tuple[Array, Array]:
-        """Give what the steps from first to last - 1 make of small changes of {x, memory}, and what parameters add.
+    def _linearise(self, trajectory: Trajectory, first: int, last: int) -> tuple[Array, Array]:
+        """Linearise the steps from first to last - 1 about their motions.
 
         Returns
         -------
         matrices
-            Shape (step, drop, 2n + memory, 2n + memory).
+            Derivatives of {x, memory} at the end by those at the start, shape (step, drop, 2n + memory, 2n + memory).
         drive
-            Shape (step, drop, 2n + memory, parameter).
+            Their derivatives by the parameters with the start held, shape (step, drop, 2n + memory, parameter).
         """
-        rows, by_row, memories = self._travel, self._by_row, self.forces.remembering
-        now, now_asked = self._answers(path, first, last)
-        then, then_asked = self._answers(path, first + 1, last + 1)
-        of_now = self.forces.sensitivity(self.values, now_asked).force
-        of_then = self.forces.sensitivity(self.values, then_asked)
+        rows, row_slopes, memories = self._rows, self._row_slopes, self.forces.with_memory
+        now, now_input = self._evaluate(trajectory, first, last)
+        then, then_input = self._evaluate(trajectory, first + 1, last + 1)
+        now_force, _ = self.forces.differentiate(self.values, now_input)
+        then_force, then_memory = self.forces.differentiate(self.values, then_input)
         n = rows.shape[1]
-        x, y = path.states[first:last], path.states[first + 1 : last + 1]
+        x, y = trajectory.states[first:last], trajectory.states[first + 1 : last + 1]
 
-        # The force at the start: by the state and by the memory there, each beside what geometry does.
-        feel = _beside(now.by_travel, rows, now.by_rate)
-        start = (
-            of_now
-            + now.by_travel[..., None] * (_moved(x[..., :n], by_row) + self.by_offset)
-            + now.by_rate[..., None] * _moved(x[..., n:], by_row)
+        # The forces at the start: by the state there, and by the parameters with the state held.
+        start_by_x = _by_state(now.by_travel, rows, now.by_rate)
+        start_by_p = (
+            now_force
+            + now.by_travel[..., None] * (_by_geometry(x[..., :n], row_slopes) + self.offset_slopes)
+            + now.by_rate[..., None] * _by_geometry(x[..., n:], row_slopes)
         )
-        # The force at the end: by the state there, and by state and memory at the start.
-        held = then.by_memory * then.memory_by_travel
-        feels = _beside(then.by_travel + held, rows, then.by_rate)
-        back = -_beside(held, rows, np.zeros_like(held))
-        kept = then.by_memory * then.memory_by_memory
-        ways = _moved(y[..., :n] - x[..., :n], by_row)
-        end = of_then.force + then.by_memory[..., None] * of_then.memory
-        end += then.by_travel[..., None] * (_moved(y[..., :n], by_row) + self.by_offset) + held[..., None] * ways
-        end += then.by_rate[..., None] * _moved(y[..., n:], by_row)
+        # The forces at the end: by the state there, by state and memory at the start, and by the parameters.
+        by_increment = then.by_memory * then.memory_by_travel
+        end_by_y = _by_state(then.by_travel + by_increment, rows, then.by_rate)
+        end_by_x = -_by_state(by_increment, rows, np.zeros_like(by_increment))
+        end_by_memory = then.by_memory * then.memory_by_memory
+        increments = _by_geometry(y[..., :n] - x[..., :n], row_slopes)
+        end_by_p = then_force + then.by_memory[..., None] * then_memory
+        end_by_p += then.by_travel[..., None] * (_by_geometry(y[..., :n], row_slopes) + self.offset_slopes)
+        end_by_p += by_increment[..., None] * increments
+        end_by_p += then.by_rate[..., None] * _by_geometry(y[..., n:], row_slopes)
 
-        at = self.kind
-        transition, before, after = (one[at] for one in self.steps[:3])
-        count = self.forces.number
-        inverse = np.linalg.inv(np.eye(count) - feels @ after)
-        spread = after @ inverse
-        # What arrives at the end moves the force there, which moves what arrives.
-        from_x = transition + before @ feel + after @ back
-        from_m = before * now.by_memory[..., None, :] + after * kept[..., None, :]
-        drive = self._by_step(x, path.forces[first:last], path.forces[first + 1 : last + 1])
-        drive += before @ start + after @ end
-        all_in = np.concatenate([from_x, from_m[..., memories], drive], axis=-1)
-        all_in += spread @ (feels @ all_in)
+        transition, before, after = (part[self.kind] for part in self._parts[:3])
+        # The state at the end moves the forces there, which move the state: y = r + B' E y has the solution
+        # y = r + B' (I - E B')⁻¹ E r.
+        inverse = np.linalg.inv(np.eye(self.forces.number) - end_by_y @ after)
+        by_x = transition + before @ start_by_x + after @ end_by_x
+        by_memory = before * now.by_memory[..., None, :] + after * end_by_memory[..., None, :]
+        by_p = self._step_by_parameters(x, trajectory.forces[first:last], trajectory.forces[first + 1 : last + 1])
+        by_p += before @ start_by_p + after @ end_by_p
+        whole = np.concatenate([by_x, by_memory[..., memories], by_p], axis=-1)
+        whole += (after @ inverse) @ (end_by_y @ whole)
 
         state, size, parameters = 2 * n, 2 * n + len(memories), len(self.values)
         matrices = np.zeros((*x.shape[:2], size, size))
-        drives = np.zeros((*x.shape[:2], size, parameters))
-        matrices[..., :state, :] = all_in[..., :size]
-        drives[..., :state, :] = all_in[..., size:]
+        drive = np.zeros((*x.shape[:2], size, parameters))
+        matrices[..., :state, :] = whole[..., :size]
+        drive[..., :state, :] = whole[..., size:]
         if len(memories):
             slope = then.memory_by_travel[..., memories, None]
-            way = rows[memories] @ all_in[..., :n, :]
-            way[..., :n] -= rows[memories]
-            matrices[..., state:, :] = slope * way[..., :size]
-            spot = np.arange(len(memories))
-            matrices[..., state + spot, state + spot] += then.memory_by_memory[..., memories]
-            drives[..., state:, :] = (
-                slope * (way[..., size:] + ways[..., memories, :]) + of_then.memory[..., memories, :]
-            )
-        return matrices, drives
+            increment = rows[memories] @ whole[..., :n, :]
+            increment[..., :n] -= rows[memories]
+            matrices[..., state:, :] = slope * increment[..., :size]
+            diagonal = state + np.arange(len(memories))
+            matrices[..., diagonal, diagonal] += then.memory_by_memory[..., memories]
+            by_geometry = slope * (increment[..., size:] + increments[..., memories, :])
+            drive[..., state:, :] = by_geometry + then_memory[..., memories, :]
+        return matrices, drive
 
-    def _by_step(self, x: Array, before: Array, after: Array) -> Array:
-        """Give what parameters do to the step itself, (step, drop, 2n, parameter)."""
-        slopes = np.concatenate(
-            [self.slopes.transition, self.slopes.before, self.slopes.after, self.slopes.constant[..., None]], axis=-1
-        )
+    def _step_by_parameters(self, x: Array, before: Array, after: Array) -> Array:
+        """Return the derivatives of the step itself by the parameters, shape (step, drop, 2n, parameter)."""
         inputs = np.concatenate([x, before, after, np.ones((*x.shape[:2], 1))], axis=-1)
-        parameters, state = slopes.shape[1:3]
+        parameters, state = self.slopes.shape[1:3]
         found = np.empty((*x.shape[:2], state, parameters))
-        for kind, own in enumerate(slopes):
-            mine = np.flatnonzero(self.kind == kind)
-            if mine.size:
-                moved = inputs[:, mine] @ own.reshape(parameters * state, -1).T
-                found[:, mine] = np.swapaxes(moved.reshape(len(x), len(mine), parameters, state), 2, 3)
+        for kind, slopes in enumerate(self.slopes):
+            drops = np.flatnonzero(self.kind == kind)
+            if drops.size:
+                change = inputs[:, drops] @ slopes.reshape(parameters * state, -1).T
+                found[:, drops] = np.swapaxes(change.reshape(len(x), len(drops), parameters, state), 2, 3)
         return found
 
 
-def _slopes(answer: ElementForce) -> tuple[Array, Array]:
-    """Give the derivatives of forces by travel, their memory following, and by rate."""
-    return answer.by_travel + answer.by_memory * answer.memory_by_travel, answer.by_rate
-
-
-def _beside(by_travel: Array, rows: Array, by_rate: Array) -> Array:
-    """Give forces by the state {X, Ẋ}, shape (..., force, 2n)."""
+def _by_state(by_travel: Array, rows: Array, by_rate: Array) -> Array:
+    """Return the derivatives of forces by the state {X, Ẋ}, shape (..., element, 2n)."""
     return np.concatenate([by_travel[..., None] * rows, by_rate[..., None] * rows], axis=-1)
 
 
-def _moved(X: Array, by_row: Array) -> Array:
-    """Give what geometry does to travels at X of shape (..., n): shape (..., force, parameter)."""
-    moved: Array = np.einsum("...i,fip->...fp", X, by_row, optimize=True)
-    return moved
+def _by_geometry(X: Array, row_slopes: Array) -> Array:
+    """Return the derivatives of travels by geometry at X of shape (..., n): shape (..., element, parameter)."""
+    change: Array = np.einsum("...i,fip->...fp", X, row_slopes, optimize=True)
+    return change

@@ -43,7 +43,7 @@ class Vehicle:
     k_af, k_ar
         Anti-roll bars, N per metre of left-right difference in suspension travel.
     F_f, F_r, s_f, s_r
-        Dry friction of each suspension, N, and its stiffness before it slides, N/m.
+        Dry friction of each suspension, N, and its presliding stiffness, N/m.
     r_f, r_r
         Rebound damping over compression damping; c_s is then that of compression.
     p_f, p_r
@@ -51,24 +51,24 @@ class Vehicle:
     k_bf, k_br, x_bf, x_br
         Stiffness of the bump stops, N/m, and the compression from rest at which they are met, m.
     w_h
-        Weight of the body times the height by which it stands above what carries it, N m.
+        Weight of the body times the height of its centre of gravity above the lateral support, N m.
     y_s
         Centre of gravity of the sprung mass, m left of the centreline.
     d_ksf, d_ksr, d_ktf, d_ktr, d_csf, d_csr
-        By how much the left one's rate is above the mean of left and right.
+        Excess of the left rate over the mean of left and right.
     n_f, n_r, n_f1, n_r1, n_f2, n_r2
         Place of springs and dampers (or dampers, 1, and springs, 2) on a rigid axle, as a part of its wheels' half-distance;
-        1 where every wheel is on its own.
+        1 for independent suspension.
     m_xf, m_xr
-        What rolls with a rigid axle beside its unsprung masses, as a mass at each wheel, kg: with the wheels T from the
-        middle, the axle's roll inertia is 2 T² (m_u + m_x).
+        Additional roll inertia of a rigid axle, as a mass at each wheel, kg: with the wheels T from the middle, the axle's roll
+        inertia is 2 T² (m_u + m_x).
     m_e, k_e, c_e, x_e
         Engine on mounts of its own, kg, a part of the sprung mass and of its inertias; its mounts' rate, N/m, and damping,
-        N s/m; and where it is, m forward of the front axle.
+        N s/m; and its place, m forward of the front axle.
     cg_height, wheel_height, roll_axis_height
         Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
     name
-        For people to read.
+        For messages and tables.
 
     Raises
     ------
@@ -150,15 +150,15 @@ class Vehicle:
             self._resolve_places("t", axle, None, problems)
             self._resolve_places("n", axle, 1.0, problems)
         for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
-            value, told = getattr(self, name), PARAMETERS[name]
-            positive = told.positive and name not in ("c_sf", "c_sr")
-            fit = value is None or (
-                math.isfinite(value) and (value > 0 or told.signed or (value == 0 and not positive))
+            value, parameter = getattr(self, name), PARAMETERS[name]
+            positive = parameter.positive and name not in ("c_sf", "c_sr")
+            possible = value is None or (
+                math.isfinite(value) and (value > 0 or parameter.signed or (value == 0 and not positive))
             )
-            if not fit:
-                kind = "positive" if positive else "finite" if told.signed else "finite, not negative"
+            if not possible:
+                kind = "positive" if positive else "finite" if parameter.signed else "finite, not negative"
                 problems.add(
-                    f"vehicle {self.name}: {name}", repr(value), f"a {kind} number, {told.unit}", "Correct it."
+                    f"vehicle {self.name}: {name}", repr(value), f"a {kind} number, {parameter.unit}", "Correct it."
                 )
         for name in ("cg_height", "wheel_height"):
             value = getattr(self, name)
@@ -173,10 +173,10 @@ class Vehicle:
             )
         problems.raise_if_any()
 
-    def _resolve_places(self, letter: str, axle: str, usual: float | None, problems: Problems) -> None:
+    def _resolve_places(self, letter: str, axle: str, default: float | None, problems: Problems) -> None:
         shared, damper, spring = (getattr(self, f"{letter}_{axle}{suffix}") for suffix in ("", "1", "2"))
         if shared is None and damper is None and spring is None:
-            shared = usual
+            shared = default
         if shared is not None:
             damper = shared if damper is None else damper
             spring = shared if spring is None else spring
@@ -196,14 +196,14 @@ class Vehicle:
     def from_parameters(
         cls, parameters: Mapping[str, float], *, name: str = "vehicle", **heights: float | None
     ) -> Vehicle:
-        """Make a vehicle from a mapping of parameter names, as a vehicle file holds them.
+        """Return the vehicle with the parameters of a mapping, as a vehicle file holds them.
 
         Parameters
         ----------
         parameters
             Values by name, SI.
         name
-            For people to read.
+            For messages and tables.
         heights
             `cg_height`, `wheel_height` and `roll_axis_height`, m, as far as they are known.
 
@@ -222,24 +222,24 @@ class Vehicle:
                 unit, meaning, *_ = PARAMETERS[missing]
                 problems.add(where, f"no '{missing}'", f"the {meaning} in {unit}", f"Add {missing} = ... to it.")
         problems.raise_if_any()
-        given: dict[str, Any] = {**parameters, **heights}
-        return cls(**given, name=name)
+        keywords: dict[str, Any] = {**parameters, **heights}
+        return cls(**keywords, name=name)
 
     @classmethod
     def nearest(cls, values: Mapping[str, float], *, name: str = "vehicle", **heights: float | None) -> Vehicle:
-        """Make the vehicle that is nearest to what a fit has found: what came out a little below zero, where none is, is zero.
+        """Return the vehicle nearest to fitted values: a negative value of a parameter that cannot be negative becomes zero.
 
         Parameters
         ----------
         values, name, heights
-            As for `from_parameters`; masses of loads among the values are passed over.
+            As for `from_parameters`; masses of loads among the values are ignored.
         """
-        able = {
-            one: value if PARAMETERS[one].signed else max(value, 0.0)
-            for one, value in values.items()
-            if one in PARAMETERS
+        possible = {
+            key: value if PARAMETERS[key].signed else max(value, 0.0)
+            for key, value in values.items()
+            if key in PARAMETERS
         }
-        return cls.from_parameters(able, name=name, **heights)
+        return cls.from_parameters(possible, name=name, **heights)
 
     @property
     def tracks(self) -> Tracks:
@@ -262,13 +262,13 @@ class Vehicle:
         return {name: getattr(self, name) for name in parameter_names(self.tracks, self.extras)}
 
     def __shown__(self) -> dict[str, float | str]:
-        """Return what a console and a notebook show: what it was made with, without the places that follow from it."""
+        """Return what a console and a notebook show: parameters and heights, without the places that follow from others."""
         heights = {key: value for key, value in self.heights.by_key.items() if value is not None}
         return {"name": self.name, **self.parameters, **heights}
 
     @property
     def extras(self) -> tuple[str, ...]:
-        """What it has beyond the paper's vehicle."""
+        """Names of what it has beyond the paper's vehicle."""
         return tuple(
             extra
             for extra in EXTRA_PARAMETERS
@@ -281,11 +281,11 @@ class Vehicle:
 
     @property
     def heights(self) -> Heights:
-        """How high things are, as far as it is known."""
+        """Heights, as far as they are known."""
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
 
     def model(self, load: Load = EMPTY) -> LinearModel:
-        """Give the equations of motion of this vehicle with a load, as functions of its parameters.
+        """Return the equations of motion of this vehicle with a load, as functions of its parameters.
 
         Parameters
         ----------
@@ -296,12 +296,12 @@ class Vehicle:
         return LinearModel.of(elements, tuple(self.parameters))
 
     def matrices(self, load: Load = EMPTY) -> Matrices:
-        """Give mass, damping and stiffness matrices.
+        """Return mass, damping and stiffness matrices.
 
         Parameters
         ----------
         load
-            What is on it; nothing unless given.
+            What is on it; empty unless given.
 
         Returns
         -------

@@ -46,7 +46,7 @@ def _stating(isolation: FaultIsolation, fault: Fault, known: Mapping[str, KnownV
 
 def _contradicted(name: str, stated: KnownValue, candidate: CandidateFit) -> Fault:
     parameters = candidate.fit.parameters
-    estimate = DERIVED[name](parameters)[0] if name in DERIVED else parameters[name]
+    estimate = DERIVED[name].value(parameters) if name in DERIVED else parameters[name]
     unit = PARAMETERS[name].unit if name in PARAMETERS else "kg"
     what = f"the recordings contradict {name} = {stated.value:g} {unit}; without it they give {estimate:.4g} {unit}"
     loads = [

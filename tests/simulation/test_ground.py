@@ -6,9 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
+from sprung.simulation import static_wheel_loads
+from sprung.simulation.ground import Ground
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Vehicle, static_wheel_loads
-from sprung.vehicle.ground import Ground
+from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, WHEELS, Item, Load, Vehicle
 
 UNEVEN = Vehicle.from_parameters(
     TABLE_1_CAR.parameters | {"y_s": 0.03, "d_ksf": 800.0, "d_ksr": -500.0, "d_ktf": 2e4, "d_ktr": -3e4}

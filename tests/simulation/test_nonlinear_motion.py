@@ -7,18 +7,8 @@ import pytest
 from hysteresis import measured
 
 import sprung
-from sprung.vehicle import (
-    EMPTY,
-    SCHOOL_BUS,
-    TABLE_1_CAR,
-    BlockSupport,
-    Load,
-    Vehicle,
-    Wheel,
-    drop_from_blocks,
-    parse_record,
-    simulate_nonlinear_drops,
-)
+from sprung.simulation import BlockSupport, drop_from_blocks, simulate_nonlinear_drops
+from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, Wheel, parse_record
 
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 

@@ -1,4 +1,4 @@
-"""The ground under the wheels: what it carries at rest, and the equations of motion where it carries nothing."""
+"""The vehicle on the ground: static wheel loads, tyre forces, and the equations of motion with wheels off the ground."""
 
 from __future__ import annotations
 
@@ -9,21 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.kinematics import WHEELS, WHEELS_AT, Wheel
-from sprung.vehicle.load import EMPTY, Load
-from sprung.vehicle.model import Matrices
-from sprung.vehicle.vehicle import Vehicle
+from sprung.vehicle import EMPTY, WHEELS, WHEELS_AT, Load, Matrices, Vehicle, Wheel
 
 Array = NDArray[np.float64]
 
 
 def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
-    """Return stiffness and damping of the tyre at each wheel station, those of uneven axles too.
+    """Return stiffness and damping of the tyre at each wheel station, with those of uneven axles.
 
     Parameters
     ----------
     vehicle
-        Whose tyres.
+        With its tyres.
 
     Returns
     -------
@@ -39,12 +36,12 @@ def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
 
 
 def static_wheel_loads(vehicle: Vehicle, load: Load = EMPTY, gravity: float = STANDARD_GRAVITY) -> Array:
-    """Give the force of flat ground on each wheel at rest.
+    """Return the force of flat ground on each wheel at rest.
 
     Parameters
     ----------
     vehicle, load
-        What stands there.
+        The vehicle and what is on it.
     gravity
         m/s².
 
@@ -77,7 +74,7 @@ class Ground:
 
     @classmethod
     def under(cls, vehicle: Vehicle, load: Load, gravity: float) -> Ground:
-        """Put a vehicle with its load on the ground; gravity in m/s²."""
+        """Return a vehicle with its load on the ground; gravity in m/s²."""
         stiffness, damping = np.array([tyre_rates(vehicle)[station] for station in WHEELS]).T
         matrices = vehicle.matrices(load)
         sag = np.linalg.solve(matrices.K, gravity * matrices.weight)
@@ -99,7 +96,7 @@ class Ground:
         return rows
 
     def generator(self, contact: NDArray[np.bool_]) -> Array:
-        """Give the generator of Ẏ = generator Y: eq. (3), less the tyre forces that are absent.
+        """Return the generator of Ẏ = generator Y: eq. (3) without the tyre forces of the wheels off the ground.
 
         Parameters
         ----------
@@ -124,7 +121,7 @@ class Ground:
         return wheels
 
     def rest(self, blocks: Array) -> Array:
-        """Find how the vehicle rests on blocks.
+        """Return the rest position on blocks.
 
         Parameters
         ----------
@@ -134,26 +131,26 @@ class Ground:
         Returns
         -------
         ndarray
-            X, shape (n,). One wheel may hang, never two, as a vehicle that stands on flat ground rests on any three.
+            X, shape (n,). One wheel at most is off its block: a vehicle that stands on flat ground rests on any three.
         """
-        found = []
-        for hanging in (-1, 0, 1, 2, 3):
-            on = np.arange(4) != hanging
+        candidates = []
+        for lifted in (-1, 0, 1, 2, 3):
+            on = np.arange(4) != lifted
             K = self.matrices.K - np.diag(np.where(on, 0.0, self.stiffness) @ self._wheels)
             F = np.where(on, self.stiffness * blocks, -self.wheel_loads) @ self._wheels
             X = np.asarray(np.linalg.solve(K, F), dtype=np.float64)
             force = self.wheel_loads - self.stiffness * (X[WHEELS_AT] - blocks)
-            found.append((float(np.min(np.where(on, force, -force))), X))
-        # One of the five neither pulls at a wheel nor lets one sink in; rounding may blur which, where it matters not.
-        return max(found, key=lambda each: each[0])[1]
+            candidates.append((float(np.min(np.where(on, force, -force))), X))
+        # In one of the five no tyre pulls and none sinks into the ground; where two are equal but for rounding, either will do.
+        return max(candidates, key=lambda candidate: candidate[0])[1]
 
     def keeps_contact(self, Y: Array) -> bool:
-        """Whether, with all wheels on the ground, too little energy is left for any tyre force to reach zero."""
+        """Return whether, with all wheels on the ground, the energy left is too little for any tyre force to reach zero."""
         M, _, K = self.matrices
         X, V = np.split(Y[:-1], 2)
         energy = 0.5 * (X @ K @ X + V @ M @ V)
-        # Energy never grows, and by Cauchy and Schwarz |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
+        # Energy never grows, and by the Cauchy-Schwarz inequality |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
         # where 1 / K_z and 1 / M_z are the wheel's diagonal entries of K⁻¹ and M⁻¹: no tyre unloads by more.
         flexibility, mobility = (np.diag(np.linalg.inv(matrix))[WHEELS_AT] for matrix in (K, M))
-        reach = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
-        return bool(np.all(math.sqrt(2 * energy) * reach < self.wheel_loads))
+        largest = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
+        return bool(np.all(math.sqrt(2 * energy) * largest < self.wheel_loads))

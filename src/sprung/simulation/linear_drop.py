@@ -1,6 +1,6 @@
-"""The drop from blocks: exact, because between two changes of tyre contact the vehicle is linear.
+"""The drop from blocks, exact: between two changes of tyre contact the vehicle is linear.
 
-Before the release the vehicle rests with blocks under some wheels; at the release the blocks vanish. A tyre pushes and
+Before the release the vehicle rests with blocks under some wheels; at the release the blocks are removed. A tyre pushes and
 never pulls, so each of the sixteen patterns of wheels on and off the ground has its own linear equations of motion with
 a constant force, whose solution is a matrix exponential. The instants at which the pattern changes are roots of that
 solution and are solved for, not stepped over. Nothing depends on a sampling rate.
@@ -18,18 +18,17 @@ from scipy.linalg import expm
 
 from sprung.display import shown
 from sprung.errors import Problems, SprungError, did_you_mean
+from sprung.simulation.ground import Ground
+from sprung.simulation.zero_crossing import find_first_zero
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.ground import Ground
-from sprung.vehicle.kinematics import WHEELS, Wheel
-from sprung.vehicle.load import EMPTY, Load
-from sprung.vehicle.response import Motion, affine_response
-from sprung.vehicle.vehicle import Vehicle
-from sprung.vehicle.zero_crossing import find_first_zero
+from sprung.vehicle import EMPTY, WHEELS, Load, Motion, Vehicle, Wheel, affine_response
 
 Array = NDArray[np.float64]
 
 _WINDOW = 256
-_MOST_EVENTS = 10_000
+"""Grid intervals that are searched at once for the next change of contact."""
+
+_MOST_SEGMENTS = 10_000
 
 Phase = Literal["contact", "relaxing", "air"]
 """On the ground; still compressed but, held back by tyre damping, without force; clear of the ground."""
@@ -39,51 +38,42 @@ _CHANGES: dict[Phase, tuple[tuple[Literal["force", "compression"], float, Phase]
     "relaxing": (("compression", 1.0, "air"), ("force", -1.0, "contact")),
     "air": (("compression", -1.0, "contact"),),
 }
-"""How each phase ends: this, times the sign, is positive during it and falls to zero; the phase that follows."""
+"""How each phase ends: the quantity that, times the sign, is positive during it and falls to zero; the phase that follows."""
 
 
 class ContactEvent(NamedTuple):
-    """A wheel leaves the ground or comes back to it."""
+    """A lift-off or a landing of a wheel."""
 
     time: float
     """s after the release."""
     wheel: Wheel
-    """Which one."""
+    """The wheel."""
     kind: Literal["lift-off", "landing"]
     """What it does."""
-
-
-class LinearSegment(NamedTuple):
-    """One linear piece of the motion: Ẏ = generator Y with Y = {X, Ẋ, 1}."""
-
-    start: float
-    """s after the release."""
-    state: Array
-    """Y at the start, SI, shape (2n + 1,) with n coordinates."""
-    generator: Array
-    """SI, shape (2n + 1, 2n + 1); the last column holds the constant force."""
-
-    def at(self, time: float) -> Array:
-        """Give Y at a time, s after the release; SI, shape (2n + 1,)."""
-        return expm(self.generator * (time - self.start)) @ self.state
 
 
 @shown
 @dataclass(frozen=True, eq=False)
 class DropMotion:
-    """The motion after one release, exact at any time.
+    """The motion after a release, exact at any time: linear segments Ẏ = generator Y with Y = {X, Ẋ, 1}.
 
     Attributes
     ----------
-    pieces
-        The linear pieces, one after the other.
+    starts
+        Start of each segment, s after the release, shape (segment,).
+    states
+        Y at each start, SI, shape (segment, 2n + 1) with n coordinates.
+    generators
+        SI, shape (segment, 2n + 1, 2n + 1); the last column of each holds the constant force.
     events
-        Every lift-off and landing, in order; wheels with blocks higher than their tyres were compressed lift off at 0.
+        Every lift-off and landing, in order; wheels on blocks higher than their tyres were compressed lift off at 0.
     until
-        Up to when the motion is known, s after the release; infinite once no wheel can lift off any more.
+        End of the time for which the motion is known, s after the release; infinite once no wheel can lift off any more.
     """
 
-    pieces: tuple[LinearSegment, ...]
+    starts: Array
+    states: Array
+    generators: Array
     events: tuple[ContactEvent, ...]
     until: float
 
@@ -93,12 +83,12 @@ class DropMotion:
         return self.events[-1].time if self.events else 0.0
 
     @property
-    def settled(self) -> bool:
-        """Whether it is certain that no wheel leaves the ground any more after `decay_start`."""
+    def is_settled(self) -> bool:
+        """Whether no wheel can leave the ground any more after `decay_start`."""
         return math.isinf(self.until)
 
     def state(self, time: float) -> Array:
-        """Give the state {X, Ẋ}, shape (2n,), from static equilibrium on flat ground.
+        """Return the state {X, Ẋ} from static equilibrium on flat ground, shape (2n,).
 
         Parameters
         ----------
@@ -111,8 +101,8 @@ class DropMotion:
             If the time is outside.
         """
         self._check(time, time)
-        piece = self.pieces[int(np.searchsorted([piece.start for piece in self.pieces], time, side="right")) - 1]
-        return piece.at(time)[:-1]
+        segment = int(np.searchsorted(self.starts, time, side="right")) - 1
+        return self._at(segment, time)[:-1]
 
     def motion(self, step: float, samples: int, start: float = 0.0) -> Motion:
         """Sample the motion; exact at every sample.
@@ -139,16 +129,22 @@ class DropMotion:
         times = start + step * np.arange(samples)
         if samples:
             self._check(times[0], times[-1])
-        owner = np.searchsorted([piece.start for piece in self.pieces], times, side="right") - 1
-        size = len(self.pieces[0].state)
+        segment_of = np.searchsorted(self.starts, times, side="right") - 1
+        size = self.states.shape[1]
         n = size // 2
         sampled = np.empty((3 * n, samples))
-        for i, piece in enumerate(self.pieces):
-            mine = np.flatnonzero(owner == i)
-            if mine.size:
-                states = affine_response(piece.generator, np.zeros(size), piece.at(times[mine[0]]), step, mine.size)
-                sampled[:, mine] = np.vstack([states[:-1], (piece.generator @ states)[n:-1]])
+        for segment, generator in enumerate(self.generators):
+            inside = np.flatnonzero(segment_of == segment)
+            if inside.size:
+                first = self._at(segment, times[inside[0]])
+                states = affine_response(generator, np.zeros(size), first, step, inside.size)
+                sampled[:, inside] = np.vstack([states[:-1], (generator @ states)[n:-1]])
         return Motion(sampled[:n], sampled[n : 2 * n], sampled[2 * n :])
+
+    def _at(self, segment: int, time: float) -> Array:
+        """Return Y of one segment at a time, s after the release."""
+        Y: Array = expm(self.generators[segment] * (time - self.starts[segment])) @ self.states[segment]
+        return Y
 
     def _check(self, first: float, last: float) -> None:
         if not 0.0 <= first <= last <= self.until:
@@ -167,18 +163,18 @@ def drop_from_blocks(
     duration: float = 60.0,
     gravity: float = STANDARD_GRAVITY,
 ) -> DropMotion:
-    """Release a vehicle that rests on blocks, and follow it exactly through every lift-off and landing.
+    """Return the exact motion of a vehicle released from blocks, through every lift-off and landing.
 
     Parameters
     ----------
     vehicle, load
-        What is dropped.
+        The vehicle and what is on it.
     wheels
         The wheels with blocks under them; the others stand on the ground.
     height
         Of the blocks, m.
     duration
-        How long to follow the motion at most, s; once the energy left cannot lift any wheel, it is known for ever.
+        Of the motion at most, s; once the energy left cannot lift any wheel, the motion is known for all time.
     gravity
         m/s².
 
@@ -191,7 +187,7 @@ def drop_from_blocks(
     InputError
         If the vehicle does not stand on its four wheels, or there are no such blocks; all faults at once.
     SprungError
-        If its wheels hop on and on, as those of a vehicle without damping do.
+        If its wheels never stop hopping, as those of a vehicle without damping.
 
     Notes
     -----
@@ -201,28 +197,28 @@ def drop_from_blocks(
     Examples
     --------
     >>> from sprung.vehicle import TABLE_1_CAR
-    >>> fall = drop_from_blocks(TABLE_1_CAR, wheels=("fl", "fr"), height=0.05)
-    >>> [event.kind for event in fall.events]
+    >>> drop = drop_from_blocks(TABLE_1_CAR, wheels=("fl", "fr"), height=0.05)
+    >>> [event.kind for event in drop.events]
     ['lift-off', 'lift-off', 'landing', 'landing']
     """
     ground = Ground.under(vehicle, load, gravity)
-    at_rest = _resting(ground, vehicle, load, wheels, height)
-    Y = np.concatenate([at_rest, np.zeros_like(at_rest), [1.0]])
+    rest = _rest(ground, vehicle, load, wheels, height)
+    Y = np.concatenate([rest, np.zeros_like(rest), [1.0]])
     phases: list[Phase] = ["contact" if value >= 0 else "air" for value in ground.compression @ Y]
-    events = [
-        ContactEvent(0.0, wheel, "lift-off") for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"
-    ]
+    lifted = [wheel for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"]
+    events = [ContactEvent(0.0, wheel, "lift-off") for wheel in lifted]
     # A tenth of the fastest time constant: within it a response has one extremum at most.
     step = 0.1 / float(np.abs(np.linalg.eigvals(ground.matrices.state)).max())
 
-    pieces: list[LinearSegment] = []
+    segments: list[tuple[float, Array, Array]] = []
     time = 0.0
-    while len(pieces) < _MOST_EVENTS:
+    while len(segments) < _MOST_SEGMENTS:
         contact = np.array([phase == "contact" for phase in phases])
-        pieces.append(LinearSegment(time, Y, ground.generator(contact)))
-        change = _next_change(ground, pieces[-1], phases, step, duration)
+        segments.append((time, Y, ground.generator(contact)))
+        change = _next_change(ground, *segments[-1], phases, step, duration)
         if isinstance(change, float):
-            return DropMotion(tuple(pieces), tuple(events), change)
+            starts, states, generators = (np.array(column) for column in zip(*segments, strict=True))
+            return DropMotion(starts, states, generators, tuple(events), change)
         time, Y, station, phases[station] = change
         if contact[station] != (phases[station] == "contact"):
             events.append(ContactEvent(time, WHEELS[station], "lift-off" if contact[station] else "landing"))
@@ -233,31 +229,31 @@ def drop_from_blocks(
 
 
 def _next_change(
-    ground: Ground, piece: LinearSegment, phases: list[Phase], step: float, duration: float
+    ground: Ground, start: float, state: Array, generator: Array, phases: list[Phase], step: float, duration: float
 ) -> tuple[float, Array, int, Phase] | float:
-    """Find the next change of a wheel's phase: time, Y, wheel and new phase; without one, until when that is known."""
+    """Find the next change of a wheel's phase: time, Y, wheel and new phase; without one, until when there is none."""
     rows = {"force": ground.force, "compression": ground.compression}
     changes = [
-        (station, sign * rows[what][station], after if ground.damping[station] or after != "relaxing" else "air")
+        (station, sign * rows[quantity][station], after if ground.damping[station] or after != "relaxing" else "air")
         for station, phase in enumerate(phases)
-        for what, sign, after in _CHANGES[phase]
+        for quantity, sign, after in _CHANGES[phase]
     ]
-    watch = np.array([row for _, row, _ in changes])
-    time, Y = piece.start, piece.state
+    watched = np.array([row for _, row, _ in changes])
+    time, Y = start, state
     while time < duration:
         if all(phase == "contact" for phase in phases) and ground.keeps_contact(Y):
             return math.inf
-        fall = find_first_zero(watch, piece.generator, Y, step, _WINDOW)
-        if isinstance(fall, tuple):
-            station, _, after = changes[fall[1]]
-            time += fall[0]
-            return (time, piece.at(time), station, after) if time < duration else duration
-        time, Y = time + _WINDOW * step, fall
+        zero = find_first_zero(watched, generator, Y, step, _WINDOW)
+        if isinstance(zero, tuple):
+            station, _, after = changes[zero[1]]
+            time += zero[0]
+            return (time, expm(generator * (time - start)) @ state, station, after) if time < duration else duration
+        time, Y = time + _WINDOW * step, zero
     return duration
 
 
-def _resting(ground: Ground, vehicle: Vehicle, load: Load, wheels: tuple[Wheel, ...], height: float) -> Array:
-    """Give X on the blocks, shape (coordinate,), or say why there is none."""
+def _rest(ground: Ground, vehicle: Vehicle, load: Load, wheels: tuple[Wheel, ...], height: float) -> Array:
+    """Return the rest position X on the blocks, shape (coordinate,), or raise an error if there is none."""
     problems = Problems()
     where = f"drop of {vehicle.name}, load '{load.name}'"
     if not wheels:

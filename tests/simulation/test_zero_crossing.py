@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from sprung.vehicle.zero_crossing import find_first_zero
+from sprung.simulation.zero_crossing import find_first_zero
 
 TURN = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 """Y = {sin(t + φ), cos(t + φ), 1}."""

@@ -1,0 +1,187 @@
+"""Drops and decays of a vehicle with nonlinear elements, by time steps short enough to leave no visible error.
+
+With dry friction, rebound damping or progressive springs there are no linear segments as in `drop_from_blocks`. All motions
+are stepped at once; the ground, which pushes and never pulls, is one more nonlinear element.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.simulation.ground import Ground
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import (
+    WHEELS,
+    WHEELS_AT,
+    ElementInput,
+    Load,
+    Motion,
+    NonlinearElement,
+    NonlinearModel,
+    Stepper,
+    Vehicle,
+    Wheel,
+    ground_contact_elements,
+    nonlinear_elements,
+    seven_degrees_of_freedom,
+)
+
+Array = NDArray[np.float64]
+
+_LONGEST_STEP = 2e-4
+"""s."""
+
+_ITERATIONS = 60
+"""Newton steps at most to find the rest position on blocks."""
+
+
+class BlockSupport(NamedTuple):
+    """How a vehicle rests before it is dropped.
+
+    Attributes
+    ----------
+    load
+        What is on it.
+    wheels
+        The wheels with blocks under them.
+    height
+        Of the blocks, m.
+    """
+
+    load: Load
+    wheels: tuple[Wheel, ...]
+    height: float
+
+
+def simulate_nonlinear_drops(
+    vehicle: Vehicle,
+    blocks: Sequence[BlockSupport],
+    step: float,
+    samples: int,
+    start: float = 0.0,
+    gravity: float = STANDARD_GRAVITY,
+) -> list[Motion]:
+    """Simulate several drops from blocks of a vehicle with nonlinear elements.
+
+    Parameters
+    ----------
+    vehicle
+        With nonlinear elements.
+    blocks
+        How it rests before each drop, without friction forces.
+    step
+        Sampling interval, s.
+    samples
+        How many samples.
+    start
+        Time of the first one, s after the release, less than `step`.
+    gravity
+        m/s².
+
+    Returns
+    -------
+    list of Motion
+        Displacement from static equilibrium with the load, velocity and acceleration, each (coordinate, samples).
+    """
+    values = np.array(list(vehicle.parameters.values()))
+    models, kind = _models(vehicle, [block.load for block in blocks], ground_contact_elements(vehicle.extras), gravity)
+    states = np.zeros((len(blocks), models[0].state_size))
+    for state, block, which in zip(states, blocks, kind, strict=True):
+        heights = np.array([block.height if station in block.wheels else 0.0 for station in WHEELS])
+        linear = Ground.under(vehicle, block.load, gravity).rest(heights) + models[which].sag(values)
+        state[: len(linear)] = _rest(models[which], values, linear, heights)
+    return _sample(models, kind, values, states, step, samples, start)
+
+
+def simulate_nonlinear_decays(
+    vehicle: Vehicle, loads: Sequence[Load], states: Array, step: float, samples: int
+) -> list[Motion]:
+    """Simulate free decays of a vehicle with nonlinear elements from given states, its tyres always on the ground.
+
+    Parameters
+    ----------
+    vehicle
+        With nonlinear elements.
+    loads
+        What is on it in each decay.
+    states
+        {X, Ẋ} from static equilibrium with the load, SI, shape (decay, 2n), without friction forces.
+    step
+        Sampling interval, s.
+    samples
+        How many samples.
+
+    Returns
+    -------
+    list of Motion
+        One for each state.
+    """
+    values = np.array(list(vehicle.parameters.values()))
+    models, kind = _models(vehicle, loads, (), STANDARD_GRAVITY)
+    initial, sag = states.copy(), np.array([model.sag(values) for model in models])[kind]
+    initial[:, : sag.shape[1]] += sag
+    return _sample(models, kind, values, initial, step, samples, 0.0)
+
+
+def _models(
+    vehicle: Vehicle, loads: Sequence[Load], contact: Sequence[NonlinearElement], gravity: float
+) -> tuple[list[NonlinearModel], NDArray[np.int64]]:
+    """Return a model for each different load, and which of them each of the loads has."""
+    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights)
+    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras), *contact]
+    names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
+    models = [NonlinearModel.of(elements, nonlinear, names, load, vehicle.heights, gravity) for load in different]
+    order = [load.name for load in different]
+    return models, np.array([order.index(load.name) for load in loads])
+
+
+def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) -> Array:
+    """Return the rest position on blocks, X from the empty vehicle at rest on the ground, shape (coordinate,)."""
+    forces, K = model.forces, model.linear.matrices(values).K
+    G, offsets = forces.rows.at(values), model.travel_offsets(values)[0]
+    tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
+    load = -K @ model.sag(values)
+    load[WHEELS_AT] -= tyres * heights
+    raised = np.zeros(forces.number)
+    raised[-4:] = heights
+    X = start
+    for _ in range(_ITERATIONS):
+        travel = G @ X - raised + offsets
+        zero = np.zeros_like(travel)
+        found = forces.evaluate(values, ElementInput(travel, zero, zero, zero))
+        residual = K @ X + load + G.T @ found.force
+        X = X - np.linalg.solve(K + (G.T * found.by_travel) @ G, residual)
+        if np.abs(residual).max() < 1e-9 * np.abs(load).max():
+            break
+    return X
+
+
+def _sample(
+    models: Sequence[NonlinearModel],
+    kind: NDArray[np.int64],
+    values: Array,
+    states: Array,
+    step: float,
+    samples: int,
+    start: float,
+) -> list[Motion]:
+    every = max(math.ceil(step / _LONGEST_STEP), 1)
+    with_memory = models[0].forces.with_memory
+    memories = np.zeros((len(states), len(with_memory)))
+    if start > 0:
+        before = Stepper.of(models, [start / every] * len(models), kind, values).integrate(states, memories, every)
+        states, memories = before.states[-1], before.memories[-1][:, with_memory]
+    stepper = Stepper.of(models, [step / every] * len(models), kind, values)
+    trajectory = stepper.integrate(states, memories, every * (samples - 1))
+    motions = []
+    for drop, which in enumerate(kind.tolist()):
+        X, forces = trajectory.states[::every, drop].T, trajectory.forces[::every, drop].T
+        acceleration = models[which].accelerations(values)[0] @ np.vstack([X, forces, np.ones((1, X.shape[1]))])
+        sag = models[which].sag(values)[:, None]
+        motions.append(Motion(X[: len(sag)] - sag, X[len(sag) :], acceleration))
+    return motions
