@@ -1,4 +1,4 @@
-"""The table of benchmarks/README.md, made from benchmarks/result.json; run after the benchmarks, says whether any missed."""
+"""The page benchmarks/README.md, generated from benchmarks/result.json; reports ratios that miss their requirement."""
 
 from __future__ import annotations
 
@@ -13,59 +13,61 @@ HERE = Path(__file__).resolve().parent
 _PAGE = """\
 # Benchmarks
 
-How long the joint fit takes beside what others would write, beside the least it could cost, and with ever more samples.
-`nox -s bench` measures, writes `result.json`, and makes this page of it with `table.py`; do not edit it.
+Computing time of the maximum likelihood fit compared with fits written with other libraries, with a lower bound of its
+cost, and for increasing numbers of samples. `nox -s bench` measures, writes `result.json`, and generates this page with
+`table.py`; do not edit it.
 
 Machine: {machine}.
 
-On another machine the ratios differ somewhat, on a busy one they scatter: contestants take turns, and what stands here are
-medians over the rounds, with quartiles.
+On another machine the ratios differ somewhat, and on a loaded machine they scatter. The programs are run in turns; the
+table contains medians over the rounds, with quartiles.
 
-| ratio | median | quartiles | wanted |
+| ratio | median | quartiles | required |
 |---|---:|---:|---:|
 {ratios}
 
-**The task**: the paper's car, empty and with 200 kg of ballast, dropped ten times; 8 channels, 1500 samples at 500 Hz, noise
-0.02 m/s².
+**The task**: the paper's car, empty and with 200 kg of ballast, dropped ten times; 8 channels, 1500 samples at 500 Hz,
+noise 0.02 m/s².
 
-- *Whole fit from its own start*: `fit_jointly(..., starts=1)`. Nobody gives it a start or the noise; error bars are included.
-  Usually three starts are refined, to see whether they agree. `sprung.identify` also finds where the decays begin, and judges.
+- *Whole fit from its own start*: `fit_jointly(..., starts=1)`. No start values and no noise levels are given; standard
+  uncertainties are included. Usually three starts are optimised, to check whether they agree. `sprung.identify` also
+  detects where the decays begin, selects the model and assesses the result.
 - *Plain SciPy fit* and *lmfit* (`plain.py`): the same sum of squares over the same samples, minimised with derivatives by
-  finite differences and each library's own tolerances (lmfit with twice its step: with its own, rounding stops
-  it short). They are given a start a fifth beside the truth, the noise levels, and the elimination of initial states and
-  offsets. SciPy's gives no error bars.
-- *Whole fit with friction*: the same drops of the same car with 100 N of dry friction at each wheel, from the linear fit on,
-  both coarse and fine steps. *solve_ivp and differences* (`plain_stepped.py`): the same sum of squares, every drop followed by
-  `scipy.integrate.solve_ivp` (LSODA, 1e-6), derivatives by differences, `least_squares`; it is given a start two percent beside
-  our end, our initial states and our noise levels.
-- *Floor*: one product of the records (80 × 1500) with the fourteen exponentials (1500 × 14, complex), in NumPy
+  finite differences and each library's own tolerances (lmfit with twice its step: with its own step, rounding ends the
+  optimisation too early). They are given a start a fifth from the true values, the noise levels, and the elimination of
+  initial states and offsets. The SciPy fit computes no standard uncertainties.
+- *Whole fit with friction*: the same drops of the same car with 100 N of dry friction at each wheel, starting from the
+  linear fit, with coarse and fine steps. *solve_ivp and differences* (`plain_stepped.py`): the same sum of squares, every
+  drop integrated by `scipy.integrate.solve_ivp` (LSODA, 1e-6), derivatives by differences, `least_squares`. It is given a
+  start two percent from our optimum, our initial states and our noise levels.
+- *Floor*: one product of the recordings (80 × 1500) with the fourteen exponentials (1500 × 14, complex), in NumPy
   `records @ exponentials`. In real arithmetic the same product takes half the time.
 
-## The same answer
+## Agreement of the results
 
-Largest difference of any parameter, in its standard errors:
+Largest difference of any parameter, in standard uncertainties:
 
-| | standard errors |
+| | standard uncertainties |
 |---|---:|
 {distances}
 
-*Polished*: SciPy once more, untimed, from our end on, with central differences and no tolerance. Rounding
-in finite differences lets even that end move by a few 0.00001 of a standard error.
+*Polished*: SciPy once more, untimed, from our optimum, with central differences and no tolerance. Rounding in the finite
+differences changes even this optimum by a few 0.00001 of a standard uncertainty.
 
-## With more samples
+## Number of samples
 
-The same three seconds, sampled more often:
+The same three seconds at higher sampling rates:
 
-| samples in a decay | time / time of {shortest} | fit / floor | memory / records |
+| samples in a decay | time / time of {shortest} | fit / floor | memory / recordings |
 |---:|---:|---:|---:|
 {samples}
 
-*Memory*: the most that a fit has allocated at any time (`tracemalloc`), beside the records that it was given.
+*Memory*: the maximum that a fit has allocated at any time (`tracemalloc`), divided by the size of the recordings.
 """
 
 
 def page(result: Mapping[str, Any]) -> str:
-    """Make the page of what pytest-benchmark has written."""
+    """Return the page for a result of pytest-benchmark."""
     extra = [benchmark["extra_info"] for benchmark in result["benchmarks"]]
     samples = {count: row for info in extra for count, row in info.get("samples", {}).items()}
     distances = {name: apart for info in extra for name, apart in info.get("standard_errors", {}).items()}
@@ -84,9 +86,9 @@ def page(result: Mapping[str, Any]) -> str:
 
 
 def missed(result: Mapping[str, Any]) -> list[str]:
-    """Give the ratios that are not as wanted, in words."""
+    """Return the ratios that miss their requirement, as text."""
     return [
-        f"{name}: {_three(one['ratio'])}, wanted {_bound(one)}" for name, one in _ratios(result) if not _reached(one)
+        f"{name}: {_three(one['ratio'])}, required {_bound(one)}" for name, one in _ratios(result) if not _reached(one)
     ]
 
 
@@ -112,7 +114,7 @@ def _quartiles(one: Mapping[str, float]) -> str:
 
 
 def _three(ratio: float) -> str:
-    """Give three digits, and no more than that of a large number."""
+    """Return a number with three significant digits."""
     return f"{ratio:#.3g}".rstrip(".")
 
 
@@ -126,7 +128,7 @@ def _machine(info: Mapping[str, Any]) -> str:
 
 
 def main() -> int:
-    """Write the page; gives 1 where a ratio is not as wanted."""
+    """Write the page; return 1 if a ratio misses its requirement."""
     result = json.loads((HERE / "result.json").read_text(encoding="utf-8"))
     (HERE / "README.md").write_text(page(result), encoding="utf-8")
     for one in missed(result):

@@ -1,4 +1,4 @@
-"""What the docstring of a public name must say, and which of it one does not."""
+"""Requirements of the docstrings of public names, and their check."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class Docstring:
         return cls(text, dict(zip(parts[1::2], parts[2::2], strict=True)))
 
     def entries(self, heading: str) -> dict[str, str]:
-        """Give what is said of each name in a section; names that share a description each get it."""
+        """Return the description of each name in a section; names may share one."""
         found: dict[str, str] = {}
         names: list[str] = []
         for line in self.sections.get(heading, "").strip("\n").split("\n"):
@@ -104,7 +104,7 @@ class Docstring:
 
 
 def public() -> Iterator[tuple[str, object]]:
-    """Give every public name of the package and its rooms, each object once."""
+    """Yield every public name of the package and its rooms, each object once."""
     seen: set[int] = set()
     for module in (sprung, *(importlib.import_module(f"sprung.{name}") for name in ROOMS)):
         for name in exported(module):
@@ -120,7 +120,7 @@ def exported(module: ModuleType) -> list[str]:
 
 
 def complaints(name: str, value: object) -> list[str]:
-    """Say what is missing in the docstring of a public name, and in those of its public methods."""
+    """Return what is missing in the docstring of a public name and of its public methods."""
     if inspect.isclass(value):
         said = _of_class(value)
     elif inspect.isroutine(value):
@@ -169,7 +169,7 @@ def _of_class(value: type) -> Iterator[str]:
 
 
 def _fields(value: type) -> dict[str, Any]:
-    """Give the public fields of a record and what they hold."""
+    """Return the public fields of a record and their types."""
     if dataclasses.is_dataclass(value):
         names = [field.name for field in dataclasses.fields(value)]
     elif issubclass(value, BaseModel):
@@ -181,14 +181,14 @@ def _fields(value: type) -> dict[str, Any]:
 
 
 def _below_fields(value: type) -> dict[str, str]:
-    """Give the texts that stand below the fields of a class."""
+    """Return the texts below the fields of a class."""
     body = ast.parse(textwrap.dedent(inspect.getsource(value))).body[0]
     assert isinstance(body, ast.ClassDef)
     return _texts_below(body.body)
 
 
 def _texts_below(body: Sequence[ast.stmt]) -> dict[str, str]:
-    """Give the texts that stand below what is assigned, by its name."""
+    """Return the texts below assignments, by name."""
     found = {}
     for assigned, text in itertools.pairwise(body):
         targets = assigned.targets if isinstance(assigned, ast.Assign) else [getattr(assigned, "target", None)]
@@ -258,7 +258,7 @@ def _is_array(kind: Any) -> bool:
 
 
 def _is_counted(kind: Any) -> bool:
-    """Tell arrays of numbers from those of positions and of truth values, which have no unit."""
+    """Whether an array contains quantities: indices and truth values have no unit."""
     return not re.search(r"numpy\.(bool|int|uint|str|object)", str(kind))
 
 
@@ -267,12 +267,12 @@ def _is_number(kind: Any) -> bool:
 
 
 def _either(kind: Any) -> tuple[Any, ...]:
-    """Give what a union may be, and what stands in front of an annotation's remarks."""
+    """Return the members of a union, or the type in an annotated type."""
     return typing.get_args(kind) if "Union" in str(typing.get_origin(kind)) or "|" in str(kind)[:200] else ()
 
 
 def _raised(function: Any) -> set[str]:
-    """Name the errors of bad input that a function raises in its own body."""
+    """Return the names of the input errors that a function raises in its body."""
     tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
     found = set()
     for node in ast.walk(tree):

@@ -37,14 +37,14 @@ class Block:
 
 
 def blocks_of(page: str) -> list[Block]:
-    """Give all fenced blocks of a page."""
+    """Return all fenced blocks of a page."""
     return [
         Block(found[1].strip(), found[2], page.count("\n", 0, found.start()) + 1) for found in _BLOCK.finditer(page)
     ]
 
 
 def indented_code(page: str) -> list[str]:
-    """Give lines that Markdown takes for code without a fence: nothing would run them."""
+    """Return lines that Markdown interprets as code without a fence: the tests would not run them."""
     lines = _BLOCK.sub("", page).split("\n")
     return [line for before, line in itertools.pairwise(lines) if not before.strip() and re.match(r" {4,}\S", line)]
 

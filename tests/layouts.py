@@ -12,7 +12,7 @@ from rich.cells import cell_len
 from rich.console import Console, Group, RenderableType
 
 from sprung.report import text_of
-from sprung.report.terminal.layout import Fitting
+from sprung.report.terminal.layout import TerminalTable
 from sprung.tables import Table
 
 WIDTHS = (40, 60, 80, 100, 120, 200)
@@ -20,7 +20,7 @@ WIDTHS = (40, 60, 80, 100, 120, 200)
 
 def tables_of(view: RenderableType) -> Iterator[Table]:
     """Give every table of a view."""
-    if isinstance(view, Fitting):
+    if isinstance(view, TerminalTable):
         yield view.table
     elif isinstance(view, Group):
         for part in view.renderables:

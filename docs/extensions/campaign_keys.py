@@ -12,8 +12,8 @@ import tomli_w
 from sprung.campaign.json_schema import campaign_schema
 from sprung.campaign.key_examples import EXAMPLES, UNIT
 from sprung.campaign.schema import VehicleFileSchema
-from sprung.report import drawing_svg, vehicle_sketch
-from sprung.report.drawing.style import alone_style
+from sprung.report import sketch_svg, vehicle_sketch
+from sprung.report.drawing.style import standalone_style
 from sprung.study import demo_campaign
 from sprung.vehicle import PARAMETERS
 
@@ -123,9 +123,9 @@ def _table(
 def sketch() -> str:
     """Draw the axes, with the sensors, the load and the dimensions of the example that `sprung demo` writes."""
     drawn = vehicle_sketch(demo_campaign())
-    style = alone_style()
+    style = standalone_style()
     pictures = "".join(
-        f'<div style="background: #fff; padding: 0.5em">{drawing_svg(one, style)}</div>' for one in drawn.drawings
+        f'<div style="background: #fff; padding: 0.5em">{sketch_svg(one, style)}</div>' for one in drawn.drawings
     )
     return f"```{{raw}} html\n{pictures}\n```\n\n{_text(drawn.key)}"
 

@@ -90,24 +90,24 @@ def main() -> None:
     parser.add_argument(
         "--noise", type=float, nargs="+", default=NOISE, help="of the other cases, m/s² (default %(default)s)"
     )
-    told = parser.parse_args()
+    options = parser.parse_args()
     headline = [Case(TABLE_1_CAR, *test, noise) for noise in HEADLINE_NOISE for test in HEADLINE_TESTS]
     others = [
         Case(vehicle, *test, noise)
         for vehicle in (SMALL_CAR, VAN, SCHOOL_BUS)
         for test in TESTS
-        for noise in told.noise
+        for noise in options.noise
     ]
-    counts = dict.fromkeys(headline, told.campaigns) | dict.fromkeys(others, told.each)
-    summaries = summarise(counts, told.processes)
+    counts = dict.fromkeys(headline, options.campaigns) | dict.fromkeys(others, options.each)
+    summaries = summarise(counts, options.processes)
     first, rest = summaries[: len(headline)], summaries[len(headline) :]
-    drawn = draw(first, rest, told.to / "at-the-bound.svg")
+    drawn = draw(first, rest, options.to / "at-the-bound.svg")
     numbers = {"headline": [one.document() for one in first], "others": [one.document() for one in rest]}
-    write(told.to, "at-the-bound", page(first, rest, drawn), numbers)
+    write(options.to, "at-the-bound", page(first, rest, drawn), numbers)
 
 
 def as_wanted(one: Summary) -> bool:
-    """Say whether a case meets what is wanted."""
+    """Whether a case meets the requirements."""
     low, high = COVERAGE
     return bool(one.rmse.mean() <= MEAN and one.rmse.max() <= WORST and low <= one.coverage <= high)
 

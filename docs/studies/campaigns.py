@@ -109,7 +109,7 @@ class Case:
         return self.loaded or bool(self.weighed)
 
     def known(self, random: np.random.Generator | None = None) -> dict[str, KnownValue]:
-        """Give what was weighed: what the scales show this time, or the truth if there is no randomness."""
+        """Return the weighed quantities: with a random error, or the true values without a random generator."""
         names, values = tuple(self.vehicle.parameters), np.array(list(self.vehicle.parameters.values()))
         std = WEIGHING * self.vehicle.total_mass
         draws = np.zeros(len(self.weighed)) if random is None else random.standard_normal(len(self.weighed))
@@ -119,12 +119,12 @@ class Case:
         }
 
     def seed(self, number: int) -> int:
-        """Give the seed of a campaign: another one in every case."""
+        """Return the seed of a campaign, different for every case."""
         mixed = np.random.SeedSequence([zlib.crc32(self.label.encode()), number])
         return int(mixed.generate_state(1, np.uint64)[0])
 
     def campaign(self, number: int) -> sprung.Campaign:
-        """Give one noisy campaign."""
+        """Return one noisy campaign."""
         clean, seed = _without_noise(self.vehicle, self.loaded), self.seed(number)
         random = np.random.default_rng(seed)
         recordings = tuple(
@@ -139,7 +139,7 @@ class Case:
         return {n: x / total if PARAMETERS[n].scales else x for n, x in self.vehicle.parameters.items()}
 
     def bound(self, used: Sequence[int]) -> Real:
-        """Give the Cramér-Rao bound of everything in `truth`, relative, from the drops used; shape (quantity,).
+        """Return the relative Cramér-Rao bound of all quantities in `truth`, from the drops used; shape (quantity,).
 
         Decays start where the last tyre last touches; what was weighed counts as one more measurement.
         """
@@ -164,7 +164,7 @@ Statement = tuple[float, float, float, float]
 
 
 def _statements(result: sprung.Result, scaled: bool) -> dict[str, Statement]:
-    """Give everything that a result states a value of; without scale, per total mass what scales."""
+    """Return all estimates with a value; without an absolute scale, masses and rates per total mass."""
     found: dict[str, Statement] = {}
     for name, one in result.parameters.items():
         if one.value is not None and one.std is not None and one.interval95 is not None:
@@ -178,7 +178,7 @@ def _statements(result: sprung.Result, scaled: bool) -> dict[str, Statement]:
 
 
 def _held(stated: Statement | None, truth: float) -> tuple[float, float, float]:
-    """Give relative error, relative standard uncertainty, and whether the interval holds the truth; NaN for nothing."""
+    """Return relative error, relative standard uncertainty, and whether the interval holds the truth; NaN if undetermined."""
     if stated is None:
         return np.nan, np.nan, np.nan
     value, std, low, high = stated
@@ -221,7 +221,7 @@ def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) ->
 
 @lru_cache(maxsize=256)
 def _information(vehicle: Vehicle, loaded: bool, noise: float, used: tuple[int, ...]) -> Real:
-    """Give what some drops tell, whatever is weighed beside them; shape (direction, direction)."""
+    """Return the information of drops, without weighings; shape (direction, direction)."""
     clean = _without_noise(vehicle, loaded)
     drops = (clean.drops[i] for i in used)
     planned = tuple(PlannedDrop(clean.load(one.load), one.wheels, float(one.height or 0)) for one in drops)
@@ -231,8 +231,8 @@ def _information(vehicle: Vehicle, loaded: bool, noise: float, used: tuple[int, 
 @lru_cache(maxsize=1024)
 def _bound(case: Case, used: tuple[int, ...]) -> Real:
     subject = _subject(case.vehicle, case.noise, case.known())
-    told = _information(case.vehicle, case.loaded, case.noise, used)
-    covariance = Bound(subject, told + PlannedTest(subject, ()).prior).covariance
+    information = _information(case.vehicle, case.loaded, case.noise, used)
+    covariance = Bound(subject, information + PlannedTest(subject, ()).prior).covariance
     gradients = np.eye(len(subject.names))
     if not case.scaled:
         total, gradient = evaluate_quantity("total_mass", subject.names, subject.values)

@@ -70,11 +70,11 @@ def main() -> None:
     """Run the study."""
     parser = arguments("Coverage of the intervals where noise is not white.", campaigns=500)
     parser.add_argument("--tests", type=int, default=len(TESTS), help="how many of the tests (default %(default)s)")
-    told = parser.parse_args()
-    cases = [Case(TABLE_1_CAR, *test, NOISE, kind) for test in TESTS[: told.tests] for kind in KINDS]
-    summaries = summarise(dict.fromkeys(cases, told.campaigns), told.processes)
+    options = parser.parse_args()
+    cases = [Case(TABLE_1_CAR, *test, NOISE, kind) for test in TESTS[: options.tests] for kind in KINDS]
+    summaries = summarise(dict.fromkeys(cases, options.campaigns), options.processes)
     numbers = {"cases": [{"kind": KINDS[one.case.measure], **one.document()} for one in summaries]}
-    write(told.to, "coloured", page(summaries), numbers)
+    write(options.to, "coloured", page(summaries), numbers)
 
 
 def page(summaries: Sequence[Summary]) -> str:

@@ -127,7 +127,7 @@ _KINDS: Sequence[Callable[[bytearray, Random], None]] = (
 
 
 def spoilt(files: Sequence[bytes], random: Random) -> bytes:
-    """Give a file that was sound and is so no longer, or not as it was.
+    """Return a damaged copy of a sound file.
 
     Parameters
     ----------

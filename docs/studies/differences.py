@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from pages import arguments, figures, run, table, tell, write
+from pages import arguments, figures, report_progress, run, table, write
 
 import sprung
 from sprung.uncertainty import KnownValue
@@ -53,17 +53,17 @@ class Pair:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("Whether differences are real.", campaigns=200).parse_args()
+    options = arguments("Whether differences are real.", campaigns=200).parse_args()
     tasks = [
         (weighed, change, seed)
         for weighed in (True, False)
         for change in CHANGES
-        for seed in range(told.campaigns if change == 0 else max(1, told.campaigns // 10))
+        for seed in range(options.campaigns if change == 0 else max(1, options.campaigns // 10))
     ]
-    pairs = list(run(attempt, tasks, told.processes))
-    tell(f"{len(pairs)} pairs")
+    pairs = list(run(attempt, tasks, options.processes))
+    report_progress(f"{len(pairs)} pairs")
     cases = [case(pairs, weighed, change) for weighed in (True, False) for change in CHANGES]
-    write(told.to, "differences", page(cases), {"cases": cases})
+    write(options.to, "differences", page(cases), {"cases": cases})
 
 
 def attempt(weighed: bool, change: float, seed: int) -> Pair:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from campaigns import ballast
-from pages import VERDICTS, arguments, figures, run, table, tell, write
+from pages import VERDICTS, arguments, figures, report_progress, run, table, write
 
 import sprung
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
@@ -55,22 +55,24 @@ class Trial:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("An engine on its mounts.", campaigns=40).parse_args()
+    options = arguments("An engine on its mounts.", campaigns=40).parse_args()
     kinds = [(which, with_friction) for which in range(len(VEHICLES)) for with_friction in (False, True)][:3]
     tasks = [
         (which, with_friction, seed)
         for which, with_friction in kinds
-        for seed in range(told.campaigns // (4 if with_friction else 1))
+        for seed in range(options.campaigns // (4 if with_friction else 1))
     ]
     trials: list[Trial] = []
-    for trial in run(attempt, tasks, told.processes, 1):
+    for trial in run(attempt, tasks, options.processes, 1):
         trials.append(trial)
-        tell(f"{len(trials)} of {len(tasks)}: {trial.kind}: {trial.verdict} with {', '.join(trial.model) or 'nothing'}")
-        write(told.to, "engine", page(trials), {"campaigns": [_document(one) for one in trials]})
+        report_progress(
+            f"{len(trials)} of {len(tasks)}: {trial.kind}: {trial.verdict} with {', '.join(trial.model) or 'nothing'}"
+        )
+        write(options.to, "engine", page(trials), {"campaigns": [_document(one) for one in trials]})
 
 
 def attempt(which: int, with_friction: bool, seed: int) -> Trial:
-    """Give a vehicle an engine of any usual kind, and identify it without saying so."""
+    """Identify a vehicle with a random engine that the campaign file does not mention."""
     plain, place = VEHICLES[which]
     random = np.random.default_rng([seed, which])
     mass = plain.m_s * random.uniform(0.06, 0.18)
@@ -152,8 +154,8 @@ def _row(kind: str, trials: Sequence[Trial]) -> list[str]:
     asked = {"engine", "friction"} if "friction" in kind else {"engine"}
     right = [one for one in trials if set(one.model) == asked and one.verdict != "reject"]
     names = [name for name in (right[0].errors if right else {}) if all(name in one.errors for one in right)]
-    told = np.array([[one.errors[name] for name in names] for one in right], dtype=float).reshape(-1, len(names), 3)
-    rms = dict(zip(names, np.sqrt((told[:, :, 0] ** 2).mean(axis=0)).tolist(), strict=True))
+    errors = np.array([[one.errors[name] for name in names] for one in right], dtype=float).reshape(-1, len(names), 3)
+    rms = dict(zip(names, np.sqrt((errors[:, :, 0] ** 2).mean(axis=0)).tolist(), strict=True))
     worst = max(rms, key=lambda name: rms[name], default="m_e")
     states, forced = (Counter(each) for each in ([one.verdict for one in trials], [one.forced for one in trials]))
     return [
@@ -163,8 +165,8 @@ def _row(kind: str, trials: Sequence[Trial]) -> list[str]:
         " / ".join(str(states[state]) for state in VERDICTS[:3]),
         f"{100 * rms.get('m_e', np.nan):.2f} %",
         f"{100 * rms.get(worst, np.nan):.2f} % ({worst})",
-        f"{float(np.sqrt((told[:, :, 1] ** 2).mean())):.2f}" if right else "-",
-        f"{100 * float(told[:, :, 2].mean()):.1f} %" if right else "-",
+        f"{float(np.sqrt((errors[:, :, 1] ** 2).mean())):.2f}" if right else "-",
+        f"{100 * float(errors[:, :, 2].mean()):.1f} %" if right else "-",
         " / ".join(str(forced[state]) for state in VERDICTS[:3]),
     ]
 

@@ -78,12 +78,12 @@ def csv(signals: Signals, path: Path, digits: int = 17) -> Path:
 
 
 def struct_of(signals: Signals) -> dict[str, Any]:
-    """Give the struct that holds a recording."""
+    """Return the struct that contains a recording."""
     return {"time": signals.time, **signals.by_name, "units": "s, g"}
 
 
 def timetable_of(signals: Signals) -> dict[str, Any]:
-    """Give the struct that a timetable becomes where its properties are kept."""
+    """Return the struct to which a timetable with its properties is converted."""
     units = np.array(["g"] * len(signals.names), dtype=object)
     properties = {"DimensionNames": np.array(["Time", "Variables"], dtype=object), "VariableUnits": units}
     columns = {name: row[:, None] for name, row in signals.by_name.items()}

@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from pages import arguments, figures, run, table, tell, write
+from pages import arguments, figures, report_progress, run, table, write
 
 import sprung
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
@@ -52,13 +52,13 @@ class Trial:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("Information in the flight phase.", campaigns=40).parse_args()
-    tasks = [(which, seed) for which in range(len(VEHICLES)) for seed in range(told.campaigns)]
+    options = arguments("Information in the flight phase.", campaigns=40).parse_args()
+    tasks = [(which, seed) for which in range(len(VEHICLES)) for seed in range(options.campaigns)]
     trials: list[Trial] = []
-    for trial in run(attempt, tasks, told.processes, 1):
+    for trial in run(attempt, tasks, options.processes, 1):
         trials.append(trial)
-        tell(f"{len(trials)} of {len(tasks)}: {trial.vehicle}: {', '.join(trial.since)}")
-        write(told.to, "fall", page(trials), {"campaigns": [_document(one) for one in trials]})
+        report_progress(f"{len(trials)} of {len(tasks)}: {trial.vehicle}: {', '.join(trial.since)}")
+        write(options.to, "fall", page(trials), {"campaigns": [_document(one) for one in trials]})
 
 
 def attempt(which: int, seed: int) -> Trial:

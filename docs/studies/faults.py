@@ -17,7 +17,7 @@ import numpy as np
 from coloured import TIME_CONSTANT
 from fleet import FLEET, OFFSET
 from outcomes import INJURIES, Clean, Outcome, try_all, try_clean
-from pages import arguments, figures, run, table, tell, write
+from pages import arguments, figures, report_progress, run, table, write
 
 VERDICTS = ("accept", "doubtful", "reject", "refused", "crash")
 
@@ -41,21 +41,25 @@ def main() -> None:
     parser.add_argument(
         "--seeds", type=int, default=10, help="campaigns of each, every fault in each (default %(default)s)"
     )
-    told = parser.parse_args()
-    sound = [(i % told.vehicles, FIRST + i, KINDS[i // told.vehicles % len(KINDS)]) for i in range(told.campaigns)]
-    cleans = list(run(try_clean, sound, told.processes))
-    tell(f"{sum(one.alarm for one in cleans)} false alarms of {len(cleans)} sound campaigns")
-    tasks = [(number, seed, told.faults) for seed in range(told.seeds) for number in range(told.vehicles)]
+    options = parser.parse_args()
+    sound = [
+        (i % options.vehicles, FIRST + i, KINDS[i // options.vehicles % len(KINDS)]) for i in range(options.campaigns)
+    ]
+    cleans = list(run(try_clean, sound, options.processes))
+    report_progress(f"{sum(one.alarm for one in cleans)} false alarms of {len(cleans)} sound campaigns")
+    tasks = [(number, seed, options.faults) for seed in range(options.seeds) for number in range(options.vehicles)]
     outcomes: list[Outcome] = []
-    for (number, seed, _), done in zip(tasks, run(try_all, tasks, told.processes, 1), strict=True):
+    for (number, seed, _), done in zip(tasks, run(try_all, tasks, options.processes, 1), strict=True):
         outcomes += done
-        tell(f"{FLEET[number].vehicle.name}, {seed}: {sum(one.named for one in done)} of {len(done)} identified")
+        report_progress(
+            f"{FLEET[number].vehicle.name}, {seed}: {sum(one.named for one in done)} of {len(done)} identified"
+        )
         # It takes an hour: whoever interrupts it has what was found so far.
-        write(told.to, "faults", page(outcomes, cleans), numbers(outcomes, cleans))
+        write(options.to, "faults", page(outcomes, cleans), numbers(outcomes, cleans))
 
 
 def numbers(outcomes: Sequence[Outcome], cleans: Sequence[Clean]) -> dict[str, list[dict[str, object]]]:
-    """Give what came out as what JSON knows: every injury, all that was not named, every false alarm."""
+    """Return the figures for JSON: every kind of fault, all that were not identified, every false alarm."""
     missed = [
         asdict(one) | {name: figures(getattr(one, name)) for name in ("worst", "rms", "beyond")}
         for one in outcomes
@@ -74,12 +78,12 @@ def by_injury(outcomes: Iterable[Outcome]) -> dict[str, list[Outcome]]:
 
 
 def harmed(one: Outcome) -> bool:
-    """Say whether numbers were accepted that are far from what they would have been."""
+    """Whether an accepted result deviates from that of the sound campaign."""
     return one.verdict == "accept" and one.beyond > FAR
 
 
 def distances(outcomes: Iterable[Outcome]) -> tuple[float, float]:
-    """Give root-mean-square and worst distance of those that were accepted; NaN without any."""
+    """Return root-mean-square and largest deviation of the accepted results; NaN without any."""
     accepted = [one for one in outcomes if one.verdict == "accept" and not np.isnan(one.rms)]
     if not accepted:
         return np.nan, np.nan
@@ -87,7 +91,7 @@ def distances(outcomes: Iterable[Outcome]) -> tuple[float, float]:
 
 
 def document(outcomes: Sequence[Outcome]) -> dict[str, object]:
-    """Give what came of one injury as what JSON knows."""
+    """Return the figures of one kind of fault for JSON."""
     injury = INJURIES[outcomes[0].injury]
     rms, worst = distances(outcomes)
     return {

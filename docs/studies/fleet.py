@@ -78,7 +78,7 @@ class DropTest:
         )
 
     def campaign(self, seed: int, measure: Measure = white) -> sprung.Campaign:
-        """Give a campaign with noise, offsets and weighing of its own."""
+        """Return a campaign with its own noise, offsets and weighing errors."""
         random = np.random.default_rng([len(self.sensors), len(self.drops), int(self.rate), seed])
         felt = np.array([one.high_pass is None for one in self.sensors])[:, None]
         recordings = []
@@ -124,7 +124,7 @@ def _wheels(unit: str | None, *coupled: Wheel, high_pass: float = 0.2) -> tuple[
 
 
 def _drops(height: float, **kinds: Sequence[tuple[Wheel, ...]]) -> tuple[Drop, ...]:
-    """Name the wheels of every drop, by load."""
+    """Return the dropped wheels of every drop, by load."""
     ways = {WHEELS: "all", FRONT: "front", REAR: "rear", LEFT: "left", RIGHT: "right"}
     return tuple(
         Drop(file=f"{load}_{ways.get(wheels, '_'.join(wheels))}.csv", load=load, wheels=wheels, height=height)

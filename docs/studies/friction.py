@@ -17,7 +17,7 @@ from typing import Any, Literal
 import numpy as np
 from fleet import FLEET
 from hysteresis import Law, loads_of, measured
-from pages import arguments, figures, run, table, tell, write
+from pages import arguments, figures, report_progress, run, table, write
 
 import sprung
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
@@ -41,9 +41,9 @@ class Trial:
     verdict
         The verdict's state.
     extras
-        What the records were found to ask for.
+        Selected model terms.
     errors
-        By parameter the error as a part of the truth; those that are not told are missing.
+        Relative error by parameter; undetermined parameters are missing.
     covered
         By parameter whether the 95 % interval holds the truth.
     noise
@@ -61,16 +61,18 @@ class Trial:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("Vehicles with dry friction.", campaigns=100).parse_args()
-    tasks: list[tuple[Kind, int]] = [("none", seed) for seed in range(told.campaigns)]
-    tasks += [("friction", seed) for seed in range(told.campaigns)]
-    tasks += [("another law", seed) for seed in range(max(told.campaigns // 10, 1))]
+    options = arguments("Vehicles with dry friction.", campaigns=100).parse_args()
+    tasks: list[tuple[Kind, int]] = [("none", seed) for seed in range(options.campaigns)]
+    tasks += [("friction", seed) for seed in range(options.campaigns)]
+    tasks += [("another law", seed) for seed in range(max(options.campaigns // 10, 1))]
     trials: list[Trial] = []
-    for trial in run(attempt, tasks, told.processes, 1):
+    for trial in run(attempt, tasks, options.processes, 1):
         trials.append(trial)
-        tell(f"{len(trials)} of {len(tasks)}: {trial.kind}, {trial.vehicle}: {trial.verdict}, {trial.extras}")
+        report_progress(
+            f"{len(trials)} of {len(tasks)}: {trial.kind}, {trial.vehicle}: {trial.verdict}, {trial.extras}"
+        )
         # It takes a while: whoever interrupts it has what was found so far.
-        write(told.to, "friction", page(trials), {"campaigns": [_document(one) for one in trials]})
+        write(options.to, "friction", page(trials), {"campaigns": [_document(one) for one in trials]})
 
 
 def attempt(kind: Kind, seed: int) -> Trial:
@@ -88,7 +90,7 @@ def attempt(kind: Kind, seed: int) -> Trial:
 
 
 def _with_friction(vehicle: Vehicle, random: np.random.Generator, uneven: bool) -> Vehicle:
-    """Give a vehicle friction of half a percent to three of a wheel's load, and for another law uneven dampers as well."""
+    """Return a vehicle with friction of 0.5 to 3 % of a wheel's load; for another law with rebound damping as well."""
     weight = 9.81 * vehicle.m_s / 4
     friction = {f"F_{axle}": float(weight * random.uniform(0.005, 0.03)) for axle in "fr"}
     stiff = {f"s_{axle}": float(friction[f"F_{axle}"] / random.uniform(3e-4, 8e-4)) for axle in "fr"}

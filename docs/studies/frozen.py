@@ -70,7 +70,7 @@ def identify(number: int) -> tuple[str, Frozen, float]:
 
 
 def differences(campaign: FrozenCampaign, then: Frozen, now: Frozen) -> Iterator[str]:
-    """Name everything in which two programs differ by more than they may."""
+    """Return every quantity in which two programs differ by more than the tolerance."""
     for what in ("verdict", "model", "faults"):
         before, after = getattr(then, what), getattr(now, what)
         if before != after:
@@ -105,25 +105,25 @@ def main() -> int:
     parser.add_argument("--write", action="store_true", help="freeze what the program does now")
     parser.add_argument("--only", default="", metavar="TEXT", help="campaigns whose name holds this text")
     parser.add_argument("--processes", type=int, default=1)
-    told = parser.parse_args()
+    options = parser.parse_args()
     stored: dict[str, Mapping[str, Any]] = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
     found, different = dict(stored), 0
-    with ProcessPoolExecutor(told.processes) as pool:
-        for name, now, seconds in pool.map(identify, chosen(told.only)):
+    with ProcessPoolExecutor(options.processes) as pool:
+        for name, now, seconds in pool.map(identify, chosen(options.only)):
             campaign = next(one for one in FROZEN if one.name == name)
             sys.stdout.write(
                 f"{name}: {now.verdict}, {', '.join(now.model)}, {len(now.faults)} faults, {seconds:.1f} s\n"
             )
-            if told.write or name not in stored:
+            if options.write or name not in stored:
                 found[name] = asdict(now)
                 continue
             for line in differences(campaign, Frozen(**stored[name]), now):
                 different += 1
                 sys.stdout.write(f"    {line}\n")
             sys.stdout.flush()
-    if told.write:
+    if options.write:
         FILE.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    sys.stdout.write(f"{different} differences in {len(chosen(told.only))} campaigns\n")
+    sys.stdout.write(f"{different} differences in {len(chosen(options.only))} campaigns\n")
     return 1 if different else 0
 
 

@@ -61,7 +61,7 @@ class Followed:
         sys.settrace(None)
 
     def new(self) -> bool:
-        """Say whether the last time led along lines not known before, which are known from now on."""
+        """Whether the last run executed new lines, which are then recorded."""
         before = len(self._known)
         self._known |= self._now
         return len(self._known) > before
@@ -129,7 +129,7 @@ def fuzz(reader: Reader, folder: Path, seconds: float, seed: int) -> None:
 
 
 def _resident() -> int:
-    """Give the most memory that this process ever had, bytes."""
+    """Return the peak memory of this process, bytes."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
 
 
@@ -140,7 +140,7 @@ def _keep(folder: Path, data: bytes, why: str) -> str:
 
 
 def _where(broken: Broken) -> str:
-    """Give the last line of this package, and the last line of all, that an error came from."""
+    """Return the last line of this package, and the last line at all, in the traceback of an error."""
     if broken.__cause__ is None:
         return ""
     frames = traceback.extract_tb(broken.__cause__.__traceback__)
@@ -189,7 +189,7 @@ def watch(name: str, folder: Path, seconds: float, seed: int) -> ResidualTable:
 
 
 def _lines(process: subprocess.Popen[bytes], longest: float) -> Iterator[list[str]]:
-    """Give the lines that a process says; it is ended if it says nothing for too long."""
+    """Yield the lines that a process prints; it is terminated after a long silence."""
     assert process.stdout is not None  # noqa: S101 (it has a pipe; for the type checker)
     with selectors.DefaultSelector() as selector:
         selector.register(process.stdout, selectors.EVENT_READ)

@@ -76,7 +76,7 @@ def measured(
 
 
 def _followed(vehicle: Vehicle, campaign: sprung.Campaign, law: Law, rate: float, duration: float) -> Real:
-    """Give accelerations of the seven coordinates from the release on, (drop, 7, time)."""
+    """Return accelerations of the seven coordinates from the release on, (drop, 7, time)."""
     drops, (beta, gamma, n) = campaign.drops, _SHAPES[law]
     p = _by_wheel(vehicle)
     a, b = vehicle.a, vehicle.b
@@ -129,7 +129,7 @@ def _followed(vehicle: Vehicle, campaign: sprung.Campaign, law: Law, rate: float
 
 
 def _by_wheel(vehicle: Vehicle) -> Mapping[str, Real]:
-    """Give every parameter of a corner for the four wheels, by its name without the axle."""
+    """Return every corner parameter for the four wheels, by its name without the axle."""
     names = ("k_s", "c_s", "k_t", "F_", "s_", "r_")
     found = {
         name.rstrip("_"): np.array([getattr(vehicle, f"{name}{wheel[0]}") for wheel in WHEELS], dtype=float)
@@ -141,7 +141,7 @@ def _by_wheel(vehicle: Vehicle) -> Mapping[str, Real]:
 
 
 def _at_rest(p: Mapping[str, Real], at_spring: Real, down: Real, lifted: Real) -> Real:
-    """Give where every vehicle rests on its blocks; a wheel that would hang is let go, (drop, 7)."""
+    """Return the static position on the blocks, without wheels that would hang, (drop, 7)."""
     found = []
     for weight, heights in zip(down, lifted, strict=True):
         on = np.ones(4, dtype=bool)
@@ -158,7 +158,7 @@ def _at_rest(p: Mapping[str, Real], at_spring: Real, down: Real, lifted: Real) -
 
 
 def loads_of(vehicle: Vehicle, part: float = 0.1) -> Sequence[Mapping[str, Any]]:
-    """Give a load of a part of the sprung mass, off centre."""
+    """Return a load of a fraction of the sprung mass, off centre."""
     mass = part * vehicle.m_s
     places = [(-0.3 * vehicle.wheelbase, 0.3, 0.6), (-0.75 * vehicle.wheelbase, -0.25, 0.6)]
     return [{"name": "ballast", "items": [{"mass": mass / 2, "position": place} for place in places]}]

@@ -83,7 +83,7 @@ def changed(
 
 
 def of_kind(campaign: sprung.Campaign, kind: str) -> list[int]:
-    """Give the channels on ``body`` or ``wheel``, those that feel gravity, ``DC``, and those that do not, ``AC``."""
+    """Return the channels on ``body`` or ``wheel``, or with ``DC`` or ``AC`` coupling."""
     tests: dict[str, Callable[[sprung.Sensor], bool]] = {
         "any": lambda _: True,
         "body": lambda one: one.on == "body",
@@ -95,7 +95,7 @@ def of_kind(campaign: sprung.Campaign, kind: str) -> list[int]:
 
 
 def everywhere(kind: str, how: Callable[[np.random.Generator, float], Change]) -> Act:
-    """Make an injury of one channel of a kind in all drops; `how` is told the samples per second."""
+    """Make an injury of one channel of a kind in all drops; `how` receives the samples per second."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         channels = of_kind(campaign, kind)
@@ -120,7 +120,7 @@ def once(how: Callable[[np.random.Generator, DropTest], Change]) -> Act:
 
 
 def clipped(kind: str) -> Act:
-    """Give a sensor of a kind too small a range: for the landing, and also for what follows it."""
+    """Reduce the range of a sensor so that it clips at the landing and after it."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         channel = int(random.choice(of_kind(campaign, kind)))
@@ -161,7 +161,7 @@ def through(values: Real, corner: float, test: DropTest) -> Real:
 
 
 def corner_unstated(kind: str, every: bool = False) -> Act:
-    """Say nothing of the high-pass of one or all AC-coupled sensors, or give such that feel gravity one of 0.05 to 2 Hz."""
+    """Remove the stated high-pass of one or all AC-coupled sensors, or filter DC-coupled ones at 0.05 to 2 Hz."""
 
     def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         chosen = of_kind(campaign, kind)

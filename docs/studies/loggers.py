@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from campaigns import Real
-from pages import VERDICTS, arguments, figures, run, table, tell, write
+from pages import VERDICTS, arguments, figures, report_progress, run, table, write
 from wireless import wireless
 
 import sprung
@@ -90,13 +90,13 @@ def _clocks(result: Result, files: Sequence[Sequence[str]], ahead: Real) -> tupl
 
 
 def summary(kind: Kind, trials: Sequence[Trial]) -> dict[str, Any]:
-    """Give what came of all campaigns of a kind."""
+    """Return the summary of all campaigns of a kind."""
     error = np.array([one.error for one in trials])
     stated = np.array([one.stated for one in trials])
     bound = np.sqrt(np.mean([one.bound**2 for one in trials], axis=0))
     ratio = np.sqrt(np.mean(error**2, axis=0)) / bound
     missed, said = (np.concatenate([getattr(one, name) for one in trials]) for name in ("missed", "said"))
-    lively = said < LATE / 3
+    is_determined = said < LATE / 3
     return {
         "kind": kind.name,
         "campaigns": len(trials),
@@ -105,10 +105,10 @@ def summary(kind: Kind, trials: Sequence[Trial]) -> dict[str, Any]:
         "stated_over_bound": figures(np.sqrt(np.mean(stated**2, axis=0) / bound**2).mean()),
         "coverage_percent": figures(100 * np.mean(np.abs(error) < 1.96 * stated)),
         "clocks": len(said),
-        "told_percent": figures(100 * np.mean(lively)),
-        "told_rms_ms": figures(1e3 * np.sqrt(np.mean(missed[lively] ** 2))),
-        "told_within_percent": figures(100 * np.mean(np.abs(missed[lively]) < LATE)),
-        "others_over_stated": figures(np.sqrt(np.mean((missed[~lively] / said[~lively]) ** 2))),
+        "determined_percent": figures(100 * np.mean(is_determined)),
+        "determined_rms_ms": figures(1e3 * np.sqrt(np.mean(missed[is_determined] ** 2))),
+        "determined_within_percent": figures(100 * np.mean(np.abs(missed[is_determined]) < LATE)),
+        "others_over_stated": figures(np.sqrt(np.mean((missed[~is_determined] / said[~is_determined]) ** 2))),
         "verdicts": {verdict: sum(one.verdict == verdict for one in trials) for verdict in VERDICTS},
         "parameters": {name: figures(one) for name, one in zip(TABLE_1_CAR.parameters, ratio.tolist(), strict=True)},
     }
@@ -116,14 +116,16 @@ def summary(kind: Kind, trials: Sequence[Trial]) -> dict[str, Any]:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("Several loggers, their clocks unknown.", campaigns=40).parse_args()
-    tasks = [(kind, seed) for kind in KINDS for seed in range(1, told.campaigns + 1)]
-    outcomes = iter(run(trial, tasks, told.processes, chunk=1))
+    options = arguments("Several loggers, their clocks unknown.", campaigns=40).parse_args()
+    tasks = [(kind, seed) for kind in KINDS for seed in range(1, options.campaigns + 1)]
+    outcomes = iter(run(trial, tasks, options.processes, chunk=1))
     rows = []
     for kind in KINDS:
-        rows.append(summary(kind, [next(outcomes) for _ in range(told.campaigns)]))
-        tell(f"{kind.name}: {rows[-1]['rmse_over_bound']} of the bound, clocks to {rows[-1]['told_rms_ms']} ms")
-    write(told.to, "loggers", page(rows), {"kinds": rows})
+        rows.append(summary(kind, [next(outcomes) for _ in range(options.campaigns)]))
+        report_progress(
+            f"{kind.name}: {rows[-1]['rmse_over_bound']} of the bound, clocks to {rows[-1]['determined_rms_ms']} ms"
+        )
+    write(options.to, "loggers", page(rows), {"kinds": rows})
 
 
 def page(rows: Sequence[dict[str, Any]]) -> str:
@@ -140,8 +142,8 @@ def page(rows: Sequence[dict[str, Any]]) -> str:
         "within 0.3 ms, %",
     ]
     head += ["others over stated", " / ".join(VERDICTS)]
-    keys = ["rmse_over_bound", "worst_rmse_over_bound", "stated_over_bound", "coverage_percent", "told_percent"]
-    keys += ["told_rms_ms", "told_within_percent", "others_over_stated"]
+    keys = ["rmse_over_bound", "worst_rmse_over_bound", "stated_over_bound", "coverage_percent", "determined_percent"]
+    keys += ["determined_rms_ms", "determined_within_percent", "others_over_stated"]
     body = [
         [
             row["kind"],

@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from modal_records import CAR, HEIGHT, PASSAGE, RATE, SECONDS, bound, bumps, noisy
 from numpy.typing import NDArray
-from pages import arguments, figures, run, table, tell, write
+from pages import arguments, figures, report_progress, run, table, write
 from peers import installed
 from scipy.io import loadmat
 from scipy.optimize import linear_sum_assignment
@@ -98,7 +98,7 @@ def trial(seed: int) -> Trial:
 
 
 def poles_of(modes: Sequence[Mode]) -> Complex:
-    """Give the poles, 1/s."""
+    """Return the poles, 1/s."""
     return np.array([mode.pole for mode in modes])
 
 
@@ -119,15 +119,15 @@ def reached(identify: Callable[[Sequence[Real], float], Complex], records: Seque
     rows, columns = linear_sum_assignment(distance)
     found = np.full(len(true), np.nan, dtype=complex)
     found[rows] = upper[columns]
-    told = np.abs(found - true) < FOUND * np.abs(true)
+    is_found = np.abs(found - true) < FOUND * np.abs(true)
     off = np.stack([np.abs(found) / np.abs(true), (found.real / np.abs(found)) / (true.real / np.abs(true))], axis=1)
-    percent = np.where(told[:, None], 100 * np.abs(off - 1), np.nan)
+    percent = np.where(is_found[:, None], 100 * np.abs(off - 1), np.nan)
     body, wheels = percent[:BODY].max(axis=0), percent[BODY:].max(axis=0)
-    return Reached(int(told.sum()), (float(body[0]), float(body[1])), (float(wheels[0]), float(wheels[1])), seconds)
+    return Reached(int(is_found.sum()), (float(body[0]), float(body[1])), (float(wheels[0]), float(wheels[1])), seconds)
 
 
 def ours(method: str) -> Callable[[Sequence[Real], float], Complex]:
-    """Give one of our methods as what takes records and gives poles."""
+    """Return one of our methods as a function from recordings to poles."""
     return lambda records, rate: poles_of(identify_modes(records, rate, method))
 
 
@@ -137,19 +137,21 @@ def main() -> None:
         "Modes of noisy records beside the Cramér-Rao bound, other methods and other programs.", campaigns=1000
     )
     parser.add_argument("--hammer", type=Path, help="HammerImpact.mat, which is not part of this project")
-    told = parser.parse_args()
-    trials = list(run(trial, [(seed,) for seed in range(told.campaigns)], told.processes))
-    tell(f"{len(trials)} sets of records, {np.mean([one.found == len(CAR) for one in trials]):.1%} with all modes")
+    options = parser.parse_args()
+    trials = list(run(trial, [(seed,) for seed in range(options.campaigns)], options.processes))
+    report_progress(
+        f"{len(trials)} sets of records, {np.mean([one.found == len(CAR) for one in trials]):.1%} with all modes"
+    )
     methods = {name: (ours(name), 4) for name in METHODS}
     rows = compared({**methods, **installed()})
     one = compared(
         {"ml": (ours("ml"), 1), **{label: (call, 1) for label, (call, drops) in installed().items() if drops == 1}}
     )
-    hammer = beam(told.hammer) if told.hammer else []
+    hammer = beam(options.hammer) if options.hammer else []
     times = timed()
     turns = [{label: figures(value) for label, value in times.items()}]
     numbers = {"headline": headline(trials), "methods": rows, "one_drop": one, "milliseconds": turns, "beam": hammer}
-    write(told.to, "modal", wrapped(page(trials, rows, one, times, hammer)), numbers)
+    write(options.to, "modal", wrapped(page(trials, rows, one, times, hammer)), numbers)
 
 
 def headline(trials: Sequence[Trial]) -> list[dict[str, Any]]:
@@ -199,7 +201,7 @@ def compared(methods: dict[str, tuple[Callable[[Sequence[Real], float], Complex]
                 "wheels": [figures(_median([one.wheels[k] for one in many])) for k in (0, 1)],
                 "milliseconds": figures(1e3 * float(np.median([one.seconds for one in many]))),
             }
-        tell(f"{name}: {row}")
+        report_progress(f"{name}: {row}")
         rows.append(row)
     return rows
 
@@ -216,7 +218,7 @@ def timed() -> dict[str, float]:
 
 
 def _median(values: Sequence[float]) -> float:
-    """Give the median, with what was not found beyond everything."""
+    """Return the median; a value that was not found counts as infinite."""
     middle = float(np.median([np.inf if np.isnan(value) else value for value in values]))
     return middle if np.isfinite(middle) else np.nan
 

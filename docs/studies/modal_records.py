@@ -27,7 +27,7 @@ CAR = compute_modes(TABLE_1_CAR.matrices())
 
 
 def bumps(vehicle: Vehicle = TABLE_1_CAR, rate: float = RATE, seconds: float = SECONDS) -> list[Real]:
-    """Give accelerations of the seven coordinates from the end of the bump on, one record for each of BUMPS."""
+    """Return accelerations of the seven coordinates from the end of the bump on, one recording for each of BUMPS."""
     matrices = vehicle.matrices()
     found = []
     for wheels in BUMPS:
@@ -37,7 +37,7 @@ def bumps(vehicle: Vehicle = TABLE_1_CAR, rate: float = RATE, seconds: float = S
 
 
 def noise_of(records: Sequence[Real], decibels: float) -> Real:
-    """Give the standard deviation of noise so far below the root-mean-square of each channel in the first record."""
+    """Return noise levels so many dB below the root-mean-square of each channel in the first recording."""
     return np.asarray(np.sqrt((records[0] ** 2).mean(axis=1)) * 10 ** (-decibels / 20))
 
 
@@ -49,5 +49,5 @@ def noisy(records: Sequence[Real], decibels: float, seed: int) -> list[Real]:
 
 
 def bound(records: Sequence[Real], decibels: float, rate: float = RATE) -> tuple[Mode, ...]:
-    """Give the true modes of the car with the Cramér-Rao bound as their spread."""
+    """Return the true modes of the car with the Cramér-Rao bound as their uncertainty."""
     return cramer_rao_bound(records, rate, CAR, noise_of(records, decibels))

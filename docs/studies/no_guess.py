@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from campaigns import AXLES, WEIGHING, Case, Real, Trial
 from numpy.typing import NDArray
-from pages import VERDICTS, arguments, figures, run, table, tell, write
+from pages import VERDICTS, arguments, figures, report_progress, run, table, write
 
 from sprung.analysis import identify_campaign
 from sprung.analysis.identify import result_of
@@ -135,18 +135,18 @@ def search(case: Case, number: int) -> Search:
 
 def main() -> None:
     """Run the study."""
-    told = arguments("Fits without a guess beside fits from the truth.", campaigns=500).parse_args()
-    cases = [Case(vehicle(number), *TESTS[number % len(TESTS)], NOISE) for number in range(told.campaigns)]
+    options = arguments("Fits without a guess beside fits from the truth.", campaigns=500).parse_args()
+    cases = [Case(vehicle(number), *TESTS[number % len(TESTS)], NOISE) for number in range(options.campaigns)]
     searches = []
-    for case, one in zip(cases, run(search, [(case, 0) for case in cases], told.processes), strict=True):
+    for case, one in zip(cases, run(search, [(case, 0) for case in cases], options.processes), strict=True):
         searches.append(one)
         if abs(one.gain) > SAME or one.trial.verdict != "accept":
-            tell(f"{case.label}: {one.gain:+.3f} beside the fit from the truth, {one.trial.verdict}")
-    write(told.to, "no-guess", page(cases, searches), {"vehicles": [*map(document, cases, searches)]})
+            report_progress(f"{case.label}: {one.gain:+.3f} beside the fit from the truth, {one.trial.verdict}")
+    write(options.to, "no-guess", page(cases, searches), {"vehicles": [*map(document, cases, searches)]})
 
 
 def document(case: Case, one: Search) -> dict[str, object]:
-    """Give the vehicle and how its fit went as what JSON knows."""
+    """Return the vehicle and the figures of its fit for JSON."""
     return {
         "parameters": {name: figures(value) for name, value in case.vehicle.parameters.items()},
         "test": case.test,
@@ -174,7 +174,7 @@ def page(cases: Sequence[Case], searches: Sequence[Search]) -> str:
     rows = [[what, *_row(searches, gains, those)] for what, those in kinds.items()]
     head = ["vehicles", "campaigns", "optimum missed", "lowest gain", *VERDICTS]
     ended = ", ".join(f"{key} in {count}" for key, count in sorted(agreeing.items(), reverse=True))
-    told = "\n".join(
+    missed_vehicles = "\n".join(
         f"- {case.vehicle.name}, by {-one.gain:.2f}; verdict: {one.trial.verdict}, {one.reason}."
         for case, one in zip(cases, searches, strict=True)
         if one.gain < -SAME
@@ -218,9 +218,9 @@ Of all 95 % intervals {covered:.1f} % contain the true value.
         f'''
 Where it was missed:
 
-{told}
+{missed_vehicles}
 '''
-        if told
+        if missed_vehicles
         else ""
     }
 The verdict refers to the data, not to the search. Every vehicle, with its verdict, is in [no-guess.json](no-guess.json).

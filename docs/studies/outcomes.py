@@ -153,13 +153,13 @@ def _said(faults: Sequence[Fault]) -> tuple[str, ...]:
 
 
 def names_all(fault: Fault, names: Sequence[str]) -> bool:
-    """Say whether a fault names everything that was spoilt, and some of it as the place."""
+    """Whether a fault names everything that was damaged, and part of it as its place."""
     everything = f"{fault.where} {fault.what}"
     return all(name in everything for name in names) and (not names or any(name in fault.where for name in names))
 
 
 def _out(result: sprung.Result) -> NDArray[np.bool_]:
-    """Give what was left out, shape (drop, channel)."""
+    """Return the mask of excluded data, shape (drop, channel)."""
     channels = len(result.fit.noise)
     rows = []
     for drop in result.drops:
@@ -170,7 +170,7 @@ def _out(result: sprung.Result) -> NDArray[np.bool_]:
 
 
 def _distances(result: sprung.Result, sound: sprung.Result) -> tuple[float, float, float, int]:
-    """Give worst, root-mean-square and worst own distance of the parameters, and how many are gone."""
+    """Return largest, root-mean-square and largest own deviation of the parameters, and how many are missing."""
     off, own, lost = [], [], 0
     for name, one in sound.parameters.items():
         other = result.parameters.get(name)

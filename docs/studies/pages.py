@@ -92,12 +92,12 @@ class Summary:
         return " / ".join(str(self.count(verdict)) for verdict in VERDICTS)
 
     def worst(self, values: Real) -> tuple[float, str]:
-        """Give the value that is largest, whichever its sign, and of what it is."""
+        """Return the value of largest magnitude and the name of its quantity."""
         i = int(np.nanargmax(np.abs(values)))
         return float(values[i]), self.names[i]
 
     def document(self) -> dict[str, Any]:
-        """Give everything as what JSON knows."""
+        """Return all figures for JSON."""
         case, errors = self.case, self._errors
         bound = case.bound(range(case.drops))
         columns = zip(self.names, bound, self.rmse, self.bias, self.stated, errors.T, strict=True)
@@ -129,7 +129,7 @@ class Summary:
 
 
 def _mean(values: Real) -> Real:
-    """Give means over campaigns, shape (quantity,), of what is there; NaN where nothing ever is."""
+    """Return means over campaigns, NaN excluded, shape (quantity,)."""
     there = ~np.isnan(values)
     mean: Real = np.where(there, values, 0.0).sum(axis=0) / np.where(there.any(axis=0), there.sum(axis=0), np.nan)
     return mean
@@ -157,12 +157,12 @@ def summarise(cases: Mapping[Case, int], processes: int) -> list[Summary]:
     summaries = []
     for case, count in cases.items():
         summaries.append(Summary(case, tuple(next(outcomes) for _ in range(count))))
-        tell(f"{case.label}: {count} campaigns, {np.nanmean(summaries[-1].rmse):.3f} of the bound")
+        report_progress(f"{case.label}: {count} campaigns, {np.nanmean(summaries[-1].rmse):.3f} of the bound")
     return summaries
 
 
-def tell(text: str) -> None:
-    """Tell whoever waits."""
+def report_progress(text: str) -> None:
+    """Print progress on standard error."""
     sys.stderr.write(text + "\n")
 
 
@@ -173,7 +173,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def arguments(description: str, campaigns: int) -> argparse.ArgumentParser:
-    """Give what every study may be told on the command line."""
+    """Return a parser with the options of every study."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument(
         "--campaigns", type=int, default=campaigns, help="how many noisy campaigns (default %(default)s)"

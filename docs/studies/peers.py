@@ -64,5 +64,5 @@ PEERS: Mapping[str, tuple[str, Callable[[Sequence[Real], float], Complex], int]]
 
 
 def installed() -> Mapping[str, tuple[Callable[[Sequence[Real], float], Complex], int]]:
-    """Give the peers that are there."""
+    """Return the installed peers."""
     return {label: (run, drops) for label, (name, run, drops) in PEERS.items() if importlib.util.find_spec(name)}

@@ -40,7 +40,7 @@ from scipy.io import savemat
 from sprung.campaign import read, read_vehicle
 from sprung.campaign.signals import find_column, make_recording
 from sprung.errors import InputError
-from sprung.formats import Table, from_sep005, read_table
+from sprung.formats import SampleTable, from_sep005, read_table
 from sprung.formats.reading_errors import memory_limit
 from sprung.vehicle import Sensor
 
@@ -89,7 +89,7 @@ class Reader:
         return tuple(one for one in self.needs if find_spec(one) is None)
 
 
-def used(table: Table, name: str) -> None:
+def used(table: SampleTable, name: str) -> None:
     """Do with a table what is done with any; however it is read, it holds the same numbers."""
     values = table.take()
     if values.shape != (len(table.channels), table.samples) or table.time.shape != (table.samples,):
@@ -109,7 +109,7 @@ def used(table: Table, name: str) -> None:
 
 
 def tried(reader: Reader, folder: Path, data: bytes) -> bool:
-    """Give a reader a file, and say whether it read it.
+    """Pass a file to a reader; return whether it was read.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def _old_mat(folder: Path) -> Sequence[bytes]:
 
 
 def _mat(folder: Path) -> Sequence[bytes]:
-    """Give structs, cells, words, matrices and integers."""
+    """Return structs, cells, words, matrices and integers."""
     content: dict[str, Any] = {"m": SMALL.values.astype(np.int16), "names": ["p", "q"], "fs": 500, "note": "Stoß €"}
     content |= {"c": np.array([SMALL.time, SMALL.values[0]], dtype=object), "z": SMALL.values[0] + 1j}
     content |= {"signals": np.array([(row, "g") for row in SMALL.values], dtype=[("values", object), ("unit", object)])}
@@ -222,7 +222,7 @@ def _wavs(folder: Path) -> Sequence[bytes]:
 
 
 def _channels(folder: Path) -> Sequence[bytes]:
-    """Give the channel files of a test, and a channel of times to which another refers."""
+    """Return the channel files of a test, and a time channel to which another refers."""
     iso_mme(SMALL, folder / "x")
     times = "Channel code :TIME\nUnit :ms\n" + "".join(f"{2 * i}\n" for i in range(40))
     return [*(path.read_bytes() for path in sorted((folder / "Channel").iterdir())), times.encode()]
@@ -289,7 +289,7 @@ height = 0.05
 
 
 def _simulated() -> str:
-    """Give a vehicle file with sensors, loads and drops of its own."""
+    """Return a vehicle file with its own sensors, loads and drops."""
     wanted = _CAMPAIGN[_CAMPAIGN.index("[known]") :].splitlines()
     return "\n".join([CAR, *(line for line in wanted if not line.startswith(("file", "start", "window")))])
 

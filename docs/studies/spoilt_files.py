@@ -102,7 +102,7 @@ def too_slow(lines: Lines, _: np.random.Generator, test: DropTest) -> Lines:
 
 
 def just_after(random: np.random.Generator) -> float:
-    """Give 0.03 to 0.1 s."""
+    """Return a time of 0.03 to 0.1 s."""
     return random.uniform(0.03, 0.1)
 
 
@@ -120,7 +120,7 @@ def cut(seconds: Callable[[np.random.Generator], float], to_end: bool) -> Act:
 
 
 def copied(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
-    """Give one drop the recording of another."""
+    """Replace the recording of one drop by that of another."""
     one, other = random.choice(len(campaign.drops), 2, replace=False).tolist()
     recordings = list(campaign.recordings)
     recordings[other] = replace(recordings[other], values=recordings[one].values.copy())

@@ -113,7 +113,7 @@ def run(command: Command, folder: Path, after: float | None = None) -> tuple[int
 
 
 def breaches(command: Command, before: dict[str, bytes], folder: Path, whole: set[str], said: str) -> Iterator[str]:
-    """Say what a terminated run did that it must not do."""
+    """Return the faults of a terminated run."""
     after = contents(folder)
     own = (MANIFEST, "report.html", *set().union(*command.wholes(whole)))
     yield from (
@@ -132,7 +132,7 @@ def breaches(command: Command, before: dict[str, bytes], folder: Path, whole: se
 
 
 def _unreadable(command: Command, folder: Path, after: dict[str, bytes]) -> Iterator[str]:
-    """Say what is there and cannot be read."""
+    """Return the files that exist and cannot be read."""
     try:
         if "results/results.json" in after:
             sprung.load(folder / "results")

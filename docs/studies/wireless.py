@@ -40,7 +40,7 @@ class Wireless(NamedTuple):
         What each logger's clock shows at the release, less that time on a true clock that shows zero then; s, shape (drop,
         logger).
     together
-        The same drops as one logger would have recorded them, no less and no more told in every channel.
+        The same drops as one logger would have recorded them, with the same information in every channel.
     """
 
     campaign: Campaign

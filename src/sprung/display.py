@@ -1,4 +1,4 @@
-"""How records show themselves: a few lines in a console, a table in a notebook."""
+"""Display of records: a few lines in a console, a table in a notebook."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from typing import Any, TypeVar, cast
 Record = TypeVar("Record")
 
 LINES, WIDTH = 10, 88
-"""Of the text of a record: lines at the most, and characters in each."""
+"""Largest number of lines of a record, and of characters in each."""
 
 _BRIEF = 60
-"""Characters of one value in a line of text."""
+"""Largest number of characters of a value."""
 
 _LISTED = 4
-"""Entries of a sequence that are written out where they are short."""
+"""Largest number of entries of a sequence that are written out."""
 
 
 def shown(cls: type[Record]) -> type[Record]:
-    """Let a record show itself by its fields that differ from their defaults, large ones by their size.
+    """Return a class with a console and a notebook display: fields that differ from their defaults, large ones by their size.
 
     Parameters
     ----------
     cls
-        A dataclass, or a mapping. A ``_repr_html_`` of its own stays, and a ``__repr__`` where the dataclass has repr=False.
-        Where it has a method ``__shown__``, that gives what to show, by name.
+        A dataclass, or a mapping. Its own ``_repr_html_`` is kept, and its ``__repr__`` where the dataclass has repr=False.
+        A method ``__shown__`` returns the entries by name instead of the fields.
 
     Returns
     -------
@@ -55,9 +55,9 @@ def text_of_record(record: object) -> str:
     str
     """
     equals = ": " if isinstance(record, Mapping) else "="
-    said = ", ".join(f"{name}{equals}{value}" for name, value in _entries(record))
+    text = ", ".join(f"{name}{equals}{value}" for name, value in _entries(record))
     lines = textwrap.wrap(
-        f"{type(record).__name__}({said})",
+        f"{type(record).__name__}({text})",
         WIDTH,
         subsequent_indent="    ",
         break_on_hyphens=False,
@@ -87,29 +87,25 @@ def html_of_record(record: object) -> str:
 
 
 def _entries(record: object) -> Iterator[tuple[str, str]]:
-    shown_as = record.__shown__() if hasattr(record, "__shown__") else record
-    if isinstance(shown_as, Mapping):
-        yield from ((str(name), _brief(value)) for name, value in shown_as.items())
+    entries = record.__shown__() if hasattr(record, "__shown__") else record
+    if isinstance(entries, Mapping):
+        yield from ((str(name), _brief(value)) for name, value in entries.items())
         return
-    for one in fields(cast("Any", record)):
-        value = getattr(record, one.name)
-        if one.repr and not one.name.startswith("_") and not _is_default(one, value):
-            yield one.name, _brief(value)
+    for field in fields(cast("Any", record)):
+        value = getattr(record, field.name)
+        if field.repr and not field.name.startswith("_") and not _is_default(field, value):
+            yield field.name, _brief(value)
 
 
-def _is_default(one: Field[Any], value: object) -> bool:
-    default = (
-        one.default
-        if one.default is not MISSING
-        else one.default_factory()
-        if callable(one.default_factory)
-        else MISSING
-    )
+def _is_default(field: Field[Any], value: object) -> bool:
+    default = field.default
+    if default is MISSING and callable(field.default_factory):
+        default = field.default_factory()
     return default is value or (isinstance(value, str | float | int | tuple | dict) and value == default)
 
 
 def _brief(value: object) -> str:
-    """Return a value in one short line, large ones by their size."""
+    """Return a value as one short line, large ones by their size."""
     if isinstance(value, str | int | bool | None):
         text = repr(value)
     elif isinstance(value, float):
@@ -117,24 +113,22 @@ def _brief(value: object) -> str:
     elif hasattr(value, "shape") and hasattr(value, "dtype"):
         text = f"array of shape {value.shape}"
     elif isinstance(value, Mapping):
-        text = _mapped(value)
+        text = _brief_mapping(value)
     elif is_dataclass(value) or (isinstance(value, tuple) and hasattr(value, "_fields")):
-        # Small records are shown whole, large ones by what they are.
-        written = type(value).__str__ is not object.__str__ and type(value).__repr__ is text_of_record
-        text = (
-            str(value) if written else repr(value) if type(value).__repr__ is text_of_record else type(value).__name__
-        )
+        # Small records are written out, large ones by their type.
+        displayed = type(value).__repr__ is text_of_record
+        text = str(value) if displayed else type(value).__name__
         text = text if len(text) <= _BRIEF and "\n" not in text else type(value).__name__
     elif isinstance(value, Sequence | Set):
-        text = _several(list(value))
+        text = _brief_sequence(list(value))
     else:
         text = str(value)
     text = " ".join(text.split())
     return text if len(text) <= _BRIEF else f"{text[: _BRIEF - 3]}..."
 
 
-def _mapped(values: Mapping[Any, Any]) -> str:
-    """Return few short entries with their names, of others the first names and how many there are."""
+def _brief_mapping(values: Mapping[Any, Any]) -> str:
+    """Return a mapping: few short entries in full, others by their number and first names."""
     text = f"{{{', '.join(f'{name}: {_brief(value)}' for name, value in list(values.items())[: _LISTED + 1])}}}"
     if len(values) <= _LISTED and len(text) <= _BRIEF:
         return text
@@ -142,9 +136,9 @@ def _mapped(values: Mapping[Any, Any]) -> str:
     return f"{len(names)} by name: {', '.join(names[:_LISTED])}{', ...' if len(names) > _LISTED else ''}"
 
 
-def _several(values: list[object]) -> str:
-    plain = all(isinstance(one, str | int | float | bool | None) for one in values)
+def _brief_sequence(values: list[object]) -> str:
+    plain = all(isinstance(value, str | int | float | bool | None) for value in values)
     if len(values) > _LISTED:
         return f"{len(values)} of {type(values[0]).__name__}"
-    inside = ", ".join(_brief(one) if plain else type(one).__name__ for one in values)
+    inside = ", ".join(_brief(value) if plain else type(value).__name__ for value in values)
     return f"({inside})"

@@ -1,7 +1,7 @@
-"""What can go wrong, in words that tell what to do.
+"""Errors and faults, each with its remedy.
 
-Two nouns: a `Problem` makes an input unusable and is raised, together with all others found, as one `InputError`;
-a `Fault` is something wrong with one recording that the rest of the campaign survives, and is reported with the result.
+A `Problem` makes an input unusable; all problems of an input are raised as one `InputError`. A `Fault` concerns a recording or
+the campaign, of which the rest can be used, and is reported with the result.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from sprung.display import shown
 
 _CANDIDATES = 10
-"""How many of the names that share most letters with a mistyped one are compared with it letter by letter."""
+"""Number of names with most common letters that are compared with a mistyped one letter by letter."""
 
 
 class SprungError(Exception):
-    """Base of every error that sprung raises on purpose."""
+    """Base class of the errors that sprung raises."""
 
 
 @shown
@@ -29,13 +29,13 @@ class Problem:
     Attributes
     ----------
     where
-        File, and place in it: ``campaign.toml: sensor[2].position``.
+        File and place in it: ``campaign.toml: sensor[2].position``.
     found
-        What stands there.
+        Content at that place.
     expected
-        What should stand there.
+        Content that is expected there.
     do
-        The one thing to do about it.
+        Remedy.
     """
 
     where: str
@@ -44,13 +44,13 @@ class Problem:
     do: str
 
     def __str__(self) -> str:
-        said = f"{self.where}: found {self.found}; expected {self.expected}. {self.do}"
-        # What stands in a damaged file must not steer the terminal, and a space of another kind is to be seen.
-        return said if said.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in said)
+        text = f"{self.where}: found {self.found}; expected {self.expected}. {self.do}"
+        # Control characters of a damaged file must not reach the terminal, and unusual spaces must be visible.
+        return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 class InputError(SprungError, ValueError):
-    """Bad input; carries every problem found, not only the first.
+    """Input that cannot be used, with all its problems.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class InputError(SprungError, ValueError):
 
 
 class UnknownNameError(SprungError, KeyError):
-    """Nothing has this name; says which one was probably meant.
+    """Unknown name; the message states the nearest known one.
 
     Attributes
     ----------
@@ -73,20 +73,20 @@ class UnknownNameError(SprungError, KeyError):
     def __init__(self, name: str, allowed: Iterable[str]) -> None:
         self.name = name
         super().__init__(name)
-        self._said = f"nothing is named '{name}'. {did_you_mean(name, allowed)}"
+        self._text = f"nothing is named '{name}'. {did_you_mean(name, allowed)}"
 
     def __str__(self) -> str:
-        return self._said
+        return self._text
 
 
 class ResultFileError(InputError):
-    """A saved result cannot be read back: newer schema, truncated or edited."""
+    """Saved result that cannot be read: newer schema, truncated or edited."""
 
 
 @shown
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """Something wrong with a recording or the campaign which the rest of the campaign survives.
+    """Fault of a recording or of the campaign, of which the rest can be used.
 
     Attributes
     ----------
@@ -95,9 +95,9 @@ class Fault:
     where
         Recording and channel, such as ``empty_bounce.csv: wheel_fl``.
     what
-        What was found, and what was done about it.
+        What was found, and how it was treated.
     do
-        What the user can do.
+        Remedy.
     """
 
     code: str
@@ -107,7 +107,7 @@ class Fault:
 
 
 class Problems:
-    """Collects problems while an input is read, so that the user sees all of them at once.
+    """Collection of the problems of an input, which are then reported together.
 
     Examples
     --------
@@ -118,40 +118,40 @@ class Problems:
     """
 
     def __init__(self) -> None:
-        self._found: list[Problem] = []
+        self._problems: list[Problem] = []
 
     def __bool__(self) -> bool:
-        return bool(self._found)
+        return bool(self._problems)
 
     def __iter__(self) -> Iterator[Problem]:
-        return iter(self._found)
+        return iter(self._problems)
 
     def add(self, where: str, found: str, expected: str, do: str) -> None:
-        """Note one more problem: where it is, what was found there, what is expected, and what to do about it."""
-        self._found.append(Problem(where, found, expected, do))
+        """Add a problem: where it is, what was found, what is expected, and what to do."""
+        self._problems.append(Problem(where, found, expected, do))
 
     @contextmanager
-    def collecting(self) -> Iterator[None]:
-        """Take up the problems of an `InputError` raised inside the block, and go on after it."""
+    def collect(self) -> Iterator[None]:
+        """Add the problems of an `InputError` raised inside the block, and continue after it."""
         try:
             yield
         except InputError as error:
-            self._found.extend(error.problems)
+            self._problems.extend(error.problems)
 
     def raise_if_any(self) -> None:
-        """Raise one `InputError` with everything collected so far.
+        """Raise one `InputError` with all problems.
 
         Raises
         ------
         InputError
-            If anything was collected.
+            If there is any problem.
         """
-        if self._found:
-            raise InputError(self._found)
+        if self._problems:
+            raise InputError(self._problems)
 
 
 class Omissions:
-    """Collects what only decorates a result and could not be made; the result is worth as much without it.
+    """Collection of optional parts of a report, such as figures, that could not be made.
 
     Examples
     --------
@@ -163,52 +163,54 @@ class Omissions:
     """
 
     def __init__(self, sentences: Iterable[str] = ()) -> None:
-        self._found = dict.fromkeys(sentences)
+        self._sentences = dict.fromkeys(sentences)
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """One for each thing that is missing, with the reason."""
-        return tuple(self._found)
+        """A sentence for each missing part, with the reason."""
+        return tuple(self._sentences)
 
     def add(self, sentences: Iterable[str]) -> None:
-        """Take up what is missing elsewhere too, each sentence once."""
-        self._found |= dict.fromkeys(sentences)
+        """Add sentences, each once."""
+        self._sentences |= dict.fromkeys(sentences)
 
     @contextmanager
-    def noting(self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()) -> Iterator[None]:
-        """Note that something could not be drawn, where the block fails, and go on after it.
+    def record_failure(
+        self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()
+    ) -> Iterator[None]:
+        """Add a sentence if the block raises an error, and continue after it.
 
         Parameters
         ----------
         what
-            The beginning of the sentence: what is missing.
+            The part, as the subject of the sentence.
         done
-            What could not be done with it, as a participle.
+            What could not be done, as a participle.
         unless
-            Errors that pass.
+            Errors that are raised.
         """
         try:
             yield
         except unless:
             raise
         except InputError as error:
-            reasons = "; ".join(f"{one.found}. {one.do}" for one in error.problems)
-            self._found[f"{what} could not be {done}: {reasons}"] = None
-        except Exception as error:  # noqa: BLE001 (whatever it is, it must not cost the result)
+            reasons = "; ".join(f"{problem.found}. {problem.do}" for problem in error.problems)
+            self._sentences[f"{what} could not be {done}: {reasons}"] = None
+        except Exception as error:  # noqa: BLE001 (no error of an optional part may prevent the result)
             reason = " ".join(str(error).split())
             kind = type(error).__name__
-            self._found[f"{what} could not be {done}: {f'{reason} ({kind})' if reason else kind}."] = None
+            self._sentences[f"{what} could not be {done}: {f'{reason} ({kind})' if reason else kind}."] = None
 
 
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:
-    """Say which allowed word was probably meant.
+    """Return a sentence with the allowed word that was probably meant.
 
     Parameters
     ----------
     word
-        What was written.
+        The word.
     allowed
-        What may be written.
+        The allowed words.
 
     Returns
     -------
@@ -218,7 +220,7 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
     allowed = sorted(allowed)
     close = difflib.get_close_matches(word.lower(), [name.lower() for name in allowed], n=_CANDIDATES, cutoff=0.6)
     if close:
-        # They come by their common letters, the most first, which does not tell exchanged letters from wrong ones.
+        # Their order is by common letters, which does not distinguish exchanged letters from wrong ones.
         nearest = min(close, key=lambda name: _typing_errors(word.lower(), name))
         meant = next(name for name in allowed if name.lower() == nearest)
         return f"Did you mean '{meant}'?"
@@ -226,15 +228,15 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
 
 
 def _typing_errors(written: str, meant: str) -> int:
-    """Count the letters left out, added, mistaken or exchanged with a neighbour (optimal string alignment distance)."""
-    before: list[int] = []
+    """Return the optimal string alignment distance: letters left out, added, replaced or exchanged with a neighbour."""
+    previous: list[int] = []
     last = list(range(len(meant) + 1))
     for i, letter in enumerate(written):
         row = [i + 1]
-        for j, other in enumerate(meant):
-            errors = min(last[j + 1] + 1, row[j] + 1, last[j] + (letter != other))
-            if i and j and letter == meant[j - 1] and other == written[i - 1]:
-                errors = min(errors, before[j - 1] + 1)
+        for j, expected in enumerate(meant):
+            errors = min(last[j + 1] + 1, row[j] + 1, last[j] + (letter != expected))
+            if i and j and letter == meant[j - 1] and expected == written[i - 1]:
+                errors = min(errors, previous[j - 1] + 1)
             row.append(errors)
-        before, last = last, row
+        previous, last = last, row
     return last[-1]

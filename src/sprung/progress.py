@@ -1,4 +1,4 @@
-"""What long work tells of itself: one step after the other, in words and in numbers."""
+"""Progress of long computations, step by step."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from typing import TypeVar
 
 
 class Step(str):
-    """One step of long work: a sentence, so that ``print`` is enough to show it, with its number where steps are counted.
+    """A step of a long computation: a text that can be printed, with its number where steps are counted.
 
     Attributes
     ----------
     stage
-        What is being done, such as ``reading the recordings``; the same for all its steps.
+        Name of the stage, such as ``reading the recordings``; the same for all its steps.
     step, of
-        Number of the step that begins, from 1, and of all steps of the stage; None where nobody knows how many there will be.
+        Number of the step that begins, from 1, and number of steps of the stage; None where it is not known.
     done
-        Part of the stage that is done, 0 to 1, from which the rest can be estimated; None where nobody knows.
+        Part of the stage that is done, 0 to 1; None where it is not known.
 
     Examples
     --------
@@ -43,17 +43,17 @@ class Step(str):
         detail: str = "",
         done: float | None = None,
     ) -> Step:
-        """Make a step; ``detail`` is what it works on, such as a file."""
+        """Return a step; ``detail`` is its object, such as a file."""
         if done is None and step is not None and of:
             done = (step - 1) / of
         text = stage if step is None or of is None else f"{stage}, {step} of {of}"
-        made = super().__new__(cls, f"{text}: {detail}" if detail else text)
+        step_text = super().__new__(cls, f"{text}: {detail}" if detail else text)
         for name, value in (("stage", stage), ("step", step), ("of", of), ("done", done)):
-            object.__setattr__(made, name, value)
-        return made
+            object.__setattr__(step_text, name, value)
+        return step_text
 
     def __setattr__(self, name: str, _: object) -> None:
-        raise AttributeError(f"a step is what it is: {name} cannot be set")
+        raise AttributeError(f"{name} of a step cannot be set")
 
     def __reduce__(self) -> tuple[object, ...]:
         detail = str(self).removeprefix(str(Step(self.stage, self.step, self.of))).removeprefix(": ")
@@ -61,29 +61,29 @@ class Step(str):
 
 
 Progress = Callable[[Step], None]
-"""What a long function calls with each step that begins."""
+"""Function that is called with each step that begins."""
 
 
 def silent(step: Step) -> None:
-    """Show nothing."""
+    """Ignore a step."""
 
 
 _Item = TypeVar("_Item")
 
 
 def counted(progress: Progress, stage: str, items: Iterable[_Item], of: int | None = None) -> Iterator[_Item]:
-    """Yield items one after the other, and tell that each begins.
+    """Yield items, and report the beginning of each.
 
     Parameters
     ----------
     progress
         Called with a `Step` before each item.
     stage
-        What is being done with them.
+        Name of the stage.
     items
-        With a length, unless `of` is given. Those that are text, or that have a name, are named.
+        With a length, unless `of` is given. An item that is text, or has a name, is named in the step.
     of
-        How many there are.
+        Number of items.
     """
     if of is None:
         of = len(items) if isinstance(items, Sized) else None

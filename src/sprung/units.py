@@ -1,11 +1,13 @@
-"""Unit text to SI, once, at the door. Inside sprung every number is SI and carries no unit."""
+"""Units of recordings, converted to SI when they are read. Every other number of sprung is SI and carries no unit."""
 
 from __future__ import annotations
+
+import re
 
 from sprung.errors import did_you_mean
 
 STANDARD_GRAVITY = 9.80665
-"""Standard acceleration of free fall, m/s² (CGPM 1901): the size of the unit g and of gravity in the model."""
+"""Standard acceleration of free fall, m/s² (CGPM 1901): the unit g, and gravity in the model."""
 
 _ACCELERATION = {
     "m/s^2": 1.0,
@@ -17,6 +19,7 @@ _ACCELERATION = {
     "ft/s^2": 0.3048,
     "in/s^2": 0.0254,
 }
+_BRACKETS = re.compile(r"^(?P<name>.*\S)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
 _SPELLINGS = {
     "m/s/s": "m/s^2",
     "ms-2": "m/s^2",
@@ -31,22 +34,22 @@ _SPELLINGS = {
 
 
 def acceleration_factor(text: str) -> float:
-    """Give the factor that turns a reading into m/s².
+    """Return the factor that converts a reading to m/s².
 
     Parameters
     ----------
     text
-        A unit of acceleration as loggers write it: ``m/s²``, ``m/s^2``, ``g``, ``mg``, ``mm/s2``, ``ft/s^2``...
+        Unit of acceleration as loggers write it: ``m/s²``, ``m/s^2``, ``g``, ``mg``, ``mm/s2``, ``ft/s^2``...
 
     Returns
     -------
     float
-        Metres per second squared in one of that unit.
+        m/s² per unit.
 
     Raises
     ------
     ValueError
-        If the unit is not one of acceleration; the message names the nearest one.
+        If it is no unit of acceleration; the message states the nearest one.
 
     Examples
     --------
@@ -61,3 +64,36 @@ def acceleration_factor(text: str) -> float:
     if plain not in _ACCELERATION:
         raise ValueError(f"'{text}' is not a unit of acceleration. {did_you_mean(text, _ACCELERATION)}")
     return _ACCELERATION[plain]
+
+
+def split_unit(text: str) -> tuple[str, str | None]:
+    """Split the unit off a column's name.
+
+    Parameters
+    ----------
+    text
+        As the file has it: ``body_fl [g]``, ``body_fl (m/s^2)`` or plainly ``body_fl``.
+
+    Returns
+    -------
+    name
+        What stands before the brackets.
+    unit
+        What stands in them; None without brackets. Round brackets are taken as a unit only where they hold one of
+        acceleration: ``body (left)`` is a name.
+
+    Examples
+    --------
+    >>> split_unit("body_fl [g]"), split_unit("body (left)")
+    (('body_fl', 'g'), ('body (left)', None))
+    """
+    match = _BRACKETS.match(text.strip())
+    if match is None:
+        return text.strip(), None
+    if match["square"] is not None:
+        return match["name"], match["square"].strip()
+    try:
+        acceleration_factor(match["round"])
+    except ValueError:
+        return text.strip(), None
+    return match["name"], match["round"].strip()

@@ -16,11 +16,12 @@ from typing import Any
 import numpy as np
 import pytest
 import tomli_w
+from numpy.typing import NDArray
 
 import sprung
 from sprung.campaign import Campaign, write
 from sprung.errors import Fault, InputError
-from sprung.preprocess import SlowMotion, find_slower_drops
+from sprung.preprocess import extract_slow_motion, find_slower_drops
 from sprung.vehicle import TABLE_1_CAR as CAR
 from sprung.vehicle import WHEELS, Item, Load, Sensor, Wheel
 
@@ -347,12 +348,12 @@ def test_a_unit_that_is_wrong_for_all_sensors_is_told_once(recorded: Campaign) -
     assert 'unit = "m/s^2" for them' in fault.do
 
 
-def swing(period: float, size: float) -> SlowMotion:
+def swing(period: float, size: float) -> NDArray[np.float64]:
     """A bounce of 0.7 s and a pitch of 0.55 s that fade, in four channels, from the release on."""
     clock = np.arange(0, 4, 1 / 200)
     waves = [np.exp(-clock) * np.cos(2 * np.pi * clock / (own * period)) for own in (0.7, 0.55)]
     values = size * np.array([waves[0] + part * waves[1] for part in (1.0, 0.8, -0.6, -0.9)])
-    return SlowMotion.of(values, 200.0, 0, np.zeros(4))
+    return extract_slow_motion(values, 200.0, 0, np.zeros(4))
 
 
 @pytest.mark.parametrize(

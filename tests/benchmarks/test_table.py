@@ -18,6 +18,6 @@ def test_the_page_is_made_of_the_result() -> None:
 
 
 def test_what_is_not_as_wanted_is_told() -> None:
-    assert table.missed(result_with(ratio=99.0, least=100)) == ["this / that: 99.0, wanted ≥ 100"]
-    assert table.missed(result_with(ratio=61.0, most=60)) == ["this / that: 61.0, wanted ≤ 60"]
+    assert table.missed(result_with(ratio=99.0, least=100)) == ["this / that: 99.0, required ≥ 100"]
+    assert table.missed(result_with(ratio=61.0, most=60)) == ["this / that: 61.0, required ≤ 60"]
     assert table.missed(result_with(ratio=100.0, least=100)) == table.missed(result_with(ratio=3.0)) == []

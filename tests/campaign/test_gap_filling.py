@@ -26,11 +26,11 @@ def vibration(time: Real) -> Real:
 
 
 def mended(values: Real) -> tuple[Real, int, list[str], list[bool]]:
-    found = fill_gaps(
+    filled, first, faults, _ = fill_gaps(
         values, np.zeros(values.shape[1], dtype=bool), RATE, ["a.csv: body", "a.csv: wheel"], "sample {}".format
     )
-    out = [bool(np.isnan(row).any()) for row in found.values]
-    return found.values, found.first, [fault.what for fault in found.faults], out
+    out = [bool(np.isnan(row).any()) for row in filled]
+    return filled, first, [fault.what for fault in faults], out
 
 
 @settings(max_examples=40, deadline=None)

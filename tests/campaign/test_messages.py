@@ -64,7 +64,7 @@ FILE_FAULTS: dict[str, tuple[tuple[str, str], tuple[str, ...]]] = {
         ('on = "body"\nposition = [-2.9, 0.7, 0.5]', 'on = "rl"'),
         ("2 sensors on the body", "at least 3"),
     ),
-    "sensors on a line": (("[-2.9, 0.7", "[0.1, 0.2"), ("on one line", "pitch cannot be told from roll")),
+    "sensors on a line": (("[-2.9, 0.7", "[0.1, 0.2"), ("on one line", "pitch cannot be distinguished from roll")),
     "unknown quantity": (("[known]", "[known]\nk_fs = 3"), ("known.k_fs", "Did you mean 'k_")),
     "wheelbase as known": (("[known]", "[known]\nwheelbase = 3"), ("known.wheelbase", "under [vehicle]")),
     "negative quantity": (("[known]", "[known]\nm_s = -4"), ("known.m_s: found -4", "positive", "sprung mass in kg")),
@@ -75,7 +75,7 @@ FILE_FAULTS: dict[str, tuple[tuple[str, str], tuple[str, ...]]] = {
     ),
     "axles beyond the total": (
         ("[known]", "[known]\ntotal_mass = { value = 1500, std = 5 }\nfront_axle_mass = 800\nrear_axle_mass = 750"),
-        ("known.total_mass", "1500 ± 5 kg", "1550 kg", "how sure they are"),
+        ("known.total_mass", "1500 ± 5 kg", "1550 kg", "state their uncertainty"),
     ),
     "one axle beyond the total": (
         ("[known]", "[known]\ntotal_mass = 1500\nrear_axle_mass = 1501"),

@@ -143,7 +143,10 @@ def test_nothing_usable_is_a_problem(folder: Folder, text: Text) -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (("0.0100,", "0.0109,"), "up to line 7; the samples are no smoother at those times, and were taken to be even"),
+        (
+            ("0.0100,", "0.0109,"),
+            "up to line 7; the samples are not smoother at these times, and were taken as regular",
+        ),
         (("0.0100,9,11.5,-2.25\n", ""), "1 of 100 lines is missing, the first before line 7; filled in"),
     ],
 )

@@ -44,7 +44,7 @@ def test_samples_taken_at_uneven_times_are_interpolated(part: float) -> None:
     (fault,) = found.faults
     assert fault.code == "clock"
     assert "were interpolated to 500" in fault.what
-    assert f"{1e3 * part * STEP:.2g} ms off" in fault.what
+    assert f"{1e3 * part * STEP:.2g} ms from regular" in fault.what
     assert found.rate == pytest.approx(1 / STEP, rel=1e-4)
     # Taken as even, the wheel would be off by its slope, up to 40 m/s² times 2π 11 Hz, times some ten microseconds to 1 ms.
     assert error.max() < 0.03
@@ -55,7 +55,7 @@ def test_samples_stamped_late_are_even(part: float) -> None:
     found, error = understood(EVEN + jitter(part), EVEN)
     # Stamps that are off by less than a fifth of a step are nobody's business.
     assert len(found.faults) == (part > 0.1)
-    assert all("taken to be even, 500" in fault.what for fault in found.faults)
+    assert all("taken as regular, 500" in fault.what for fault in found.faults)
     assert found.values.shape == (2, COUNT)
     assert error.max() < 0.03
 

@@ -16,9 +16,9 @@ from sprung.campaign.comments import SECTIONS, describe_key
 from sprung.errors import InputError
 from sprung.files import atomic_write
 from sprung.files.ownership import MANIFEST
-from sprung.formats import split_unit
 from sprung.simulation import simulate
 from sprung.uncertainty import KnownValue
+from sprung.units import split_unit
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Added, Item, Load, Sensor
 
 if TYPE_CHECKING:
@@ -284,7 +284,7 @@ def test_a_read_only_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         return open_as_ever(path, mode, **how)
 
     monkeypatch.setattr(Path, "open", refuse)  # permissions do not bind the superuser, who may run the tests
-    with pytest.raises(InputError, match=r"cannot be written to \(Permission denied\).*see to its permissions"):
+    with pytest.raises(InputError, match=r"cannot be written to \(Permission denied\).*check its permissions"):
         write(one_drop(), tmp_path / "new")
     monkeypatch.undo()
     assert not (tmp_path / "new").exists()

@@ -59,7 +59,7 @@ def test_every_gap_is_listed_with_its_place_and_what_to_do(folder: Path, new: Ru
     assert refused.status == 2
     assert "6 faults" in refused.err  # wheelbase, mass on the scales, four positions
     for place in places:
-        assert f"campaign.toml: {place}: found a gap that is still to be filled; expected" in refused.err
+        assert f"campaign.toml: {place}: found a placeholder; expected" in refused.err
 
 
 def test_it_never_overwrites_a_campaign_file(folder: Path, new: Run) -> None:

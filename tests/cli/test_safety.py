@@ -105,7 +105,7 @@ def test_a_decoration_that_fails_is_named_and_costs_nothing_else(
 def test_a_report_that_fails_costs_the_report_only(
     one_drop_folder: Folder, one_drop: Identified, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("sprung.report.folder.drawn_page", failing)
+    monkeypatch.setattr("sprung.report.folder.render_report", failing)
     said = run("identify", one_drop_folder.path, "--json")
     assert said.status == one_drop.json.status
     (sentence,) = said.json["omissions"]
@@ -180,7 +180,7 @@ def ignored() -> Iterator[None]:
 
 @pytest.mark.usefixtures("ignored")
 def test_who_wants_sigterm_ignored_gets_it_ignored(one_drop_folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sprung.campaign.reading.check", stopping(signal.SIGTERM))
+    monkeypatch.setattr("sprung.campaign.file_reading.check", stopping(signal.SIGTERM))
     assert run("check", one_drop_folder.path, "--no-drawings").status == 0
 
 

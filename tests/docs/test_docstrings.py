@@ -1,4 +1,4 @@
-"""Every public name says what it is, with the unit of every number, the shape of every array and every error."""
+"""The docstring of every public name states units, array shapes, returned values and errors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ NAMES = dict(public())
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_it_says_what_it_must(name: str) -> None:
+def test_the_docstring_is_complete(name: str) -> None:
     assert complaints(name, NAMES[name]) == []
 
 
@@ -68,7 +68,7 @@ def told(values: NDArray[np.float64], rate: float, names: list[str]) -> NDArray[
         ("Tell nothing.", "Tell nothing, eq. (99).", ": eq. 99 is none of the paper's"),
     ],
 )
-def test_what_is_missing_is_noticed(monkeypatch: pytest.MonkeyPatch, there: str, instead: str, said: str) -> None:
+def test_a_missing_part_is_reported(monkeypatch: pytest.MonkeyPatch, there: str, instead: str, said: str) -> None:
     assert complaints("told", told) == []
     text = inspect.getsource(told).split('"""')[1]
     assert there in text

@@ -47,7 +47,7 @@ def spoil(name: str, test: DropTest = SMALL, seed: int = 0) -> tuple[sprung.Camp
 
 
 def spoilt_channel(name: str, test: DropTest = SMALL, seed: int = 0) -> list[tuple[Real, Real]]:
-    """Give what the spoilt channel read, and reads now, in every drop."""
+    """Return the damaged channel before and after, in every drop."""
     campaign, injured = spoil(name, test, seed)
     channel = [one.channel for one in campaign.sensors].index(injured.names[0])
     pairs = zip(campaign.recordings, injured.campaign.recordings, strict=True)

@@ -36,7 +36,7 @@ def page(built: Path, name: str) -> str:
 
 
 def words(built: Path, name: str) -> str:
-    """Give what a reader sees of a page."""
+    """Return the visible text of a page."""
     return " ".join(html.unescape(re.sub(r"<[^>]+>", "", page(built, name))).replace("’", "'").split())
 
 
@@ -91,7 +91,7 @@ def test_the_public_names_are_described(built: Path) -> None:
     for name in (
         "vehicle.PARAMETERS",
         "estimation.FitResult",
-        "vibration.Modes",
+        "modal.ModeSet",
         "study.Comparison",
         "errors.InputError",
     ):

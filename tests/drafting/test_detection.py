@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import tracemalloc
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from days import DISTURBANCES, Day, Disturbance, day, disturbed
-from sprung.drafting import Detection, detect_drops, drops_in, wheel_score
+from sprung.drafting import DetectedDrop, Detection, detect_drops, wheel_score
 from sprung.simulation import simulate
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Vehicle, Wheel
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Sensor, Vehicle, Wheel
 from strategies import make_vehicle
 
 BOUNCE: tuple[Wheel, ...] = WHEELS
@@ -37,6 +39,14 @@ def some_vehicle(random: np.random.Generator) -> Vehicle:
         spread=pair(0.7, 1.3),
         tracks=pair(0.22, 0.32),
     )
+
+
+def drops_in(
+    values: NDArray[np.float64], rate: float, sensors: Sequence[Sensor] | None = None, start: float = 0.0
+) -> tuple[DetectedDrop, ...]:
+    """Detect the drops in a recording that is in memory."""
+    places = None if sensors is None else [sensor.on for sensor in sensors]
+    return detect_drops([(0, values)], rate, places, start=start).drops
 
 
 def in_pieces(one: Day, length: int, known: bool) -> Detection:
@@ -75,7 +85,7 @@ def test_nothing_else_is_taken_for_a_drop(what: Disturbance) -> None:
     values = np.concatenate(happened, axis=1)
     found = detect_drops([(0, values + 9.8 + 0.02 * random.standard_normal(values.shape))], 500.0)
     assert not found.drops
-    assert all(refusal.why for refusal in found.refused)
+    assert all(refusal.why for refusal in found.rejected)
 
 
 def test_where_pieces_are_cut_does_not_matter() -> None:
@@ -146,7 +156,7 @@ def test_the_use_ends_before_the_next_disturbance() -> None:
     (found,) = drops_in(values, rate)
     assert found.release == whole.release
     assert 2.25 < found.end < 2.4 < whole.end
-    assert "disturbance" in found.ended
+    assert "disturbance" in found.why_end
 
 
 def test_a_drop_that_follows_another_needs_no_more_than_a_short_rest() -> None:
@@ -164,7 +174,7 @@ def test_gaps_and_channels_without_samples_do_no_harm() -> None:
     values[:, ::97] = np.nan
     found = detect_drops([(0, values)], one.rate)
     assert [drop.release for drop in found.drops] == pytest.approx(one.releases, abs=0.01)
-    assert np.isnan(found.drops[0].seen.level[0])
+    assert np.isnan(found.drops[0].features.level[0])
 
 
 def test_why_names_channels_and_numbers() -> None:
@@ -172,9 +182,9 @@ def test_why_names_channels_and_numbers() -> None:
     recording = campaign.recordings[0]
     (found,) = drops_in(recording.values, recording.rate, campaign.sensors)
     why = "; ".join(found.why(recording.channels))
-    assert "wheel_fl, wheel_fr read" in why
+    assert "wheel_fl, wheel_fr fall" in why
     assert f"usable until {found.end:.2f} s" in why
-    assert "rests for 0.4" in why
+    assert "at rest for 0.4" in why
 
 
 def test_progress_ends_at_one() -> None:

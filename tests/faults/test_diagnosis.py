@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from scipy.signal import bilinear, butter, lfilter
 
 import sprung
-from sprung.campaign import Drop
-from sprung.simulation import DEFAULT_HEIGHT
+from sprung.campaign import DEFAULT_HEIGHT, Drop
 from sprung.vehicle import TABLE_1_CAR, WHEELS, Item, Load, Sensor, Vehicle
 
 Real = NDArray[np.float64]

@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.errors import InputError
-from sprung.formats import Table, read_table, split_unit
+from sprung.formats import SampleTable, read_table
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 Text = Callable[..., str]
 
 
-def table_of(folder: Path, content: str | bytes, name: str = "x.csv") -> Table:
+def table_of(folder: Path, content: str | bytes, name: str = "x.csv") -> SampleTable:
     path = folder / name
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return read_table(path)

@@ -17,7 +17,7 @@ from sprung.formats.csv import CsvFormat
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "pipe": "|", "spaces": "   "}
 PREAMBLES = {
@@ -31,7 +31,7 @@ ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "cp1252")
 VALUES = np.array([[9.81, -0.5, 1e-5, 12345.0, 3.0], [0.1, 2.0, -3.25, 0.0, 7.0]])
 
 
-def read(folder: Path, content: str | bytes, name: str = "x.csv") -> Table:
+def read(folder: Path, content: str | bytes, name: str = "x.csv") -> SampleTable:
     path = folder / name
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return CsvFormat().read(path)

@@ -12,7 +12,7 @@ import pytest
 import sprung
 from command_line import copy_sedan
 from sprung.errors import InputError
-from sprung.formats import Table, libraries, read_table
+from sprung.formats import SampleTable, libraries, read_table
 from sprung.formats.excel import ExcelFormat
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -34,7 +34,7 @@ def written(path: Path, **sheets: Iterable[Sequence[object]]) -> Path:
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     return read_table(path)
 
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from readers import READERS, SMALL, Broken, Reader, sound_files, tried, used
 
 from sprung.errors import InputError, Problem
-from sprung.formats import Table
+from sprung.formats import SampleTable
 from sprung.formats.sample_store import store_in_memory
 
 if TYPE_CHECKING:
@@ -107,8 +107,8 @@ def test_what_is_broken_is_seen(tmp_path: Path, reader: Reader, message: str) ->
         tried(reader, tmp_path, b"x")
 
 
-def lying(**changes: Any) -> Table:
-    return replace(Table(SMALL.names, ("g", "g"), store_in_memory(SMALL.values), 500.0), **changes)
+def lying(**changes: Any) -> SampleTable:
+    return replace(SampleTable(SMALL.names, ("g", "g"), store_in_memory(SMALL.values), 500.0), **changes)
 
 
 def test_a_sound_refusal_is_none_of_it(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.errors import InputError
-from sprung.formats import Table, libraries
+from sprung.formats import SampleTable, libraries
 from sprung.formats.hdf5 import Hdf5Format
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def written(folder: Path, write: Callable[[Any], object], **options: Any) -> Pat
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert Hdf5Format().claims(path, path.read_bytes()[:8192])
     return Hdf5Format().read(path)
 

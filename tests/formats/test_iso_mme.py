@@ -13,7 +13,7 @@ from sprung.formats.iso_mme import IsoMmeFormat
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 # Key, colon, value, then one number per line: ISO/TS 13499.
 CHANNEL = """Test object number          :1
@@ -33,7 +33,7 @@ def channel(values: list[float | str], name: str = "a", first: str = "-0.01", in
     return header + "\n".join(map(str, values)) + "\n"
 
 
-def read(folder: Path, *channels: str | bytes, named: str = "test.mme") -> Table:
+def read(folder: Path, *channels: str | bytes, named: str = "test.mme") -> SampleTable:
     (folder / "Channel").mkdir(exist_ok=True)
     (folder / "test.mme").write_text("Data format :ISO-MME\nTime of test :10:32:45\n")
     (folder / "Channel" / "test.chn").write_text(f"Number of channels :{len(channels)}\n")

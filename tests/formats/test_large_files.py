@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.io import savemat, wavfile
 
-from sprung.formats import Table, read_table
+from sprung.formats import SampleTable, read_table
 from sprung.formats import csv as csv_format
 from sprung.formats.sample_store import BUDGET, Samples, join_samples, regroup, store_by_ranges, store_in_memory
 from sprung.formats.text_blocks import detect_encoding, read_blocks
@@ -155,7 +155,7 @@ def path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return found
 
 
-def in_order(table: Table, names: list[str]) -> list[int]:
+def in_order(table: SampleTable, names: list[str]) -> list[int]:
     called = [f"ch{int(name[1:]) + 1}" for name in names] if table.channels[0] == "ch1" else names
     return [table.channels.index(name) for name in called]
 
@@ -215,7 +215,7 @@ def test_pieces_read_no_more_at_once_than_is_worth_it() -> None:
         asked.append(8 * len(columns) * (last - first))
         return np.zeros((len(columns), last - first))
 
-    table = Table(("a",) * 100, (None,) * 100, store_by_ranges(100, 10**6, get), 1000.0)  # type: ignore[arg-type]
+    table = SampleTable(("a",) * 100, (None,) * 100, store_by_ranges(100, 10**6, get), 1000.0)  # type: ignore[arg-type]
     assert sum(piece.shape[1] for _, piece in table.pieces(samples=4096)) == 10**6
     assert max(asked) <= BUDGET < 0.1 * sum(asked)
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.io import savemat
 
 from sprung.errors import InputError
-from sprung.formats import Table, libraries
+from sprung.formats import SampleTable, libraries
 from sprung.formats.hdf5 import Hdf5Format
 from sprung.formats.mat import MatFormat
 
@@ -29,7 +29,7 @@ def saved(folder: Path, content: dict[str, Any], **options: Any) -> Path:
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert MatFormat().claims(path, path.read_bytes()[:8192])
     assert not Hdf5Format().claims(path, path.read_bytes()[:8192])
     return MatFormat().read(path)

@@ -17,7 +17,7 @@ from sprung.formats.mdf import MdfFormat
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 asammdf = pytest.importorskip("asammdf")
 VALUES = np.random.default_rng(2).normal(size=(3, 200))
@@ -37,7 +37,7 @@ def written(folder: Path, *groups: list[Any], version: str = "4.10", compression
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert MdfFormat().claims(path, path.read_bytes()[:8192])
     return MdfFormat().read(path)
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.errors import InputError
-from sprung.formats import Table, libraries
+from sprung.formats import SampleTable, libraries
 from sprung.formats.parquet import ParquetFormat
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def written(folder: Path, columns: dict[str, Any], metadata: dict[str, str] | No
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert ParquetFormat().claims(path, path.read_bytes()[:8192])
     return ParquetFormat().read(path)
 

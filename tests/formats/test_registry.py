@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from sprung.errors import InputError
-from sprung.formats import Table, formats, read_table, registry
+from sprung.formats import SampleTable, formats, read_table, registry
 from sprung.formats.sample_store import store_in_memory
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ class Greedy:
     def claims(self, path: Path, head: bytes) -> bool:
         return bool(path.name and head)
 
-    def read(self, path: Path) -> Table:
-        return Table((path.stem,), (None,), store_in_memory(np.zeros((1, 4))), clock=2.0)
+    def read(self, path: Path) -> SampleTable:
+        return SampleTable((path.stem,), (None,), store_in_memory(np.zeros((1, 4))), clock=2.0)
 
 
 class GreedyEntry:

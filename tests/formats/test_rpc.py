@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 RAW = np.random.default_rng(4).integers(-32000, 32000, size=(2, 3, 64))  # (group, channel, time)
 
@@ -33,7 +33,7 @@ def content(dtype: str = "<i2", **changes: Any) -> bytes:
     return b"".join(records).ljust(8 * 512, b"\0") + RAW.astype(dtype).tobytes()
 
 
-def read(folder: Path, written: bytes) -> Table:
+def read(folder: Path, written: bytes) -> SampleTable:
     path = folder / "x.rsp"
     path.write_bytes(written)
     assert RpcFormat().claims(path, written[:8192])

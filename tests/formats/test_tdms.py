@@ -14,7 +14,7 @@ from sprung.formats.tdms import TdmsFormat
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 nptdms = pytest.importorskip("nptdms")
 VALUES = np.random.default_rng(3).normal(size=(3, 60))
@@ -33,7 +33,7 @@ def written(folder: Path, *segments: list[Any]) -> Path:
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert TdmsFormat().claims(path, path.read_bytes()[:8192])
     return TdmsFormat().read(path)
 

@@ -16,7 +16,7 @@ from sprung.formats.uff import UffFormat
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats import Table
+    from sprung.formats import SampleTable
 
 pyuff = pytest.importorskip("pyuff")
 VALUES = np.random.default_rng(1).normal(size=(2, 40))
@@ -37,7 +37,7 @@ def written(folder: Path, *functions: dict[str, Any]) -> Path:
     return path
 
 
-def read(path: Path) -> Table:
+def read(path: Path) -> SampleTable:
     assert UffFormat().claims(path, path.read_bytes()[:8192])
     return UffFormat().read(path)
 

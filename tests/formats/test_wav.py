@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.io import wavfile
 
 from sprung.errors import InputError
-from sprung.formats import Table
+from sprung.formats import SampleTable
 from sprung.formats.wav import WavFormat
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def sound(samples: NDArray[Any], rate: int = 2000) -> bytes:
     return stream.getvalue()
 
 
-def read(folder: Path, content: bytes) -> Table:
+def read(folder: Path, content: bytes) -> SampleTable:
     path = folder / "x.wav"
     path.write_bytes(content)
     assert WavFormat().claims(path, content[:8192])

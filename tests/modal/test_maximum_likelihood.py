@@ -105,7 +105,7 @@ def test_coloured_noise_makes_the_uncertainty_grow() -> None:
 
 def test_noise_alone_has_no_modes() -> None:
     random = np.random.default_rng(5)
-    with pytest.raises(InputError, match="nothing that stands out from noise"):
+    with pytest.raises(InputError, match="nothing above the noise"):
         identify_modes([random.standard_normal((4, 2000)) for _ in range(3)], 500.0)
 
 

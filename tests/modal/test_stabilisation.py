@@ -17,7 +17,7 @@ def test_the_seven_modes_of_the_car_stay_and_no_other() -> None:
     for mode in CAR:
         assert np.min(np.abs(chosen - mode.pole)) < 0.01 * abs(mode.pole)
     assert diagram.rejected
-    assert all("asked for" in one.reason or "grows" in one.reason for one in diagram.rejected)
+    assert all("required" in one.reason or "grows" in one.reason for one in diagram.rejected)
 
 
 def test_a_true_mode_is_coherent_from_first_to_last_block_row_however_damped() -> None:

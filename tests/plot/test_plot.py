@@ -153,7 +153,7 @@ def test_what_is_not_there_is_named(result: Result) -> None:
         ("import sprung; sprung.plot.fit; print('matplotlib' in sys.modules)", "True"),
         (
             "sys.modules['matplotlib'] = None\nimport sprung\ntry:\n    sprung.plot\nexcept ImportError as e:\n    print(e)",
-            'sprung.plot draws with matplotlib, which is missing: pip install "sprung[plot]"',
+            'sprung.plot needs matplotlib, which is not installed: pip install "sprung[plot]"',
         ),
     ],
 )

@@ -52,7 +52,7 @@ def test_a_range_that_is_exceeded_is_none() -> None:
     prepared = prepare(replace(CLEAN, sensors=RANGED))
     faults = prepared.decays[0].faults
     assert [fault.code for fault in faults] == ["unit"] * 8
-    assert "beyond its range of 5 m/s²; the range was not used" in faults[0].what
+    assert "beyond the range of 5 m/s²; the range was not used" in faults[0].what
     assert prepared.decays[0].usable.all()
 
 

@@ -51,7 +51,7 @@ def test_other_wheels_are_named_and_taken_as_they_fell(number: int, wheels: tupl
         return
     [fault] = told(wrong)
     assert fault.where == campaign.drops[number].file
-    assert f"shows {', '.join(fell)} to have fallen, where the campaign says {', '.join(wheels)}" in fault.what
+    assert f"shows {', '.join(fell)} to have fallen, the campaign states {', '.join(wheels)}" in fault.what
     assert f'wheels = ["{fell[0]}", "{fell[1]}"' in fault.do
     assert set(prepare(wrong).observations[number].wheels) == set(fell)
     # Where a wheel's landing is not waited for, the decay would begin before it.

@@ -104,7 +104,9 @@ def test_a_high_pass_that_is_none_is_not_undone() -> None:
     np.testing.assert_array_equal(decay.values, prepare(CLEAN).decays[0].values)
 
 
-@pytest.mark.parametrize(("offset", "said"), [(0.6, r"1.60 g, \+0.60 g off"), (-0.15, "a tilt, of 32°, .* only 85%")])
+@pytest.mark.parametrize(
+    ("offset", "said"), [(0.6, r"1.60 g at rest, \+0.60 g off"), (-0.15, "a tilt, which would be 32°, .* to 85%")]
+)
 def test_an_offset_is_named_and_does_no_harm(offset: float, said: str) -> None:
     level = 9.80665 * offset * (np.arange(8) == 6)[:, None]
     recordings = tuple(replace(one, values=one.values + level) for one in CLEAN.recordings)
@@ -126,7 +128,7 @@ def test_numbers_in_no_known_unit_are_left_out() -> None:
 def test_one_of_many_upside_down_ones_is_turned_to_agree() -> None:
     (fault,) = prepare(changed(dict.fromkeys(range(7), -1.0))).decays[0].faults
     assert (fault.code, fault.where) == ("sign", "wheel_rr")
-    assert "reads gravity upward, where most of the others read it downward" in fault.what
+    assert "reads gravity upward at rest, most other sensors downward" in fault.what
 
 
 def test_where_all_are_upside_down_nobody_can_say_which() -> None:

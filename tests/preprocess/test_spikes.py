@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 import sprung
 from sprung.campaign import Recording
 from sprung.preprocess import prepare
-from sprung.preprocess.spikes import remove_spikes, spikes
+from sprung.preprocess.spikes import detect_spikes, remove_spikes
 from sprung.simulation import default_sensors, simulate
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 from strategies import vehicles
@@ -50,7 +50,7 @@ def test_no_landing_and_no_noise_is_a_spike(
     drops = [{"wheels": wheels, "height": height} for wheels in (("fl", "fr", "rl", "rr"), ("fl", "fr"), ("rl",))]
     campaign = simulate(vehicle, sensors=sensors, drops=drops, noise=noise, rate=rate, duration=1.5, seed=1)
     for recording in campaign.recordings:
-        assert remove_spikes(recording) is recording
+        assert remove_spikes(recording)[0] is recording
 
 
 @pytest.mark.parametrize(("width", "size"), [(1, 1.0), (1, 100.0), (3, 3.0), (4, 100.0)])
@@ -58,7 +58,7 @@ def test_spikes_are_found_and_filled(width: int, size: float) -> None:
     found = total = 0
     for seed, clean in enumerate(CLEAN.recordings):
         recording, where = spiked(clean, 10, width, size, seed)
-        mended = remove_spikes(recording)
+        mended, _ = remove_spikes(recording)
         changed = mended.values != recording.values
         assert not (changed & ~where).any()
         found += int((changed & where).sum())
@@ -74,9 +74,9 @@ def test_the_fault_tells_how_many_and_where() -> None:
     values = clean.values.copy()
     values[3, 700] += 40
     values[3, 1000:1002] -= 30
-    (fault,) = remove_spikes(replace(clean, values=values)).faults
+    (fault,) = remove_spikes(replace(clean, values=values))[0].faults
     assert (fault.code, fault.where) == ("spike", "empty_bounce.csv: body_rr")
-    assert fault.what.startswith("2 spikes, 3 samples far off the others, the first at 1.4 s; they were filled in")
+    assert fault.what.startswith("2 spikes (3 samples), the first at 1.4 s; replaced by interpolation")
 
 
 def test_the_fit_is_none_the_worse() -> None:
@@ -96,7 +96,7 @@ def test_too_many_leave_the_channel_out() -> None:
     values = clean.values.copy()
     values[2, 300::12] += 50
     values[2, 301::12] += 50
-    mended = remove_spikes(replace(clean, values=values))
+    mended, _ = remove_spikes(replace(clean, values=values))
     assert mended.usable.tolist() == [True, True, False, True, True, True, True, True]
     assert "the channel is left out" in mended.faults[0].what
 
@@ -104,7 +104,7 @@ def test_too_many_leave_the_channel_out() -> None:
 def test_what_every_logger_recorded_is_mended() -> None:
     clean = CLEAN.recordings[0]
     part, _ = spiked(clean, 3, 1, 50.0, 1)
-    whole = remove_spikes(replace(clean, parts=(part, replace(clean, name="other.csv"))))
+    whole, _ = remove_spikes(replace(clean, parts=(part, replace(clean, name="other.csv"))))
     assert len(whole.faults) == 8
     np.testing.assert_allclose(whole.parts[0].values, clean.values, atol=0.5)
 
@@ -113,7 +113,7 @@ def test_nothing_is_told_below_200_samples_a_second() -> None:
     recording = simulate(TABLE_1_CAR, noise=0.02, rate=100, seed=1).recordings[0]
     values = recording.values.copy()
     values[0, 200] += 100
-    assert not spikes(values, recording.rate).any()
+    assert not detect_spikes(values, recording.rate).any()
 
 
 def test_a_channel_that_is_left_out_stays_so() -> None:

@@ -14,7 +14,7 @@ import pytest
 import sprung
 from command_line import copy_sedan
 from sprung.checking import Check
-from sprung.report import check_page
+from sprung.report import check_html
 
 CONTRAST = """() => {
   const rgb = (text) => text.match(/[\\d.]+/g).map(Number);
@@ -58,7 +58,7 @@ def spoilt(tmp_path_factory: pytest.TempPathFactory) -> Check:
 
 @pytest.fixture(scope="module")
 def page(spoilt: Check) -> str:
-    return check_page(spoilt)
+    return check_html(spoilt)
 
 
 def drops_of(page: str) -> dict[str, str]:

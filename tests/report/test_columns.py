@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from sprung.report.terminal.columns import Line, arrange, wrapped
+from sprung.report.terminal.columns import Line, arrange, wrap
 from sprung.tables import Table
 
 CELLS = st.lists(st.text("abc12.±²試", min_size=0, max_size=12), max_size=5).map(" ".join)
@@ -88,6 +88,6 @@ def test_rows_become_lists_where_no_column_fits_beside_the_name() -> None:
 @pytest.mark.parametrize("width", [1, 5, 11, 40])
 def test_no_word_is_broken(width: int) -> None:
     path = "/a/path/that/is/longer/than/any/terminal/is/wide.csv"
-    lines = wrapped(f"see {path} for more", width, indent=2)
+    lines = wrap(f"see {path} for more", width, indent=2)
     assert " ".join(" ".join(lines).split()) == f"see {path} for more"
     assert any(line.strip().endswith(path) for line in lines)

@@ -24,7 +24,7 @@ from layouts import check_view_is_whole
 from sprung.checking import ChannelReport, Check, DropReport
 from sprung.errors import Fault
 from sprung.modal_survey import IdentifiedMode, LoadModes
-from sprung.report import check_view, comparison_view, modes_view, page_of, result_view, text_of
+from sprung.report import check_view, comparison_view, modes_view, report_html, result_view, text_of
 from sprung.uncertainty import Estimate
 from sprung.vehicle import WHEELS
 
@@ -55,7 +55,7 @@ def test_a_result_in_a_notebook(name: str, regenerate: bool) -> None:
 
 @pytest.mark.parametrize("name", RESULTS)
 def test_the_words_of_a_report(name: str, regenerate: bool) -> None:
-    page = page_of(stored_result(name))
+    page = report_html(stored_result(name))
     body = re.sub(r"<(style|script|svg)\b.*?</\1>", "", page[page.index("<body>") :], flags=re.DOTALL)
     lines = (" ".join(html.unescape(re.sub(r"<[^>]+>", " ", line)).split()) for line in body.splitlines())
     compare(name, "".join(f"{line}\n" for line in lines if line), regenerate, "page.txt")

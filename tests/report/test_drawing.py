@@ -26,11 +26,11 @@ from sprung.report import (
     Points,
     Rule,
     draw_check,
-    near_picture,
-    whole_picture,
+    landing_picture,
+    recording_picture,
     write_check,
 )
-from sprung.report.pictures.lanes import thinned
+from sprung.report.pictures.lanes import thin_out
 from sprung.vehicle import TABLE_1_CAR
 
 M = TypeVar("M", Band, Curve, Points, Rule)
@@ -61,12 +61,12 @@ def test_words(check: Check) -> None:
     said = texts(svg)
     assert name == "empty_roll_left.svg"
     assert "empty_roll_left.csv" in said
-    assert "roll left (fl, rl), load empty, 500 samples per second" in said
+    assert "roll left (fl, rl), load empty, 500 Hz" in said
     assert "release 0.400 s" in said
     assert f"landing {drop.landing:.3f} s" in said
     assert f"decay from {drop.start:.3f} s" in said
-    assert f"decay from {drop.start:.3f} s: {drop.why_start}" in said
-    assert f"to {drop.end:.3f} s: the recording ends" in said
+    assert f"free decay from {drop.start:.3f} s ({drop.why_start})" in said
+    assert f"to {drop.end:.3f} s (the recording ends)" in said
     assert all(channel.name in said for channel in drop.channels)
     assert "left out: flat" in said
     assert f"clipped: {check.recorded[0].marks[0].samples.size}" in said
@@ -74,9 +74,9 @@ def test_words(check: Check) -> None:
 
 def pictures(check: Check) -> tuple[Picture, Picture]:
     drop, recorded = check.drops[0], check.recorded[0]
-    close = near_picture(drop, recorded)
+    close = landing_picture(drop, recorded)
     assert close is not None
-    return whole_picture(drop, recorded), close
+    return recording_picture(drop, recorded), close
 
 
 def marks(panel: Panel, kind: type[M]) -> list[M]:
@@ -130,7 +130,7 @@ def test_a_drop_left_out_and_one_without_release(campaign: Campaign) -> None:
 def test_wheels_that_fell_otherwise_are_told(campaign: Campaign) -> None:
     stated = replace(campaign.drops[0], wheels=("fr", "rr"))
     said = texts(*draw_check(sprung.check(replace(campaign, drops=(stated,)))).values())
-    assert "the release shows fl, rl to have fallen" in said
+    assert "wheels detected at the release: fl, rl" in said
 
 
 def test_long_recordings_stay_small(campaign: Campaign) -> None:
@@ -149,7 +149,7 @@ signals = st.lists(st.floats(-1e6, 1e6) | st.just(float("nan")), min_size=1, max
 @given(signals, st.integers(1, 20))
 def test_thinning_keeps_what_can_be_seen(signal: list[float], bins: int) -> None:
     values = np.array(signal)
-    kept = thinned(values, bins)
+    kept = thin_out(values, bins)
     assert np.all(np.diff(kept) > 0)
     if np.isnan(values).all():
         assert kept.size == 0

@@ -19,7 +19,7 @@ from matplotlib import image
 
 import sprung
 from command_line import run
-from sprung.report import add_report, page_of, save_result
+from sprung.report import add_report, report_html, save_result
 from sprung.results import Result
 
 WIDTHS = (390, 1000, 1440)
@@ -68,7 +68,7 @@ def test_it_says_everything(result: Result, page: str) -> None:
         *("comparison", "amplitude", "correlation", "next", "settings", "literature"),
     ]
     assert [name for name in sections if f'href="#{name}"' not in page] == []
-    assert page.index("The numbers may be used") < page.index('id="parameters"')
+    assert page.index("The estimates may be used") < page.index('id="parameters"')
     assert all(reason in words for reason in result.verdict.reasons)
     assert result.setup is not None
     assert {one.name for one in result.setup.files} == {"campaign.toml", *(drop.file for drop in result.drops)}
@@ -117,7 +117,7 @@ def test_forty_drops_take_no_ten_seconds(result: Result) -> None:
         validation={name: result.validation[name.rpartition("_")[0]] for name in copies},
     )
     begun = time.process_time()
-    page = page_of(many)
+    page = report_html(many)
     assert time.process_time() - begun < 10
     assert page.count("<figcaption>The whole recording</figcaption>") == 40
     assert page.count("<details") == 80
@@ -379,7 +379,7 @@ def test_everything_is_reached_by_keyboard(opened: Any) -> None:
 @pytest.mark.long
 def test_on_paper_no_page_is_a_third_empty(result: Result) -> None:
     weasyprint = pytest.importorskip("weasyprint")
-    document = weasyprint.HTML(string=page_of(result, unfolded=True)).render()
+    document = weasyprint.HTML(string=report_html(result, unfolded=True)).render()
 
     def lowest(box: Any) -> float:
         inside = [

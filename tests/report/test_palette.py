@@ -8,7 +8,7 @@ from sprung.report.drawing.palette import DARK, LIGHT
 
 WRITTEN = ("text", "subdued", "link", "accept", "doubtful", "reject", "fault", "release", "landing", "mode")
 GROUNDS = ("paper", "raised", "band")
-DRAWN = ("simulated", "left", "signal", "first", "second", "fault", "mode", "release", "landing")
+DRAWN = ("simulated", "residual", "signal", "first", "second", "fault", "mode", "release", "landing")
 
 
 def luminance(colour: str) -> float:

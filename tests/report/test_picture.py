@@ -16,10 +16,10 @@ from hypothesis import strategies as st
 import sprung
 from sprung.campaign import Campaign
 from sprung.errors import InputError
-from sprung.report import Band, Curve, Panel, Picture, Points, Rule, page_of, svg_of
-from sprung.report.drawing.axis import Axis, room, round_ticks
+from sprung.report import Band, Curve, Panel, Picture, Points, Rule, picture_svg, report_html
+from sprung.report.drawing.axis import Axis, axis_limits, round_ticks
 from sprung.report.drawing.legend import WIDTH
-from sprung.report.drawing.picture import labelled_together
+from sprung.report.drawing.picture import merge_labels
 from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 
@@ -31,12 +31,16 @@ def everything() -> Picture:
     x = np.linspace(1, 9, 9)
     broken = np.where(x == 5, np.nan, x**2)
     points = Points(x[1:4], x[1:4] ** 2, "first", "points", hollow=True, bars=np.array([2.0, 3.0, 4.0]))
-    rules = (Rule(2.0, "mode", "two"), Rule(2.2, "landing", "beside it", dashed=True), Rule(20.0, "quiet", lying=True))
+    rules = (
+        Rule(2.0, "mode", "two"),
+        Rule(2.2, "landing", "beside it", dashed=True),
+        Rule(20.0, "reference", horizontal=True),
+    )
     above = Panel(
         Axis("m/s²", 0, 90),
         (Band(3, 6), *rules, Curve(x, broken, "measured", "broken", 2.0), points),
         note="a <note> & more",
-        wrong="a fault",
+        warning="a fault",
     )
     below = Panel(
         Axis("", 0.1, 100, log=True),
@@ -44,11 +48,11 @@ def everything() -> Picture:
         0.5,
         name="a channel's name that is long",
     )
-    return Picture("Everything", Axis("time, s", 1, 9, falling=True), (above, below), "One of each.")
+    return Picture("Everything", Axis("time, s", 1, 9, descending=True), (above, below), "One of each.")
 
 
 def test_a_picture(regenerate: bool) -> None:
-    shown = svg_of(everything()).replace("><", ">\n<") + "\n"
+    shown = picture_svg(everything()).replace("><", ">\n<") + "\n"
     path = HERE / "picture.svg"
     if regenerate:
         path.write_text(shown, encoding="utf-8")
@@ -57,9 +61,9 @@ def test_a_picture(regenerate: bool) -> None:
 
 def test_where_things_are() -> None:
     """Positions follow from the axes: here in the upper panel, whose axis runs from 90 down to 0 over 96 units."""
-    shown = ET.fromstring(svg_of(everything()))  # noqa: S314
+    shown = ET.fromstring(picture_svg(everything()))  # noqa: S314
     paths = {one.get("class"): one.get("d", "") for one in shown.iter("path")}
-    numbers = [float(one) for one in re.findall(r"[\d.]+", paths["rule quiet"])]
+    numbers = [float(one) for one in re.findall(r"[\d.]+", paths["rule reference"])]
     frame = [
         float(one)
         for one in re.findall(
@@ -90,14 +94,14 @@ def test_ticks_are_round_few_and_inside(low: float, span: float) -> None:
 
 @given(st.lists(st.floats(-1e9, 1e9) | st.just(float("nan")), max_size=20))
 def test_an_axis_has_room_for_everything(values: list[float]) -> None:
-    low, high = room(np.array(values, dtype=float), least=1.0)
+    low, high = axis_limits(np.array(values, dtype=float), least=1.0)
     assert high - low >= 1.0
     assert all(low <= value <= high for value in values if not np.isnan(value))
 
 
 def test_lines_that_look_like_one_are_labelled_together() -> None:
     rules = [Rule(14.1, "mode", "c"), Rule(12.40, "mode", "a"), Rule(12.42, "mode", "b")]
-    found = labelled_together(rules, Axis("Hz", 0.3, 40, log=True))
+    found = merge_labels(rules, Axis("Hz", 0.3, 40, log=True))
     assert [(one.at, one.label) for one in found] == [(12.40, "a, b"), (12.42, ""), (14.1, "c")]
 
 
@@ -118,7 +122,7 @@ def odd() -> Result:
 
 
 def test_words_are_never_markup(odd: Result) -> None:
-    page = page_of(odd)
+    page = report_html(odd)
     # The page's own, the wire car, and the data of every figure.
     assert page.count("<script") == 2 + len(re.findall(r'<script type="application/json" class="data">', page))
     assert "&lt;/script&gt;&lt;script&gt;alert(" in page

@@ -12,7 +12,7 @@ import sprung
 from goldens import stored_result
 from sprung.assessment import Verdict
 from sprung.errors import InputError
-from sprung.report import page_of, result_view, text_of
+from sprung.report import report_html, result_view, text_of
 from sprung.results import Result
 from sprung.results.withholding import withhold_estimates
 from sprung.tables import value_cells
@@ -48,7 +48,7 @@ def test_nothing_shows_an_estimate(sound: Result, rejected: Result) -> None:
         "terminal": text_of(result_view(rejected)),
         "notebook": rejected._repr_html_(),
         "repr": repr(rejected),
-        "report": page_of(rejected),
+        "report": report_html(rejected),
         "results.json": rejected.to_json(),
     }
     for where, text in shown.items():

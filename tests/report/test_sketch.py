@@ -13,7 +13,7 @@ import pytest
 
 import sprung
 from sprung.campaign import Campaign, ModelChoice
-from sprung.report import Disc, Drawing, Stroke, Words, blank_sketch, drawing_svg, sketch_sheet, vehicle_sketch
+from sprung.report import Disc, Drawing, Stroke, TextShape, blank_sketch, sketch_sheet, sketch_svg, vehicle_sketch
 from sprung.report.sketch.labels import Box, Label, place_labels, text_box
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle
@@ -33,12 +33,12 @@ def campaign(**changes: Any) -> Campaign:
 
 
 def words(drawing: Drawing) -> list[str]:
-    return [shape.text for shape in drawing.shapes if isinstance(shape, Words)]
+    return [shape.text for shape in drawing.shapes if isinstance(shape, TextShape)]
 
 
 def boxes(drawing: Drawing) -> Iterator[tuple[str, Box]]:
     for shape in drawing.shapes:
-        if isinstance(shape, Words):
+        if isinstance(shape, TextShape):
             yield shape.text, text_box(shape.text, shape.at, shape.anchor)
 
 
@@ -153,8 +153,8 @@ def test_a_position_that_is_not_known_is_named_and_not_drawn() -> None:
     sketch = vehicle_sketch(campaign(sensors=(*SENSORS[:2], *unplaced), loads=(EMPTY, total, Load(name="open"))))
     assert "position of on_the_body" in sketch.unknown
     assert "wheel station of on_a_wheel" in sketch.unknown
-    assert "where load totals lies (470 kg in all)" in sketch.unknown
-    assert "where load open lies" in sketch.unknown
+    assert "position of load totals (470 kg in total)" in sketch.unknown
+    assert "position of load open" in sketch.unknown
     for drawing in sketch.drawings:
         assert not {"on_the_body", "on_a_wheel"} & set(words(drawing))
         assert len(dots(drawing)) == 2
@@ -177,7 +177,7 @@ def test_names_are_escaped_and_shortened() -> None:
     odd = ('<b> & "c"', "d" * 200, "x\x07y", *(sensor.channel for sensor in SENSORS[3:]))
     renamed = tuple(replace(s, channel=name) for s, name in zip(SENSORS, odd, strict=True))
     plan, _ = vehicle_sketch(campaign(sensors=renamed)).drawings
-    svg = drawing_svg(plan)
+    svg = sketch_svg(plan)
     assert "<b>" not in svg
     assert "&lt;b&gt; &amp; " in svg
     assert "ddd…" in svg

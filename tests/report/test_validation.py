@@ -58,7 +58,7 @@ def test_modes_are_drawn_in_mm_the_largest_amplitude_on_the_left(found: Validati
     pictures = amplitude_pictures(found.amplitudes)
     assert [picture.title for picture in pictures] == [one.mode for one in found.amplitudes]
     for picture, one in zip(pictures, found.amplitudes, strict=True):
-        assert picture.x.falling
+        assert picture.x.descending
         assert picture.x.high > 1e3 * one.records[0].amplitude.max()
         frequency = picture.panels[0].y
         # What is flat is drawn flat.

@@ -13,7 +13,7 @@ import sprung
 from sprung.assessment import Verdict
 from sprung.campaign import Campaign
 from sprung.errors import ResultFileError
-from sprung.report import page_of
+from sprung.report import report_html
 from sprung.results import Result, TraceStep
 from sprung.vehicle import TABLE_1_CAR
 from sprung.vibration import compute_modes, modal_assurance_criterion
@@ -87,7 +87,7 @@ def test_everything_comes_back_from_the_folder(result: Result, folder: Path) -> 
         assert [(mark.code, mark.channel, mark.samples.tolist()) for mark in found.marks] == [
             (mark.code, mark.channel, mark.samples.tolist()) for mark in kept.marks
         ]
-    assert page_of(loaded) == page_of(result)
+    assert report_html(loaded) == report_html(result)
 
 
 def test_amplitudes_are_what_a_validation_shows(campaign: Campaign, result: Result) -> None:
@@ -107,17 +107,17 @@ def test_the_trace_is_saved_loaded_and_shown(result: Result, tmp_path: Path) -> 
     document = json.loads(traced.to_json())
     assert document["trace"][0] == {"stage": "select_terms", "what": STEPS[0].what, "why": STEPS[0].why}
     assert sprung.load(traced.save(tmp_path / "traced")).trace == STEPS
-    for shown in (page_of(traced), traced._repr_html_()):
+    for shown in (report_html(traced), traced._repr_html_()):
         assert shown.count("How the result was reached") >= 1
         assert "&lt;not&gt; corrected" in shown
         assert "Δ2lnL = 812, required 21" in shown
-    assert "How the result was reached" not in page_of(result) + result._repr_html_()
+    assert "How the result was reached" not in report_html(result) + result._repr_html_()
 
 
 def test_the_trace_of_a_rejected_result_is_shown(result: Result) -> None:
     rejected = replace(result, trace=STEPS, verdict=Verdict("reject", ("the model does not hold",)))
     assert "friction accepted" in rejected._repr_html_()
-    assert "friction accepted" in page_of(rejected)
+    assert "friction accepted" in report_html(rejected)
 
 
 @pytest.mark.parametrize("spoilt", [{"body bounce": {}}, {"body bounce": 1}, [1], "curves"])

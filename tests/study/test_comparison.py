@@ -16,8 +16,8 @@ from command_line import Run, run
 from layouts import check_view_is_whole
 from sprung.errors import InputError
 from sprung.report import comparison_view
-from sprung.study.scatter import scatters
-from sprung.study.significance import holm, joint
+from sprung.study.scatter import estimate_scatter
+from sprung.study.significance import holm, joint_test
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
@@ -111,17 +111,17 @@ def test_turned_round_differences_change_their_signs(same: list[sprung.Result], 
 
 def test_an_exact_wheelbase_ties_two_parameters_together(same: list[sprung.Result]) -> None:
     # Its wheelbase is exact, so that b is what a leaves: 15 parameters have 14 directions in which they may differ.
-    one = joint(same[0], same[1], list(same[0].parameters))
+    one = joint_test(same[0], same[1], list(same[0].parameters))
     assert one is not None
     assert len(one.names) == 15
     assert one.freedom == 14
-    assert joint(same[0], same[1], ["a", "b"]).freedom == 1  # type: ignore[union-attr]
-    assert joint(same[0], same[1], []) is None
+    assert joint_test(same[0], same[1], ["a", "b"]).freedom == 1  # type: ignore[union-attr]
+    assert joint_test(same[0], same[1], []) is None
 
 
 def test_of_one_parameter_the_joint_chance_is_its_own(same: list[sprung.Result]) -> None:
     found = sprung.compare(same[:2]).parameters["k_tf"].differences[0]
-    one = joint(same[0], same[1], ["k_tf"])
+    one = joint_test(same[0], same[1], ["k_tf"])
     assert one is not None
     assert found.z is not None
     assert one.chi_square == pytest.approx(found.z**2)
@@ -202,17 +202,17 @@ def test_scatter_is_what_was_put_in() -> None:
     for _ in range(400):
         values = 100 + random.normal(0, 2, 20) + random.normal(0, 1, 20)
         rows = [(str(i), float(value), 1.0) for i, value in enumerate(values)]
-        one = scatters({"k": rows})["k"]
+        one = estimate_scatter({"k": rows})["k"]
         false += one.stands_out
         means.append((one.mean - 100) / one.mean_std)
         spreads.append(one.spread)
         rows[7] = ("7", 116.0, 1.0)
-        found += scatters({"k": rows})["k"].stands_out
+        found += estimate_scatter({"k": rows})["k"].stands_out
     assert np.std(means) == pytest.approx(1, abs=0.12)  # three standard errors of 400
     assert np.sqrt(np.mean(np.square(spreads))) == pytest.approx(2, abs=0.1)
     assert false <= binom.isf(1e-3, 400, 0.05)
     assert found > 380
-    assert scatters({"k": [("a", 1.0, 0.1), ("b", 2.0, 0.1)]}) == {}
+    assert estimate_scatter({"k": [("a", 1.0, 0.1), ("b", 2.0, 0.1)]}) == {}
 
 
 def test_nothing_to_compare_is_said(same: list[sprung.Result]) -> None:

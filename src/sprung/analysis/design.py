@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.analysis.analysis import Analysis
+from sprung.campaign import DEFAULT_HEIGHT
 from sprung.planning import PlannedDrop, PlannedTest, completed_test, setup_from_fit
-from sprung.simulation import DEFAULT_HEIGHT
 from sprung.vehicle import LOAD_MASS, parameter_names
 
 _BEFORE_DECAY = 0.1

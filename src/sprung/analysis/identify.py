@@ -145,7 +145,7 @@ def with_amplitudes(run: Analysis, progress: Progress = silent) -> Result:
         return result  # a model that does not describe the recordings has no modes to follow
     omissions = Omissions(result.omissions)
     amplitudes: tuple[ModeAmplitude, ...] = ()
-    with omissions.noting("The amplitude curves"):
+    with omissions.record_failure("The amplitude curves"):
         motions = body_motions(run.uncertainty, run.decays, run.campaign.sensors)
         amplitudes = amplitudes_of(run, motions, progress)
     return replace(result, amplitude=amplitudes, omissions=omissions.sentences)

@@ -1,18 +1,26 @@
-"""Recordings and campaigns: the records, their files, and one reader per file format behind one registry."""
+"""Campaigns: what is stated of a vehicle and its drop tests, their recordings, and the files of both."""
 
 from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
 from sprung.campaign.campaign_source import CampaignSource, resolve_campaign
 from sprung.campaign.completeness import MissingEntry
-from sprung.campaign.drop import DROP_KINDS, Drop, DropTest, drop_kind, unique_drop_names, unique_recording_names
-from sprung.campaign.drop_recording import find_logger_files
+from sprung.campaign.drop import (
+    DEFAULT_HEIGHT,
+    DROP_KINDS,
+    Drop,
+    DropTest,
+    drop_kind,
+    unique_drop_names,
+    unique_recording_names,
+)
 from sprung.campaign.gap_filling import MAX_MISSING, fill_short_gaps
-from sprung.campaign.json_schema import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.known_values import KnownValueLike, parse_known_values
+from sprung.campaign.logger_files import find_logger_files
 from sprung.campaign.logger_merging import merge_loggers
 from sprung.campaign.placeholders import find_placeholders, placeholder
 from sprung.campaign.plausibility import explain_implausible
-from sprung.campaign.reading import CAMPAIGN_FILE, VehicleFile, read, read_document, read_vehicle
+from sprung.campaign.reading import CAMPAIGN_FILE, read, read_document, read_vehicle
 from sprung.campaign.recording import CLOCK_STD, LoggerClock, Recording
+from sprung.campaign.schema_file import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.sep005 import to_sep005
 from sprung.campaign.source_file import SourceFile
 from sprung.campaign.statements import check_statements, require_plausible
@@ -21,6 +29,7 @@ from sprung.campaign.writing import campaign_files, write
 __all__ = [
     "CAMPAIGN_FILE",
     "CLOCK_STD",
+    "DEFAULT_HEIGHT",
     "DROP_KINDS",
     "MAX_MISSING",
     "SCHEMA_FILE",
@@ -36,7 +45,6 @@ __all__ = [
     "Recording",
     "SourceFile",
     "TestRecord",
-    "VehicleFile",
     "campaign_files",
     "check_statements",
     "drop_kind",

@@ -165,7 +165,7 @@ class Campaign:
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
 
     def require_complete(self) -> None:
-        """Refuse a campaign that does not say everything that an identification needs.
+        """Check that a campaign states everything that an identification needs.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class Campaign:
             raise InputError(needed)
 
     def load(self, name: str) -> Load:
-        """Give the load of that name.
+        """Return the load of that name.
 
         Raises
         ------
@@ -193,6 +193,6 @@ class Campaign:
 def _as_record(given: object, kind: Callable[..., object], problems: Problems) -> object:
     """Return a record that was given by its keys, as a campaign file holds them; others as they are."""
     if isinstance(given, Mapping):
-        with problems.collecting():
+        with problems.collect():
             return kind(**given)
     return given

@@ -97,7 +97,7 @@ def _check_names(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 
 def find_wrong_unit(sensor: Sensor) -> str | None:
-    """Give the reason why a sensor's own unit cannot be; None where it can.
+    """Return what is wrong with a sensor's unit; None where it is one of acceleration.
 
     Parameters
     ----------
@@ -140,17 +140,17 @@ def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> 
         return  # said already, and what they span is not worth saying
     if len(placed) < 3:
         found, do = f"{len(placed)} sensors on the body", 'Add [[sensor]] entries with on = "body".'
-        problems.add(parsed.where("sensor"), found, "at least 3, to tell bounce, pitch and roll apart", do)
+        problems.add(parsed.where("sensor"), found, "at least 3, to distinguish bounce, pitch and roll", do)
         return
     across = np.linalg.svd(np.array(placed) - np.mean(placed, axis=0), compute_uv=False)
     if across[1] <= 0.01 * across[0]:
-        found = "body sensors that all sit on one line, seen from above"
-        do = "Correct their x and y; if they are right, pitch cannot be told from roll: move a sensor off the line."
+        found = "body sensors on one line, seen from above"
+        do = "Correct their x and y; if they are right, pitch cannot be distinguished from roll: move a sensor off the line."
         problems.add(parsed.where("sensor"), found, "at least 3 that span an area", do)
 
 
 def _left_to_defaults(parsed: ParsedFile[CampaignFile], section: str) -> bool:
-    """Say whether a vehicle file leaves its sensors or drops to the simulation."""
+    """Return whether a vehicle file leaves its sensors or drops to the simulation."""
     return isinstance(parsed.file, VehicleFileSchema) and section not in parsed.document
 
 
@@ -178,8 +178,10 @@ def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
                 where, expected = parsed.where("model", key), f"any of {', '.join(EXTRAS)}"
                 problems.add(where, f"'{name}'", expected, did_you_mean(name, EXTRAS))
     for name in sorted(set(model.extras or ()) & set(model.forbid)):
-        do = "Take it out of one of the two."
-        problems.add(parsed.where("model", "forbid"), f"'{name}', which extras asks for", "an extra not in extras", do)
+        do = "Remove it from one of the two."
+        problems.add(
+            parsed.where("model", "forbid"), f"'{name}', which is in extras as well", "an extra not in extras", do
+        )
     apart = [name for name in ("t_f1", "t_f2", "t_r1", "t_r2") if name in parsed.file.known]
     if model.tracks == "shared" and apart:
         found = f'"shared", and {apart[0]} in [known]'
@@ -188,7 +190,7 @@ def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 
 def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[str, KnownValue]:
-    """Give what is known and possible: the wheelbase too."""
+    """Return the known values that are valid, the wheelbase included."""
     known: dict[str, KnownValue] = {}
     for name, measured in parsed.file.known.items():
         where = parsed.where("known", name)
@@ -227,7 +229,7 @@ def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[s
 
 
 def is_contradiction(one: KnownValue, other: KnownValue) -> bool:
-    """Say whether two statements about one quantity cannot both hold.
+    """Return whether two statements of one quantity contradict each other.
 
     Parameters
     ----------
@@ -261,5 +263,5 @@ def _check_sums(parsed: ParsedFile[CampaignFile], known: Mapping[str, KnownValue
         if is_contradiction(whole, together) and (len(given) == len(parts) or whole.value < together.value):
             found = f"{_said(whole)} {unit}, but {' + '.join(given)} = {_said(together)} {unit}"
             expected = f"the sum of {' and '.join(parts)}, to within their uncertainty"
-            do = "Correct one of them, or say how sure they are: { value = ..., std = ... }."
+            do = "Correct one of them, or state their uncertainty: { value = ..., std = ... }."
             problems.add(parsed.where(section, name), found, expected, do)

@@ -9,7 +9,7 @@ from functools import cache
 from textwrap import wrap
 from typing import Any
 
-from sprung.campaign.json_schema import schema_text
+from sprung.campaign.schema_file import schema_text
 
 AXES = """\
 # Lengths m, masses kg, times s, angles rad. x forward from the front axle, y left from the centreline, z up from the ground.
@@ -86,7 +86,7 @@ def _with_comment(line: str, text: str) -> Iterator[str]:
 
 
 def describe_key(section: str, key: str) -> str:
-    """Say what a key of the campaign file means, as its JSON Schema does.
+    """Return the meaning of a key of the campaign file, from its JSON Schema.
 
     Parameters
     ----------

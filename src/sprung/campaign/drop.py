@@ -24,8 +24,12 @@ DROP_KINDS: Mapping[frozenset[Wheel], str] = {
 """The usual drops by the wheels that fall."""
 
 
+DEFAULT_HEIGHT = 0.05
+"""Height of the blocks where a drop does not say, m."""
+
+
 def drop_kind(wheels: Sequence[Wheel]) -> str:
-    """Give what a drop of some wheels is called: ``pitch front``; or just the wheels.
+    """Return the name of a drop by its wheels, such as ``pitch front``; the wheels themselves where it has none.
 
     Parameters
     ----------
@@ -150,7 +154,7 @@ class DropTest(Drop):
 
 
 def unique_drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
-    """Give every drop of a campaign a name of its own, as short as that allows.
+    """Return a unique name for every drop of a campaign, as short as possible.
 
     Parameters
     ----------
@@ -166,7 +170,7 @@ def unique_drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
 
 
 def unique_recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
-    """Say what to call every drop's recording, no two alike: the drop's own name, or what its files have in common.
+    """Return a unique name for every drop's recording: the drop's own name, or what its files have in common.
 
     Parameters
     ----------
@@ -185,7 +189,7 @@ def unique_recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
 
 
 def _told_apart(names: Sequence[Sequence[str]]) -> tuple[str, ...]:
-    """Give each of several things the first of its names that no other has, or else its last one, numbered."""
+    """Return a unique name for each thing: the first of its names that no other has, otherwise its last one, numbered."""
     often = Counter(name for own in names for name in set(own))
     taken: dict[str, None] = {}
     for own in names:

@@ -2,34 +2,25 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from pathlib import PurePath
-from typing import NamedTuple
 
 import numpy as np
 
 from sprung.campaign.drop import Drop
+from sprung.campaign.logger_files import find_logger_files
 from sprung.campaign.logger_merging import merge_loggers
 from sprung.campaign.logger_windows import cut_to_window
 from sprung.campaign.recording import Recording
 from sprung.campaign.signals import find_column, make_recording
 from sprung.errors import Fault, InputError, Problem, Problems
-from sprung.formats import Table
+from sprung.formats import SampleTable
 from sprung.vehicle import Sensor
 
 
-class Wanted(NamedTuple):
-    """A sensor as the campaign file describes it, and as it is called from then on."""
-
-    written: Sensor
-    named: Sensor
-
-
 def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
-    """Give sensors of different loggers, whose channels have one name, the logger's name before it.
+    """Return the sensors; where several have one channel name, the logger's name is put before it.
 
     Parameters
     ----------
@@ -45,15 +36,17 @@ def qualify_channels(sensors: Sequence[Sensor]) -> tuple[Sensor, ...]:
     )
 
 
-def assemble_recording(tables: Mapping[str, Table], sensors: Sequence[Wanted], drop: Drop, name: str) -> Recording:
-    """Make the recording of one drop.
+def assemble_recording(
+    tables: Mapping[str, SampleTable], sensors: Sequence[tuple[Sensor, Sensor]], drop: Drop, name: str
+) -> Recording:
+    """Return the recording of one drop, from the tables of its files.
 
     Parameters
     ----------
     tables
         What its files hold, by their names.
     sensors
-        The campaign's.
+        The campaign's: each as the campaign file describes it, and as it is called from then on.
     drop
         The drop.
     name
@@ -71,48 +64,48 @@ def assemble_recording(tables: Mapping[str, Table], sensors: Sequence[Wanted], d
     """
     if len(tables) == 1:
         ((only, table),) = tables.items()
-        recording = make_recording(_within(table, drop.window), [sensor.written for sensor in sensors], only)
-        return replace(recording, name=name, channels=tuple(sensor.named.channel for sensor in sensors))
+        recording = make_recording(_within(table, drop.window), [written for written, _ in sensors], only)
+        return replace(recording, name=name, channels=tuple(named.channel for _, named in sensors))
     problems = Problems()
-    loggers = {sensor.written.logger for sensor in sensors if sensor.written.logger}
-    of_file: dict[str, list[Wanted]] = {file: [] for file in tables}
+    loggers = {written.logger for written, _ in sensors if written.logger}
+    of_file: dict[str, list[tuple[Sensor, Sensor]]] = {file: [] for file in tables}
     faults: list[Fault] = []
-    for sensor in sensors:
-        with problems.collecting():
-            file = _file_of(sensor.written, tables, loggers)
+    for written, named in sensors:
+        with problems.collect():
+            file = _file_of(written, tables, loggers)
             if file is None:
-                faults.append(_nowhere(sensor.written, name))
+                faults.append(_nowhere(written, name))
             else:
-                of_file[file].append(sensor)
+                of_file[file].append((written, named))
     parts: list[Recording] = []
     for of, own in of_file.items():
-        with problems.collecting():
+        with problems.collect():
             if own:
-                part = make_recording(tables[of], [sensor.written for sensor in own], of)
-                parts.append(replace(part, channels=tuple(sensor.named.channel for sensor in own)))
+                part = make_recording(tables[of], [written for written, _ in own], of)
+                parts.append(replace(part, channels=tuple(named.channel for _, named in own)))
     if drop.window is not None and not of_file[drop.files[0]]:
         where, found = f"{name}: window", f"no sensor of the campaign in {drop.files[0]}, on whose clock it is"
         problems.add(where, found, "a window on the clock of a file that is used", "Name another file first in files.")
     problems.raise_if_any()
     if drop.window is not None:
         parts = list(cut_to_window(parts, drop.window))
-    channels = tuple(sensor.named.channel for sensor in sensors)
+    channels = tuple(named.channel for _, named in sensors)
     faults += [fault for part in parts for fault in part.faults]
     nothing = np.full((len(channels), 0), np.nan)
     whole = Recording(name, channels, nothing, 0.0, 1.0, faults=tuple(faults), parts=tuple(parts))
     return merge_loggers(whole, [part.start for part in parts])
 
 
-def _within(table: Table, window: tuple[float, float] | None) -> Table:
-    """Give the part of a table that lies within a window of its clock, s."""
+def _within(table: SampleTable, window: tuple[float, float] | None) -> SampleTable:
+    """Return the part of a table within a window of its clock, s."""
     if window is None:
         return table
     time = table.time
     return table.part(int(np.searchsorted(time, window[0])), int(np.searchsorted(time, window[1], side="right")))
 
 
-def _file_of(sensor: Sensor, tables: Mapping[str, Table], loggers: Collection[str]) -> str | None:
-    """Say which file a sensor's logger wrote: one named after it, or else the only one with such a channel.
+def _file_of(sensor: Sensor, tables: Mapping[str, SampleTable], loggers: Collection[str]) -> str | None:
+    """Return the file that a sensor's logger wrote: one with its name, otherwise the only one with such a channel.
 
     Where no file has its name, one named after another logger is not its own.
     """
@@ -125,28 +118,6 @@ def _file_of(sensor: Sensor, tables: Mapping[str, Table], loggers: Collection[st
         do = 'Give the sensor logger = "...": a part of the file name that only its own files have.'
         raise InputError([Problem(f"sensor '{sensor.channel}'", found, "the channel in one file of each drop", do)])
     return next(iter(files), None)
-
-
-def find_logger_files(files: Iterable[str], logger: str) -> list[str]:
-    """Give the files with a logger's name in theirs: as words of their own, or else as any part.
-
-    Parameters
-    ----------
-    files
-        The recordings.
-    logger
-        Its name.
-
-    Returns
-    -------
-    list of str
-    """
-    stems = {file: PurePath(file).stem.casefold() for file in files}
-    name = logger.casefold()
-    word = re.compile(rf"(?<![^\W_]){re.escape(name)}(?![^\W_])")
-    return [file for file, stem in stems.items() if word.search(stem)] or [
-        f for f, stem in stems.items() if name in stem
-    ]
 
 
 def _nowhere(sensor: Sensor, name: str) -> Fault:

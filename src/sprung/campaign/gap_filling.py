@@ -7,7 +7,6 @@ longer gap nobody knows. Such a gap does no harm where nothing moves: before the
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,27 +36,6 @@ _FEW = 20
 _DO = "Check the sensor's cable and the logger, or export the recording again."
 
 
-class FilledSamples(NamedTuple):
-    """What is left of a recording's samples.
-
-    Attributes
-    ----------
-    values
-        Shape (channel, time); a channel that is left out NaN throughout, no NaN in the others.
-    first
-        Sample of what was there before at which they begin now.
-    faults
-        What was missing, and what was done about it.
-    left_out
-        Those of the faults that cost a channel.
-    """
-
-    values: Real
-    first: int
-    faults: tuple[Fault, ...]
-    left_out: tuple[Fault, ...]
-
-
 def fill_short_gaps(signal: Real, rate: float) -> Real:
     """Fill the short gaps of one channel.
 
@@ -84,26 +62,39 @@ def fill_short_gaps(signal: Real, rate: float) -> Real:
     return mended
 
 
-def fill_gaps(values: Real, lost: Flags, rate: float, wheres: Sequence[str], place: Place) -> FilledSamples:
-    """Fill what may be filled, cut off what is at rest, and leave out the channels that cannot be mended.
+def fill_gaps(
+    values: Real, lost: Flags, rate: float, wheres: Sequence[str], place: Place
+) -> tuple[Real, int, tuple[Fault, ...], tuple[Fault, ...]]:
+    """Fill short gaps, cut off what is at rest, and leave out the channels with longer gaps.
 
     Parameters
     ----------
     values
         Shape (channel, time), any unit; NaN where a sample is missing, throughout in a channel that is left out already.
     lost
-        Samples that no channel has, and that have been told already; shape (time,).
+        Samples that no channel has, for which there is a fault already; shape (time,).
     rate
         Samples per second.
     wheres
-        File and channel of each, for the faults.
+        File and channel of each row, for the faults.
     place
-        Says where in the file a sample stands.
+        Returns where in the file a sample stands.
+
+    Returns
+    -------
+    values
+        Shape (channel, time); a channel that is left out is NaN throughout, the others have no NaN.
+    first
+        Index of the sample of the given values with which they begin.
+    faults
+        What was missing, and what was done about it.
+    left_out
+        Those of the faults for which a channel was left out.
     """
     missing = np.isnan(values) & ~lost
     given: Flags = np.logical_not(np.isnan(values).all(axis=1))
     if not np.isnan(values[given]).any():
-        return FilledSamples(values, 0, (), ())
+        return values, 0, (), ()
     whole = np.array([fill_short_gaps(row, rate) for row in values])
     first, last, spoilt = _stretch(whole, rate, given)
     spoilt |= given & (missing[:, first:last].mean(axis=1) > MAX_MISSING)
@@ -124,7 +115,7 @@ def fill_gaps(values: Real, lost: Flags, rate: float, wheres: Sequence[str], pla
         if spoilt[channel]:
             left_out.append(faults[-1])
     whole[spoilt] = np.nan
-    return FilledSamples(whole[:, first:last], first, tuple(faults), tuple(left_out))
+    return whole[:, first:last], first, tuple(faults), tuple(left_out)
 
 
 def find_rest(values: Real, rate: float) -> tuple[int, int]:
@@ -166,13 +157,13 @@ def _known(signal: Real, part: slice) -> Real:
 
 
 def _spread(signal: Real) -> float:
-    """Give the noise of a channel from its steps, which slow motion does not touch."""
+    """Return the standard deviation of a channel's noise from its first differences (median absolute deviation)."""
     steps = np.abs(np.diff(_known(signal, slice(None))))
     return float(1.4826 * np.median(steps) / np.sqrt(2)) if steps.size else 0.0
 
 
 def _stretch(values: Real, rate: float, given: Flags) -> tuple[int, int, Flags]:
-    """Give the samples to keep, and the channels that are not whole there."""
+    """Return the first and last sample to keep, and the channels with gaps between them, shape (channel,)."""
     first, last, spoilt = 0, values.shape[1], np.zeros(len(values), dtype=bool)
     until, since = find_rest(values, rate)
     for channel in np.flatnonzero(np.isnan(values).any(axis=1) & given).tolist():

@@ -8,13 +8,13 @@ recordings tell, stays with `sprung.campaign.read`.
 from __future__ import annotations
 
 import json
-from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from pydantic.json_schema import GenerateJsonSchema
 
 from sprung.campaign.key_examples import annotate
-from sprung.campaign.schema import KNOWABLE, SCHEMA, CampaignFile
+from sprung.campaign.schema import KNOWABLE, CampaignFile
+from sprung.campaign.schema_file import SCHEMA
 from sprung.vehicle import EXTRAS, PARAMETERS
 
 if TYPE_CHECKING:
@@ -22,12 +22,6 @@ if TYPE_CHECKING:
 
     from pydantic.json_schema import JsonSchemaValue
     from pydantic_core import core_schema
-
-SCHEMA_FILE = "campaign.schema.json"
-"""The name of the file that holds the JSON Schema, in this package and beside a campaign."""
-
-SCHEMA_LINE = f"#:schema ./{SCHEMA_FILE}\n"
-"""First line of a campaign file that has its JSON Schema beside it: editors with a TOML language server go by it."""
 
 _DERIVED = {
     "total_mass": "mass of the whole vehicle, empty",
@@ -37,13 +31,8 @@ _DERIVED = {
 _UNITS = ["m/s^2", "g", "mg", "mm/s^2", "cm/s^2", "gal", "ft/s^2", "in/s^2"]
 
 
-def schema_text() -> str:
-    """Give the JSON Schema of campaign.toml, as text."""
-    return files("sprung.campaign").joinpath(SCHEMA_FILE).read_text(encoding="utf-8")
-
-
 def campaign_schema(of: type[CampaignFile] = CampaignFile) -> str:
-    """Make the JSON Schema of campaign.toml, or of another file of its kind, anew from the models, as text."""
+    """Return the JSON Schema of campaign.toml, or of another file of its kind, generated from the models, as text."""
     document = of.model_json_schema(schema_generator=_Toml)
     entries: dict[str, dict[str, Any]] = document["$defs"]
     properties = document["properties"]

@@ -109,7 +109,7 @@ def annotate(document: dict[str, Any]) -> None:
 
 
 def without_example(document: Mapping[str, Any]) -> Iterator[str]:
-    """Name the keys of a JSON Schema that have no example; sections, which have keys of their own, need none.
+    """Return the keys of a JSON Schema that have no example; sections need none.
 
     Parameters
     ----------

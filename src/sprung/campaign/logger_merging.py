@@ -16,7 +16,7 @@ SAME_RATE = 1.5e-4
 
 
 def merge_loggers(whole: Recording, moments: Sequence[float | None]) -> Recording:
-    """Put what several loggers recorded on the clock of the first of them that is known.
+    """Merge the recordings of several loggers on the clock of the first one whose offset is known.
 
     Samples are left as they were taken where a logger has the fastest rate; to less than a step its clock then stands
     elsewhere, which the fit finds. Slower loggers are interpolated.
@@ -81,7 +81,7 @@ def _rate_ratios(whole: Recording) -> tuple[float, ...]:
 
 
 def _full_scales(whole: Recording) -> tuple[float | None, ...]:
-    """Give what each channel can show at the most, m/s², where its logger or its sensor says it."""
+    """Return the full scale of each channel, m/s²; None where neither its logger nor its sensor states one."""
     of_channels = {
         channel: size for part in whole.parts for channel, size in zip(part.channels, part.full_scale, strict=False)
     }
@@ -89,7 +89,7 @@ def _full_scales(whole: Recording) -> tuple[float | None, ...]:
 
 
 def _resampled(part: Recording, start: float, rate: float, samples: int) -> NDArray[np.float64]:
-    """Read a slower logger's channels at other times of its own clock."""
+    """Return the channels of a slower logger at other times of its own clock; shape (channel, time)."""
     values, taken = np.full((len(part.channels), samples), np.nan), part.time
     # The logger that began last or ended first did so at one of these times, but for rounding.
     times = np.clip(start + np.arange(samples) / rate, taken[0], taken[-1])

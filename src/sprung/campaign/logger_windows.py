@@ -21,7 +21,7 @@ _MARGIN = 0.1
 
 
 def cut_to_window(parts: Sequence[Recording], window: tuple[float, float]) -> tuple[Recording, ...]:
-    """Cut what several loggers recorded to one window.
+    """Cut the recordings of several loggers to one window.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def _cut(part: Recording, start: float, end: float) -> Recording:
 
 
 def _liveliness(part: Recording) -> Real:
-    """Tell how much a logger's channels change from sample to sample, in steps of `_STEP`; logarithms, from what is usual."""
+    """Return the centred logarithm of a logger's activity, its mean change per sample in steps of `_STEP`; shape (step,)."""
     changes = np.abs(np.diff(part.values[part.usable], axis=1)).sum(axis=0)
     steps = (np.arange(changes.size) / part.rate / _STEP).astype(np.int64)
     count = np.maximum(np.bincount(steps), 1) if changes.size else np.ones(1)
@@ -68,6 +68,6 @@ def _liveliness(part: Recording) -> Real:
 
 
 def _shift(one: Real, other: Real) -> float:
-    """Give by how much later in the other one the same is seen, s."""
+    """Return the lag of the second activity behind the first at the maximum of their cross-correlation, s."""
     alike = correlate(other, one, mode="full", method="fft")
     return (int(np.argmax(alike)) - (one.size - 1)) * _STEP

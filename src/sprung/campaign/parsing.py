@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from pydantic import ValidationError
 
 from sprung.campaign.placeholders import find_placeholders
-from sprung.campaign.schema import SCHEMA, CampaignFile
+from sprung.campaign.schema import CampaignFile
+from sprung.campaign.schema_file import SCHEMA
 from sprung.campaign.schema_problems import Place, format_place, problems_from_validation
 from sprung.errors import InputError, Problem, Problems
 
@@ -52,7 +53,7 @@ class ParsedFile(Generic[File_co]):
     placeholders: Mapping[Place, Problem]
 
     def complete(self, section: str) -> bool:
-        """Say whether nothing of a section was left out, or written under a name that is none."""
+        """Return whether no entry of a section was left out or has an unknown name."""
         if not self.lost:
             return True
         known = type(self.file).model_json_schema()["properties"]
@@ -60,17 +61,17 @@ class ParsedFile(Generic[File_co]):
         return (section in self.document or not misnamed) and all(place[0] != section for place in self.lost)
 
     def numbered(self, section: str) -> Iterator[int]:
-        """Give the index in the document of every entry of ``sensor``, ``load`` or ``drop`` that was understood."""
+        """Yield the index in the document of every valid entry of ``sensor``, ``load`` or ``drop``."""
         written = () if (section,) in self.lost else self.document.get(section, ())
         return (index for index in range(len(written)) if (section, index) not in self.lost)
 
     def where(self, *place: str | int) -> str:
-        """Say a place in the file: ``campaign.toml: sensor[3].position (body_rl)``, counting from 1."""
+        """Return a place in the file as text: ``campaign.toml: sensor[3].position (body_rl)``, counting from 1."""
         return format_place(self.name, place, self.document)
 
 
 def parse_document(model: type[File], document: Mapping[str, Any], name: str, problems: Problems) -> ParsedFile[File]:
-    """Turn a document into the records of its model, entry by entry as far as that goes.
+    """Parse a document into the records of its model, entry by entry.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def parse_document(model: type[File], document: Mapping[str, Any], name: str, pr
         do = "Update sprung: the file was written for a newer version." if newer else f"Write schema = {SCHEMA}."
         found, expected = f"schema {number!r}", f"schema {SCHEMA}, which this version of sprung reads"
         raise InputError([Problem(f"{name}: schema", found, expected, do)])
-    found, do = "a gap that is still to be filled", "Write it there, in place of the text."
+    found, do = "a placeholder", "Replace the text by the value."
     placeholders = {
         place: Problem(format_place(name, place, document), found, what, do)
         for place, what in find_placeholders(document)
@@ -118,7 +119,7 @@ def parse_document(model: type[File], document: Mapping[str, Any], name: str, pr
 
 
 def _with_unknowns(part: Any, placeholders: Collection[Place], place: Place = ()) -> Any:
-    """Put what stands for "not known" into every gap."""
+    """Replace every placeholder by the value for "not known"."""
     if place in placeholders:
         return _UNKNOWN.get(str(place[-1]))
     if isinstance(part, dict):
@@ -129,7 +130,7 @@ def _with_unknowns(part: Any, placeholders: Collection[Place], place: Place = ()
 
 
 def _within(place: Place, placeholders: Collection[Place]) -> bool:
-    """Say whether a fault is only that of a gap."""
+    """Return whether a fault lies within a placeholder."""
     return any(place[: len(placeholder)] == placeholder for placeholder in placeholders)
 
 

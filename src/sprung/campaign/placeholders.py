@@ -13,7 +13,7 @@ MARK = "TODO:"
 
 
 def placeholder(what: str) -> str:
-    """Mark a gap.
+    """Return the text that marks a missing value.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def placeholder(what: str) -> str:
 
 
 def find_placeholders(document: Any, place: Place = ()) -> Iterator[tuple[Place, str]]:
-    """Give every gap of a document, in its order.
+    """Yield every placeholder of a document, in its order.
 
     Parameters
     ----------

@@ -41,14 +41,14 @@ class Limits(NamedTuple):
     zero: bool = False
 
     def contain(self, value: float) -> bool:
-        """Say whether a value, SI, is one that a vehicle may have."""
+        """Return whether a value, SI, is within the limits."""
         return self.low <= value <= self.high or (self.zero and value == 0)
 
     @property
     def expected(self) -> str:
         """What is expected, in words."""
         none = "0, or " if self.zero else ""
-        return f"{none}{self.low:g} to {self.high:g} {self.unit}, as two-axle vehicles have it"
+        return f"{none}{self.low:g} to {self.high:g} {self.unit}, the range of two-axle vehicles"
 
 
 _SYMMETRIC_LENGTH = Limits(-20.0, 20.0, "m")
@@ -117,7 +117,7 @@ def find_limits(quantity: str) -> Limits:
 
 
 def explain_implausible(quantity: str, *values: float) -> tuple[str, str] | None:
-    """Say what is expected in place of a value that no vehicle has, and in which unit it may have been stated.
+    """Return what is expected in place of an implausible value, and the unit in which it may have been stated.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def explain_implausible(quantity: str, *values: float) -> tuple[str, str] | None
 
 
 def suggest_unit(stated: Mapping[float, Limits], first: Sequence[float] = ()) -> str:
-    """Say what to write in place of values that are not plausible.
+    """Return what to write in place of implausible values.
 
     Parameters
     ----------

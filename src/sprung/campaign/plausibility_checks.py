@@ -193,8 +193,8 @@ def _check_gyration(where: str, name: str, inertia: float, mass: float, problems
     low, high = (mass * radius**2 for radius in _GYRATION[name])
     if not low <= inertia <= high:
         found = f"{inertia:g} kg m^2 for {mass:g} kg, a radius of gyration of {(inertia / mass) ** 0.5:.3g} m"
-        expected = f"{low:.3g} to {high:.3g} kg m^2, as such a mass has it"
-        problems.add(where, found, expected, "Correct it; see that it is in kg m^2 and the mass in kg.")
+        expected = f"{low:.3g} to {high:.3g} kg m^2, the range for such a mass"
+        problems.add(where, found, expected, "Correct it; check that it is in kg m^2 and the mass in kg.")
 
 
 def _check_load(

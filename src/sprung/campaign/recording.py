@@ -30,7 +30,7 @@ class LoggerClock:
     offset
         Reading of its clock at time zero of the recording, s, estimated from the release.
     rate_ratio
-        Its sampling rate over that of the recording; at most 1.
+        Ratio of its sampling rate to that of the recording; at most 1.
     delay, delay_std
         Delay of its samples behind the time that the recording gives them, and its standard uncertainty, s.
     d_delay_d_parameter

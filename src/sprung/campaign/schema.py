@@ -8,11 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from sprung.campaign.campaign import ModelChoice, TestRecord
 from sprung.campaign.drop import Drop
+from sprung.campaign.schema_file import SCHEMA
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
-
-SCHEMA = 1
-"""The schema that this version reads and writes."""
 
 KNOWABLE = (*PARAMETERS, *(name for name in DERIVED if name != "wheelbase"))
 """What ``[known]`` may hold; the wheelbase has its place in ``[vehicle]``."""

@@ -33,7 +33,7 @@ _SEVERAL_LOGGERS = (
 def problems_from_validation(
     model: type[BaseModel], details: Sequence[ErrorDetails], file: str, document: Mapping[str, Any]
 ) -> list[Problem]:
-    """Say the faults that pydantic found in a document.
+    """Yield a problem for every error that pydantic found in a document.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def _problem(model: type[BaseModel], detail: ErrorDetails, file: str, document: 
 
 
 def format_place(file: str, place: Sequence[str | int], document: Mapping[str, Any]) -> str:
-    """Say a place in a file: ``campaign.toml: sensor[3].position (body_rl)``, counting from 1."""
+    """Return a place in a file as text: ``campaign.toml: sensor[3].position (body_rl)``, counting from 1."""
     path = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in place).lstrip(".")
     label = None
     if len(place) > 1 and place[0] in _LABELS and isinstance(place[1], int):
@@ -136,7 +136,7 @@ def _node(schema: dict[str, Any], place: Sequence[str | int]) -> dict[str, Any]:
 
 
 def _described(node: dict[str, Any]) -> str:
-    """Say what a part of a JSON schema allows."""
+    """Return what a part of a JSON schema allows, in words."""
     match node:
         case {"enum": words}:
             what = "one of " + ", ".join(json.dumps(word) for word in words)

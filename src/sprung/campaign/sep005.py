@@ -6,7 +6,7 @@ from sprung.campaign.recording import Recording
 
 
 def to_sep005(recording: Recording) -> list[dict[str, object]]:
-    """Make signals of a recording.
+    """Return a recording as signals.
 
     Parameters
     ----------

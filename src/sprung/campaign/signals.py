@@ -10,8 +10,8 @@ from sprung.campaign.gap_filling import MAX_MISSING, fill_gaps
 from sprung.campaign.recording import Recording
 from sprung.campaign.time_base import RegularTimeBase, regularise_time_base
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
-from sprung.formats import MIN_RATE, Table, split_unit
-from sprung.units import acceleration_factor
+from sprung.formats import MIN_RATE, SampleTable
+from sprung.units import acceleration_factor, split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ _LATEST, _SHORTEST = 1e12, 1e-9
 """s: no clock shows more, and no sample follows another sooner."""
 
 
-def find_column(table: Table, channel: str) -> tuple[int, ...]:
+def find_column(table: SampleTable, channel: str) -> tuple[int, ...]:
     """Find a sensor's columns: of just that name, or else of that name with a unit behind it.
 
     Parameters
@@ -47,21 +47,8 @@ def find_column(table: Table, channel: str) -> tuple[int, ...]:
     return exact or tuple(i for i, name in enumerate(table.channels) if name == channel.strip())
 
 
-def sensor_unit(sensor: Sensor, written: str | None) -> str:
-    """Give the unit of a channel: the sensor's, otherwise what the file says, otherwise m/s².
-
-    Parameters
-    ----------
-    sensor
-        The sensor.
-    written
-        What the file says; None where it says nothing.
-    """
-    return sensor.unit or written or "m/s^2"
-
-
-def make_recording(table: Table, sensors: Sequence[Sensor], name: str) -> Recording:
-    """Make the recording of one drop.
+def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> Recording:
+    """Return the recording of one drop, from the table of one file.
 
     Parameters
     ----------
@@ -88,17 +75,17 @@ def make_recording(table: Table, sensors: Sequence[Sensor], name: str) -> Record
     left_out: list[Fault] = []
     done: dict[str, list[str]] = {}
     full_scale: list[float | None] = []
-    with problems.collecting():
+    with problems.collect():
         _refuse_backward(table, name)
     raw: dict[int, NDArray[np.float64]] = {}
     needed = [column[0] for sensor in sensors if len(column := find_column(table, sensor.channel)) == 1]
     table = _where_all_reach(table, needed)
-    with problems.collecting():
+    with problems.collect():
         raw = dict(zip(needed, table.take(needed), strict=True))
     problems.raise_if_any()
     values = np.full((len(sensors), table.samples), np.nan)
     for sensor, row in zip(sensors, values, strict=True):
-        with problems.collecting():
+        with problems.collect():
             found = _channel(table, raw, sensor, sensors, name)
             if isinstance(found, Fault):
                 left_out.append(found)
@@ -119,12 +106,12 @@ def make_recording(table: Table, sensors: Sequence[Sensor], name: str) -> Record
         faults, left_out = [*samples.faults], []
     else:
         wheres = [f"{name}: {sensor.channel}" for sensor in sensors]
-        filled = fill_gaps(
+        filled, first, gaps, lost = fill_gaps(
             samples.values, samples.lost, samples.rate, wheres, lambda sample: table.place(int(samples.origin[sample]))
         )
-        samples = samples._replace(values=filled.values, start=samples.start + filled.first / samples.rate)
-        faults = [*samples.faults, *left_out, *filled.faults]
-        left_out += filled.left_out
+        samples = samples._replace(values=filled, start=samples.start + first / samples.rate)
+        faults = [*samples.faults, *left_out, *gaps]
+        left_out += lost
         if np.isnan(samples.values).all():
             do = "Check the logger and its cables, and the channel names in the campaign file."
             left_out.append(Fault("missing", name, "no channel of it is usable; the drop is left out", do))
@@ -148,8 +135,8 @@ def make_recording(table: Table, sensors: Sequence[Sensor], name: str) -> Record
     )
 
 
-def _rate_ratios(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
-    """Give the samples that were taken for each one that is there, of each channel; nothing where all have one clock."""
+def _rate_ratios(table: SampleTable, sensors: Sequence[Sensor]) -> tuple[float, ...]:
+    """Return the rate ratio of each channel; empty where all channels have one clock."""
     columns = [find_column(table, sensor.channel)[:1] for sensor in sensors]
     slower = [
         table.resampled[column[0]].rate_ratio if column and column[0] in table.resampled else 1.0 for column in columns
@@ -157,8 +144,8 @@ def _rate_ratios(table: Table, sensors: Sequence[Sensor]) -> tuple[float, ...]:
     return tuple(slower) if min(slower, default=1.0) < 1 else ()
 
 
-def _where_all_reach(table: Table, needed: Sequence[int]) -> Table:
-    """Leave out the few samples at the ends that columns of another clock do not reach."""
+def _where_all_reach(table: SampleTable, needed: Sequence[int]) -> SampleTable:
+    """Leave out the few samples at both ends that columns of another clock do not reach."""
     reach = [table.resampled[column] for column in needed if column in table.resampled]
     reach = [one for one in reach if one.last - one.first >= (1 - MAX_MISSING) * table.samples]
     first, last = max((one.first for one in reach), default=0), min((one.last for one in reach), default=table.samples)
@@ -166,9 +153,9 @@ def _where_all_reach(table: Table, needed: Sequence[int]) -> Table:
 
 
 def _channel(
-    table: Table, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
+    table: SampleTable, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
 ) -> tuple[NDArray[np.float64], str, float] | Fault:
-    """Give one sensor's samples, NaN where one is missing, what was done to them and the unit; or why it is left out."""
+    """Return samples in m/s² (NaN where missing), what was done to them and their unit; or why the channel is left out."""
     where, columns = f"{file}: {sensor.channel}", find_column(table, sensor.channel)
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
@@ -179,7 +166,7 @@ def _channel(
         found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."
         raise InputError([Problem(where, found, "one column per channel", do)])
     column = columns[0]
-    samples, unit = raw[column], sensor_unit(sensor, table.units[column])
+    samples, unit = raw[column], sensor.unit or table.units[column] or "m/s^2"
     if not np.isfinite(samples).all() and (problem := table.find_non_number(column)) is not None:
         raise InputError([problem])
     if not np.isfinite(samples).any():
@@ -193,7 +180,7 @@ def _channel(
     no_number = ~(np.abs(samples) <= MAX_READING / factor)
     if no_number.all():
         first = f"the first {samples[0]:.4g} {unit}"
-        what = f"every sample reads more than any accelerometer can, {first}; the channel is left out of this drop"
+        what = f"every sample exceeds the range of any accelerometer, {first}; the channel is left out of this drop"
         return Fault("missing", where, what, "Check the sensor's cable and its unit.")
     source = (
         ""
@@ -208,7 +195,7 @@ def _channel(
     return sign * factor * np.where(no_number, np.nan, samples), step, factor
 
 
-def _refuse_backward(table: Table, file: str) -> None:
+def _refuse_backward(table: SampleTable, file: str) -> None:
     time = table.time
     if len(time) < 2:
         found, do = "a single sample" if len(time) else "no samples", "Export it again."
@@ -228,11 +215,11 @@ def _refuse_backward(table: Table, file: str) -> None:
         )
     usual = float(np.median(np.diff(time)))
     if usual < _SHORTEST:
-        found, do = f"{usual:.3g} s from one sample to the next", "See that the time is in s, or name its unit."
+        found, do = f"{usual:.3g} s from one sample to the next", "Check that the time is in s, or name its unit."
         raise InputError([Problem(file, found, f"steps of {_SHORTEST:g} s or more", do)])
 
 
-def _evened(table: Table, values: NDArray[np.float64], file: str) -> RegularTimeBase:
+def _evened(table: SampleTable, values: NDArray[np.float64], file: str) -> RegularTimeBase:
     if isinstance(table.clock, np.ndarray):
         return regularise_time_base(table.clock, values, table.place, file)
     count = values.shape[1]
@@ -243,4 +230,4 @@ def _too_slow(rate: float, file: str) -> Problem:
     do = "Record at 200 Hz or more."
     if 1e3 * rate >= MIN_RATE:
         do += " If the time is written in ms, name its column 'time [ms]'; if it only counts samples, give it in s."
-    return Problem(file, f"{rate:.4g} samples per second", f"at least {MIN_RATE:g}, to see wheels hop", do)
+    return Problem(file, f"{rate:.4g} samples per second", f"at least {MIN_RATE:g}, to resolve wheel hop", do)

@@ -30,7 +30,7 @@ class SourceFile:
 
     @classmethod
     def of(cls, folder: Path, name: str) -> SourceFile:
-        """Take the checksum of a file.
+        """Return the name, size and checksum of a file.
 
         Parameters
         ----------

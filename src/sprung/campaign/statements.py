@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from sprung.campaign.checks import check_body_sensors, check_quantities
-from sprung.campaign.parsing import ParsedFile
-from sprung.campaign.schema import CampaignFile, Measured, VehicleSection
 from sprung.errors import Problems
 from sprung.vehicle import EMPTY
 
@@ -19,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def require_plausible(campaign: Campaign) -> None:
-    """Refuse a campaign that states what no two-axle vehicle has, or what contradicts itself.
+    """Check that the statements of a campaign are plausible for a two-axle vehicle and do not contradict each other.
 
     Reading refuses it already in a file; a campaign made or changed in memory is refused by the same checks.
 
@@ -75,15 +72,23 @@ def check_statements(
     problems
         Takes up what is wrong.
     """
+    # The models of the files are not needed to hold a campaign, only to check it.
+    from sprung.campaign.checks import check_body_sensors, check_quantities  # noqa: PLC0415
+    from sprung.campaign.parsing import ParsedFile  # noqa: PLC0415
+    from sprung.campaign.schema import CampaignFile, Measured, VehicleSection  # noqa: PLC0415
+
+    def measured(known: KnownValue) -> Measured:
+        return Measured.model_construct(value=known.value, std=known.std)
+
     described = tuple(load for load in loads if load.name != EMPTY.name)
     file = CampaignFile.model_construct(
         vehicle=VehicleSection.model_construct(
-            wheelbase=None if wheelbase is None else _measured(wheelbase),
+            wheelbase=None if wheelbase is None else measured(wheelbase),
             cg_height=heights.cg_height,
             wheel_height=heights.wheel_height,
             roll_axis_height=heights.roll_axis_height,
         ),
-        known={quantity: _measured(one) for quantity, one in known.items()},
+        known={quantity: measured(one) for quantity, one in known.items()},
         sensor=tuple(sensors),
         load=described,
         drop=tuple(drops),
@@ -97,7 +102,3 @@ def check_statements(
     if whole:
         check_body_sensors(parsed, problems)
     check_quantities(parsed, problems)
-
-
-def _measured(known: KnownValue) -> Measured:
-    return Measured.model_construct(value=known.value, std=known.std)

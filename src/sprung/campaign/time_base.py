@@ -80,7 +80,7 @@ class RegularTimeBase(NamedTuple):
 
 
 def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> RegularTimeBase:
-    """Put samples at even steps, as their stamps and they themselves tell how they were taken.
+    """Return the samples at regular steps.
 
     Parameters
     ----------
@@ -134,8 +134,8 @@ def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> R
         faults.append(Fault("clock", file, what, "Check how the logger stores or sends its samples."))
     if uneven.size:
         what = (
-            f"{_steps(steps, uneven, usual, off, place)}; the samples are no smoother at those times, and were taken to "
-            f"be even, {1 / step:.6g} a second"
+            f"{_steps(steps, uneven, usual, off, place)}; the samples are not smoother at these times, and were taken as "
+            f"regular, {1 / step:.6g} per second"
         )
         faults.append(Fault("clock", file, what, "Export the recording at a fixed rate."))
     spread = np.full((len(values), lost.size), np.nan)
@@ -161,7 +161,7 @@ def _line(time: Real, jumps: Flags) -> _Line:
 
 
 def _is_even(time: Real, jumps: Flags) -> bool:
-    """Say whether a clock is even, or written with too few digits to look even.
+    """Return whether timestamps are regular, apart from rounding to the digits in which they are written.
 
     Where a step is one digit, a lost line looks like a step rounded up. But rounding, and nothing else, keeps all stamps
     within one digit of each other about a straight line: steps are rounded up at even distances.
@@ -187,7 +187,7 @@ def _nothing(time: Real, values: Real, fault: Fault) -> RegularTimeBase:
 
 
 def _steps(steps: Real, uneven: Index, usual: float, off: float, place: Place) -> str:
-    said = f"the clock is uneven: its stamps are up to {1e3 * off:.2g} ms off even ones"
+    said = f"the time base is irregular: its timestamps deviate by up to {1e3 * off:.2g} ms from regular ones"
     if not uneven.size:
         return said
     first = int(uneven[0])
@@ -198,7 +198,7 @@ def _steps(steps: Real, uneven: Index, usual: float, off: float, place: Place) -
 
 
 def _without_pauses(time: Real, values: Real, pauses: Index, place: Place, file: str) -> RegularTimeBase:
-    """Keep the stretch between two pauses that holds the landing, if it also holds the release or nothing moved before."""
+    """Keep the stretch between two pauses that holds the landing, if it also holds the release or nothing moved before it."""
     edges = np.concatenate([[0], pauses + 1, [time.size]])
     level = np.nanmedian(np.where(np.isnan(values).all(axis=1, keepdims=True), 0.0, values), axis=1, keepdims=True)
     deviation = np.nan_to_num(np.abs(values - level))
@@ -221,7 +221,7 @@ def _without_pauses(time: Real, values: Real, pauses: Index, place: Place, file:
 
 
 def _believed(values: Real, off: Real, rate: float) -> bool:
-    """Say whether the samples were taken at their stamps.
+    """Return whether the samples were taken at their timestamps rather than at regular times.
 
     A sample taken late by δ is off by δ times the slope of its signal. What the samples differ from their neighbours is
     compared with what it would be then: the factor between the two is 1 where the stamps are right, and 0 where the
@@ -245,7 +245,7 @@ def _believed(values: Real, off: Real, rate: float) -> bool:
 
 
 def _unlike_neighbours(signal: Real) -> Real:
-    """Give by how much each sample differs from the cubic through its four neighbours; shape (time less 4,)."""
+    """Return the difference of each sample from the cubic through its four neighbours; shape (time - 4,)."""
     return signal[2:-2] - (4 * (signal[1:-3] + signal[3:-1]) - signal[:-4] - signal[4:]) / 6
 
 
@@ -262,7 +262,7 @@ def _resampled(time: Real, values: Real, step: float, what: str, file: str) -> R
             before = np.clip(np.searchsorted(time[known], grid, side="right") - 1, 0, known.size - 2)
             apart = time[known[before + 1]] - time[known[before]] > max(LONGEST_GAP, _JUMP * step)
             row[apart | (np.diff(known)[before] > 1)] = np.nan
-    what += f"; the samples are smooth at the times stamped, and were interpolated to {1 / step:.6g} a second"
+    what += f"; the samples are smooth at these times, and were interpolated to {1 / step:.6g} per second"
     fault = Fault("clock", file, what, "Export the recording at a fixed rate.")
     lost = np.zeros(grid.size, dtype=bool)
     return RegularTimeBase(read, float(time[0]), 1 / step, lost, origin, (fault,))

@@ -33,7 +33,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise InputError([Problem(str(path), "a folder", "a campaign file or vehicle file", do)]) from None
     except OSError as error:
         found = f"a file that cannot be read ({error.strerror})"
-        raise InputError([Problem(str(path), found, "a readable file", "See to its permissions.")]) from error
+        raise InputError([Problem(str(path), found, "a readable file", "Check its permissions.")]) from error
     except UnicodeDecodeError as error:
         line = path.read_bytes()[: error.start].count(b"\n") + 1
         found = "a character that is not UTF-8"

@@ -11,14 +11,10 @@ import numpy as np
 import tomli_w
 from pydantic import TypeAdapter
 
-from sprung.campaign.comments import add_comments
-from sprung.campaign.json_schema import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.reading import CAMPAIGN_FILE
-from sprung.campaign.schema import SCHEMA
-from sprung.campaign.signals import sensor_unit
+from sprung.campaign.schema_file import SCHEMA, SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.files import atomic_write
-from sprung.formats import split_unit
-from sprung.units import acceleration_factor
+from sprung.units import acceleration_factor, split_unit
 from sprung.vehicle import EMPTY, Load, Sensor
 
 if TYPE_CHECKING:
@@ -76,6 +72,8 @@ def campaign_files(campaign: Campaign) -> dict[str, bytes]:
         for of_drop, drop in zip(names, campaign.drops, strict=True)
         for name, piece in zip(of_drop, _pieces(drop.recording), strict=True)
     }
+    from sprung.campaign.comments import add_comments  # noqa: PLC0415 (only a file that is written has comments)
+
     files[SCHEMA_FILE] = schema_text().encode()
     files[CAMPAIGN_FILE] = (SCHEMA_LINE + add_comments(_toml(_document(campaign, names)))).encode()
     return files
@@ -131,7 +129,7 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
 
 
 def document_of_record(record: object, *without: str) -> dict[str, Any]:
-    """Give the keys of a record that say more than their defaults, as TOML holds them.
+    """Return the keys of a record that differ from their defaults, as TOML holds them.
 
     Parameters
     ----------
@@ -198,6 +196,6 @@ def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:
 
 
 def _si_per_reading(sensor: Sensor) -> float:
-    """Give m/s², positive up, in one unit of a sensor's reading: the inverse of what reading does."""
-    factor = acceleration_factor(sensor_unit(sensor, split_unit(sensor.channel)[1]))
+    """Return the factor from the sensor's unit and direction to m/s², positive up."""
+    factor = acceleration_factor(sensor.unit or split_unit(sensor.channel)[1] or "m/s^2")
     return -factor if sensor.direction == "down" else factor

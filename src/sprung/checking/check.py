@@ -269,7 +269,7 @@ def _without_drop(drafted: DraftCampaign) -> Iterator[Fault]:
     """Name the recordings in which no drop was found."""
     for file in drafted.files:
         if not file.drops:
-            why = file.refused[0].why if file.refused else "nothing in it moves"
+            why = file.rejected[0].why if file.rejected else "nothing in it moves"
             do = "Look whether it is the right recording, and name its unit if it has another."
             yield Fault("no-drop", file.name, f"no drop was found: {why}", do)
     for name, problems in drafted.unreadable.items():

@@ -156,7 +156,7 @@ def validate(
             folder = output.resolve()
             written = sprung.report.write_validation(found, folder, {}, overwrite=force)
             progress(Step("drawing"))
-            with omissions.noting("The validation"):
+            with omissions.record_failure("The validation"):
                 drawings = sprung.report.draw_validation(found)
                 written = sprung.report.write_validation(found, folder, drawings, overwrite=force)
     for omission in omissions.sentences:

@@ -50,7 +50,7 @@ def check(
     written: tuple[Path, ...] = ()
     omissions = Omissions()
     if page or drawings:
-        with working("drawing"), omissions.noting("The page of the check", "written"):
+        with working("drawing"), omissions.record_failure("The page of the check", "written"):
             written = sprung.report.write_check(found, folder, page=page, drawings=drawings, overwrite=force)
     for omission in omissions.sentences:
         complain(omission)

@@ -1,6 +1,6 @@
-"""The exact look at one event of a long recording: whether a vehicle was dropped, and how long it vibrates freely.
+"""Classification of one event of a long recording: whether a vehicle was dropped, and how long it vibrates freely.
 
-What tells a drop from a knock is physics, not a pattern. Before the release the sensors rest. At the release the force
+A drop differs from a knock by its physics, not by a pattern. Before the release the sensors rest. At the release the force
 under a wheel vanishes while its spring has not yet moved, so the wheel goes down faster than gravity could take it,
 beyond -1 g; nothing else at a standing vehicle does that for longer than a blow lasts. The body follows towards free
 fall, since its springs slacken. Then comes the impact, and a body that swings on its springs.
@@ -14,19 +14,26 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from sprung.preprocess import IMPACT, RING, RING_TO, SPEED, DropFeatures, Release, detect_release, look_at
+from sprung.drafting.drop_features import DropFeatures
+from sprung.preprocess import IMPACT, WHEEL_SPEED, detect_release, find_steepest_rise, measure_fall
 from sprung.units import STANDARD_GRAVITY
 
 Real = NDArray[np.float64]
 
 BEFORE = 1.0
-"""s before the release that are worth having: rest level and noise."""
+"""s before the release that are kept: rest level and noise."""
 
 AHEAD = 0.35
-"""s before an event with which the exact look begins."""
+"""s before an event from which it is classified."""
 
 AFTER = 12.0
 """s after the release beyond which no vehicle vibrates."""
+
+_SWING_LEAST, _SWING_FROM, _SWING_TO = 0.2, 0.1, 0.8
+"""m/s² that the slow swinging of a dropped vehicle exceeds, in at least two channels, and s after the landing."""
+
+_SLOW = 0.1
+"""s over which readings are averaged to see the swinging of the body and nothing faster."""
 
 _BODY_SPEED = 0.15
 """m/s downward that the body gains at least, where no sensor is on a wheel."""
@@ -72,18 +79,18 @@ _SHOWN = 3.0
 
 
 @dataclass(frozen=True, eq=False)
-class Fall:
-    """What the exact look at a drop gives; samples count within the values looked at.
+class DropEvent:
+    """An event that is a drop; samples count within the values that were classified.
 
     Attributes
     ----------
     first, release, landing, faded, last
         Samples: from when the vehicle rests, the first that moves, the first after the last wheel to fall has met the
         ground, the first at which nothing rises above the noise any more, and the last that is undisturbed.
-    seen
+    features
         What the channels read.
-    ended
-        Why it ends there, in words.
+    why_end
+        The reason why it ends there, in words.
     """
 
     first: int
@@ -91,12 +98,12 @@ class Fall:
     landing: int
     faded: int
     last: int
-    seen: DropFeatures
-    ended: str
+    features: DropFeatures
+    why_end: str
 
 
-def classify_event(values: Real, rate: float, event: int, wheels: NDArray[np.bool_] | None) -> Fall | str:
-    """Say whether an event is a drop.
+def classify_event(values: Real, rate: float, event: int, wheels: NDArray[np.bool_] | None) -> DropEvent | str:
+    """Classify an event as a drop or not.
 
     Parameters
     ----------
@@ -107,35 +114,51 @@ def classify_event(values: Real, rate: float, event: int, wheels: NDArray[np.boo
     event
         Sample at which something begins to move.
     wheels
-        Which channels are known to be on wheels, shape (channel,); None where nobody knows.
+        Which channels are known to be on wheels, shape (channel,); None where that is not known.
 
     Returns
     -------
-    Fall or str
+    DropEvent or str
         If it is none, the reason in words.
     """
     begin = max(0, event - int(AHEAD * rate))
-    end = min(values.shape[1], event + int((IMPACT + RING_TO + 0.1) * rate))
+    end = min(values.shape[1], event + int((IMPACT + _SWING_TO + 0.1) * rate))
     missing = np.isnan(values[:, begin:end]).mean(axis=1)
     whole = missing <= _MISSING
     if not whole.any():
         return "every channel has gaps here"
-    values = _bridged(values, whole & (missing > 0))
-    found = detect_release(values[whole, begin:end], rate)
-    if found is None or begin + found.sample > event + int(IMPACT * rate):
-        return "nothing rests before it, so it is no release"
-    release = begin + found.sample
-    level, noise = _of_all(found, whole)
-    seen, landing, moved, slow, gained = look_at(values, rate, release, level, noise, wheels)
-    refused = _refused(seen, gained, wheels)
-    if refused is not None:
-        return refused
-    first = _rest_begins(moved, noise, release, seen.peak, rate)
-    faded, last, ended = _until(moved, slow, noise, release, landing, rate)
-    return Fall(first, release, landing, faded, last, seen, ended)
+    values = _bridge_gaps(values, whole & (missing > 0))
+    looked_at = np.where(whole[:, None], values[:, begin:end], np.nan)
+    detected = detect_release(looked_at, rate)
+    if detected is None or begin + detected.sample > event + int(IMPACT * rate):
+        return "nothing is at rest before it, so it is no release"
+    release, level = begin + detected.sample, detected.rest.level
+    noise, moved = detected.rest.noise.std(axis=1), values - level[:, None]
+    onset, depth, speed, gained, fall = measure_fall(moved, rate, release, level)
+    falling = _falling_channels(depth, wheels)
+    landing = release + max((find_steepest_rise(fall[i]) for i in np.flatnonzero(falling)), default=0)
+    width = max(round(_SLOW * rate), 1)
+    slow = uniform_filter1d(moved, width, axis=1, mode="nearest")
+    swinging = slow[:, landing + int(_SWING_FROM * rate) : landing + int(_SWING_TO * rate)]
+    swing = np.maximum(np.abs(swinging).max(axis=1, initial=0.0) - 4 * noise / np.sqrt(width), 0.0)
+    features = DropFeatures(level, noise, onset, depth, speed, np.abs(fall).max(axis=1), swing)
+    reason = _reject(features, gained, wheels)
+    if reason is not None:
+        return reason
+    first = _rest_begins(moved, noise, release, features.peak, rate)
+    faded, last, why_end = _find_end(moved, slow, noise, release, landing, rate)
+    return DropEvent(first, release, landing, faded, last, features, why_end)
 
 
-def _bridged(values: Real, gapped: NDArray[np.bool_]) -> Real:
+def _falling_channels(depth: Real, wheels: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+    """Return which channels show a wheel that falls, or where none does the body."""
+    among = np.nan_to_num(depth if wheels is None else np.where(wheels, depth, 0.0))
+    if among.max(initial=0.0) < STANDARD_GRAVITY:
+        among = np.nan_to_num(depth)
+    return np.asarray(among >= 0.5 * max(float(among.max(initial=0.0)), 1e-12))
+
+
+def _bridge_gaps(values: Real, gapped: NDArray[np.bool_]) -> Real:
     """Bridge the gaps of some channels by straight lines: enough to see a drop, if not to identify from."""
     if not gapped.any():
         return values
@@ -146,35 +169,29 @@ def _bridged(values: Real, gapped: NDArray[np.bool_]) -> Real:
     return values
 
 
-def _of_all(found: Release, whole: NDArray[np.bool_]) -> tuple[Real, Real]:
-    level, noise = np.full(whole.size, np.nan), np.full(whole.size, np.nan)
-    level[whole], noise[whole] = found.rest.level, found.rest.noise.std(axis=1)
-    return level, noise
-
-
-def _refused(seen: DropFeatures, gained: Real, wheels: NDArray[np.bool_] | None) -> str | None:
-    """Give the reason why this is no drop; None where it is one."""
-    noise, depth, speed, swing = seen.noise, seen.depth, seen.speed, seen.swing
+def _reject(features: DropFeatures, gained: Real, wheels: NDArray[np.bool_] | None) -> str | None:
+    """Return the reason why an event is no drop; None where it is one."""
+    noise, depth, speed, swing = features.noise, features.depth, features.speed, features.swing
     candidates = np.ones(depth.size, dtype=bool) if wheels is None else wheels
-    wheel = candidates & (depth > STANDARD_GRAVITY) & (speed > SPEED)
+    wheel = candidates & (depth > STANDARD_GRAVITY) & (speed > WHEEL_SPEED)
     body = (depth > _BODY_DEPTH) & (gained > _BODY_SPEED) & (gained > _BODY_LASTS * depth)
     if not wheel.any() and (body.sum() < 2 or (wheels is not None and wheels.any())):
         deepest = np.nan_to_num(np.where(candidates, depth, 0.0))
         channel = int(np.argmax(deepest))
         reached, fast = deepest[channel] / STANDARD_GRAVITY, float(np.nan_to_num(speed[channel]))
         return (
-            f"nothing falls: the deepest reading is {reached:.2g} g below rest and gains {fast:.2g} m/s downward, where a "
-            f"wheel let go goes beyond 1 g and gains {SPEED:g} m/s or more"
+            f"nothing falls: the lowest reading is {reached:.2g} g below rest and gains {fast:.2g} m/s downward; a released "
+            f"wheel exceeds 1 g and gains {WHEEL_SPEED:g} m/s or more"
         )
     falls = wheel if wheel.any() else body
     rest = noise / np.maximum(depth, 1e-9)
     if (np.nan_to_num(rest[falls]) > _RESTLESS).all():
-        return f"nothing rests before it: what falls moves by {rest[falls].min():.0%} of the fall already"
+        return f"nothing is at rest before it: what falls moves by {rest[falls].min():.0%} of the fall already"
     second = float(np.sort(np.nan_to_num(swing))[-2:].min(initial=np.inf))
-    if second < RING:
+    if second < _SWING_LEAST:
         return (
-            f"no body swings after it: {second:.2g} m/s² in the second-largest channel, where a dropped vehicle exceeds "
-            f"{RING:g} m/s²"
+            f"no body swings after it: {second:.2g} m/s² in the second-largest channel; a dropped vehicle exceeds "
+            f"{_SWING_LEAST:g} m/s²"
         )
     return None
 
@@ -187,8 +204,8 @@ def _rest_begins(moved: Real, noise: Real, release: int, peak: Real, rate: float
     return first + int(np.flatnonzero(moves)[-1]) + 1 if moves.any() else first
 
 
-def _until(moved: Real, slow: Real, noise: Real, release: int, landing: int, rate: float) -> tuple[int, int, str]:
-    """Give when the vibration has faded, the last undisturbed sample, and why it is the last."""
+def _find_end(moved: Real, slow: Real, noise: Real, release: int, landing: int, rate: float) -> tuple[int, int, str]:
+    """Return when the vibration has faded, the last undisturbed sample, and why it is the last."""
     width = max(round(_BIN * rate), 1)
     bins = (moved.shape[1] - release) // width
     bin_, whole = width / rate, slice(release, release + bins * width)
@@ -210,28 +227,28 @@ def _until(moved: Real, slow: Real, noise: Real, release: int, landing: int, rat
     ).any(axis=0)
     events = np.flatnonzero(together)
     last = release + int(AFTER * rate)
-    ended = f"{AFTER:g} s after the release nothing is expected any more"
+    why_end = f"{AFTER:g} s after the release every vehicle is at rest"
     if events.size:
         event = release + max(int(events[0] * width - _SPARED * rate), 0)
         faded = min(faded, event)
         if event <= last:
-            last, ended = event, "the next disturbance begins"
+            last, why_end = event, "the next disturbance begins"
     if moved.shape[1] - 1 < last:
-        last, ended = moved.shape[1] - 1, "the recording ends"
+        last, why_end = moved.shape[1] - 1, "the recording ends"
     shown = max(faded + int(rate), release + int(_SHOWN * rate))
     if shown < last:
-        last, ended = shown, "the vibration has faded into the noise"
-    return min(faded, last), last, ended
+        last, why_end = shown, "the vibration has faded into the noise"
+    return min(faded, last), last, why_end
 
 
 def _first_quiet(moving: NDArray[np.int64], samples: int, length: int) -> int:
-    """Give where the first stretch without movement begins that lasts so long, or goes on to the end."""
+    """Return where the first stretch without movement begins that lasts so long, or goes on to the end."""
     edges = np.concatenate([[-1], moving, [samples + length]])
     return int(edges[int(np.argmax(np.diff(edges) > length))]) + 1
 
 
 def _exceeds(envelope: Real, noise: Real, memory: float, spared: float) -> NDArray[np.bool_]:
-    """Say where an envelope exceeds what it was within the memory before, which free vibration does not; all in bins.
+    """Return where an envelope exceeds what it was within the memory before, which free vibration does not; all in bins.
 
     The last few bins are spared, so that a disturbance stands out for as long as it takes to rise.
     """

@@ -1,22 +1,21 @@
-"""Finding the drops in a long recording: hours of quiet, of people at work around the vehicle, and now and then a drop.
+"""Detection of drops in a long recording: hours of quiet, of people at work around the vehicle, and now and then a drop.
 
-The recording is taken piece by piece, and only its last seconds are kept. Averages over some milliseconds tell where
-anything begins to move; there, and only there, the samples themselves are looked at (`sprung.drafting.classification`).
+The recording is read piece by piece, and only its last seconds are kept. Averages over some milliseconds show where
+anything begins to move; only there the samples themselves are examined (`sprung.drafting.classification`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.drafting.classification import AFTER, BEFORE, Fall, classify_event
+from sprung.drafting.classification import AFTER, BEFORE, DropEvent, classify_event
 from sprung.drafting.detected_drop import DetectedDrop, SensorPlace, assign_dropped_wheels, is_on_wheel
-from sprung.preprocess import BLOW, SlowMotion
+from sprung.preprocess import BLOW, extract_slow_motion
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
 
@@ -38,8 +37,8 @@ _PIECE = 20.0
 _TOGETHER = 1.0
 """s within which events that are no drops count as one."""
 
-_TOLD = 100
-"""Events that are no drops which are told one by one, the largest of the recording."""
+_MOST_REJECTED = 100
+"""Events that are no drops which are reported one by one, the largest of the recording."""
 
 
 @dataclass(frozen=True)
@@ -60,45 +59,21 @@ class RejectedEvent:
 
 @dataclass(frozen=True)
 class Detection:
-    """What a recording holds.
+    """The drops of a recording, and what else happened in it.
 
     Attributes
     ----------
     drops
         In the order of time.
-    refused
+    rejected
         The largest of the other events, each with the reason why it is no drop, in the order of time.
     events
         How many other events there were.
     """
 
     drops: tuple[DetectedDrop, ...]
-    refused: tuple[RejectedEvent, ...] = ()
+    rejected: tuple[RejectedEvent, ...] = ()
     events: int = 0
-
-
-def drops_in(
-    values: Real, rate: float, sensors: Sequence[Sensor | None] | None = None, start: float = 0.0
-) -> tuple[DetectedDrop, ...]:
-    """Find the drops in a recording that is in memory.
-
-    Parameters
-    ----------
-    values
-        Shape (channel, time), m/s², positive up where the sensor feels gravity; NaN where there is nothing.
-    rate
-        Samples per second.
-    sensors
-        One for each channel, None for one that is unknown; left out, all of them are.
-    start
-        Time of the first sample on the file's clock, s.
-
-    Returns
-    -------
-    tuple of FoundDrop
-    """
-    places = None if sensors is None else [None if sensor is None else sensor.on for sensor in sensors]
-    return detect_drops([(0, values)], rate, places, start=start, samples=values.shape[1]).drops
 
 
 def detect_drops(
@@ -110,27 +85,27 @@ def detect_drops(
     samples: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Detection:
-    """Find the drops in a recording of any length.
+    """Detect the drops in a recording of any length.
 
     Parameters
     ----------
     pieces
         Its pieces in order: index of the first sample, and readings of shape (channel, time), m/s², positive up where the
-        sensor feels gravity; NaN where there is nothing.
+        sensor reads gravity; NaN where there is nothing.
     rate
         Samples per second.
     places
-        Where each channel's sensor sits; None for one that is unknown. Left out, all of them are.
+        Where each channel's sensor sits, None for one that is unknown; by default all of them are.
     start
         Time of the first sample on the file's clock, s.
     samples
-        How many there are in all, for the progress.
+        Number of samples in all, for the progress.
     progress
         Called with the part that is done, 0 to 1.
 
     Returns
     -------
-    Found
+    Detection
 
     Notes
     -----
@@ -138,48 +113,57 @@ def detect_drops(
     """
     wheels = None if places is None or None in places else np.array([place != "body" for place in places])
     drops: list[DetectedDrop] = []
-    refused = _Refused()
-    searched = clear = 0
+    rejected: list[tuple[float, RejectedEvent]] = []
+    searched = undisturbed = 0
     for origin, buffer, final in _stretches(pieces, rate):
         end = origin + buffer.shape[1] - (0 if final else int(AFTER * rate) + 1)
-        for event in (origin + _events(buffer, rate)).tolist():
+        for event in (origin + _find_events(buffer, rate)).tolist():
             if not searched <= event < end:
                 continue
-            first = max(clear, origin)
-            judged = classify_event(buffer[:, first - origin :], rate, event - first, wheels)
-            if isinstance(judged, Fall):
-                drops.append(_drop(judged, first, start, rate, buffer[:, first - origin :]))
-                searched, clear = (
-                    first + judged.last + 1,
-                    first + min(judged.landing + int(_LANDED * rate), judged.last),
-                )
+            first = max(undisturbed, origin)
+            values = buffer[:, first - origin :]
+            result = classify_event(values, rate, event - first, wheels)
+            if isinstance(result, DropEvent):
+                drops.append(_detected_drop(result, first, start, rate, values))
+                searched = first + result.last + 1
+                undisturbed = first + min(result.landing + int(_LANDED * rate), result.last)
             else:
-                refused.add(RejectedEvent(start + event / rate, judged), _size(buffer, event - origin, rate))
+                rejected.append((_size(buffer, event - origin, rate), RejectedEvent(start + event / rate, result)))
         searched = max(searched, end)
         if progress is not None and samples:
             progress(min(1.0, (origin + buffer.shape[1]) / samples))
-    told = assign_dropped_wheels(drops, places)
-    kept = tuple(_without_a_fall(told, is_on_wheel(told, places), refused))
-    return Detection(kept, refused.largest, refused.count)
+    assigned = assign_dropped_wheels(drops, places)
+    on_wheel = is_on_wheel(assigned, places)
+    kept = tuple(drop for drop in assigned if drop.dropped_channels or not on_wheel.any())
+    rejected += [_without_wheels(drop, on_wheel) for drop in assigned if drop not in kept]
+    return Detection(kept, *_largest(rejected))
 
 
-def _drop(fall: Fall, first: int, start: float, rate: float, values: Real) -> DetectedDrop:
-    begin, release, landing, faded, end = (
-        start + (first + sample) / rate for sample in (fall.first, fall.release, fall.landing, fall.faded, fall.last)
-    )
-    slow = SlowMotion.of(values[:, : fall.last + 1], rate, fall.release, fall.seen.level)
-    return DetectedDrop(begin, release, landing, faded, end, fall.ended, fall.seen, slow=slow)
+def _detected_drop(event: DropEvent, first: int, start: float, rate: float, values: Real) -> DetectedDrop:
+    samples = (event.first, event.release, event.landing, event.faded, event.last)
+    begin, release, landing, faded, end = (start + (first + sample) / rate for sample in samples)
+    slow = extract_slow_motion(values[:, : event.last + 1], rate, event.release, event.features.level)
+    return DetectedDrop(begin, release, landing, faded, end, event.why_end, event.features, slow_motion=slow)
 
 
-def _without_a_fall(drops: Sequence[DetectedDrop], sit: NDArray[np.bool_], refused: _Refused) -> Iterator[DetectedDrop]:
-    """Take out the drops in which only the body moved, though there are sensors on wheels."""
-    for drop in drops:
-        if drop.dropped_channels or not sit.any():
-            yield drop
-            continue
-        deepest = np.nanmax(drop.seen.depth[sit], initial=0.0) / STANDARD_GRAVITY
-        why = f"the body moves and no wheel falls: the deepest reading of a wheel is {deepest:.2g} g below rest"
-        refused.add(RejectedEvent(drop.release, why), float(np.nanmax(drop.seen.peak)))
+def _without_wheels(drop: DetectedDrop, on_wheel: NDArray[np.bool_]) -> tuple[float, RejectedEvent]:
+    """Return size and reason of an event in which only the body moved, though there are sensors on wheels."""
+    lowest = np.nanmax(drop.features.depth[on_wheel], initial=0.0) / STANDARD_GRAVITY
+    why = f"the body moves and no wheel falls: the lowest reading of a wheel is {lowest:.2g} g below rest"
+    return float(np.nanmax(drop.features.peak)), RejectedEvent(drop.release, why)
+
+
+def _largest(rejected: Sequence[tuple[float, RejectedEvent]]) -> tuple[tuple[RejectedEvent, ...], int]:
+    """Return the largest of the events that are no drops, in the order of time, and the number of all; close ones are one."""
+    groups: list[list[tuple[float, RejectedEvent]]] = []
+    for size, event in sorted(rejected, key=lambda item: item[1].time):
+        if groups and event.time - groups[-1][-1][1].time <= _TOGETHER:
+            groups[-1].append((size, event))
+        else:
+            groups.append([(size, event)])
+    events = [max(group, key=lambda item: item[0]) for group in groups]
+    largest = sorted(events, key=lambda item: item[0], reverse=True)[:_MOST_REJECTED]
+    return tuple(sorted((event for _, event in largest), key=lambda event: event.time)), len(groups)
 
 
 def _stretches(pieces: Iterable[tuple[int, Real]], rate: float) -> Iterator[tuple[int, Real, bool]]:
@@ -205,12 +189,12 @@ def _stretches(pieces: Iterable[tuple[int, Real]], rate: float) -> Iterator[tupl
 
 
 def _bin(rate: float) -> int:
-    """Give the samples that are averaged to see where anything begins to move."""
+    """Return how many samples are averaged to see where anything begins to move."""
     return max(round(BLOW * rate), 1)
 
 
-def _events(values: Real, rate: float) -> NDArray[np.int64]:
-    """Give the samples at which anything begins to move after a pause."""
+def _find_events(values: Real, rate: float) -> NDArray[np.int64]:
+    """Return the samples at which anything begins to move after a pause."""
     width = _bin(rate)
     bins = values.shape[1] // width
     there = np.isfinite(values[:, : bins * width]).reshape(len(values), bins, width)
@@ -233,35 +217,6 @@ def _events(values: Real, rate: float) -> NDArray[np.int64]:
 
 
 def _size(values: Real, event: int, rate: float) -> float:
-    """Give the largest reading of an event off its beginning, m/s²."""
+    """Largest reading of an event off its beginning, m/s²."""
     stretch = values[:, event : event + max(int(_LEVEL * rate), 2)]
     return float(np.nan_to_num(np.abs(stretch - stretch[:, :1])).max(initial=0.0))
-
-
-@dataclass
-class _Refused:
-    """Collects what is no drop: events close together are one, and only the largest are kept."""
-
-    count: int = 0
-    kept: list[tuple[float, RejectedEvent]] = field(default_factory=list)
-    until: float = -np.inf
-
-    def add(self, refusal: RejectedEvent, size: float) -> None:
-        near = refusal.time - self.until <= _TOGETHER
-        self.until = max(self.until, refusal.time)
-        if near and self.kept:
-            if size > self.kept[-1][0]:
-                self.kept[-1] = (size, refusal)
-            return
-        self.count += 1
-        self.kept.append((size, refusal))
-        if len(self.kept) > 2 * _TOLD:
-            self.kept = self._largest()
-
-    def _largest(self) -> list[tuple[float, RejectedEvent]]:
-        ranked = sorted(self.kept, key=lambda one: one[0], reverse=True)[:_TOLD]
-        return sorted(ranked, key=lambda one: one[1].time)
-
-    @property
-    def largest(self) -> tuple[RejectedEvent, ...]:
-        return tuple(refusal for _, refusal in self._largest())

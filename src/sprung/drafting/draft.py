@@ -124,7 +124,7 @@ def _recordings(folder: Path) -> Iterator[str]:
 
 def _no_drops(looks: Sequence[Look]) -> Iterator[Problem]:
     for one in looks:
-        why = one.file.refused[0].why if one.file.refused else "nothing in it moves"
+        why = one.file.rejected[0].why if one.file.rejected else "nothing in it moves"
         found = f"no drop: {why}"
         expected = "at least one drop, with some rest before it"
         yield Problem(

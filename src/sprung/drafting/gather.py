@@ -59,7 +59,9 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
     names = tuple(channels)
     recorded = list(together(looks))
     drops = [_of(drop, held, names) for _, drop, held in recorded]
-    loudness = np.max([np.nan_to_num(drop.seen.peak / np.maximum(drop.seen.noise, 1e-9)) for drop in drops], axis=0)
+    loudness = np.max(
+        [np.nan_to_num(drop.features.peak / np.maximum(drop.features.noise, 1e-9)) for drop in drops], axis=0
+    )
     still = {name: "no drop moves it" for name, size in zip(names, loudness, strict=True) if size < _STILL}
     moving = tuple(name for name in names if name not in still)
     drops, names = [_of(drop, names, moving) for drop in drops], moving
@@ -104,9 +106,11 @@ def _with_loads(
     """Group the drops of which no name tells the load by how the vehicle swings, and propose a load for the slower ones."""
     body = [i for i, sensor in enumerate(sensors) if sensor.on == "body"]
     open_ = [
-        i for i, (drop, told) in enumerate(zip(drops, named, strict=True)) if not told and drop.found.slow is not None
+        i
+        for i, (drop, told) in enumerate(zip(drops, named, strict=True))
+        if not told and drop.found.slow_motion is not None
     ]
-    motions = [found.at(body) for i in open_ if (found := drops[i].found.slow) is not None]
+    motions = [slow[body] for i in open_ if (slow := drops[i].found.slow_motion) is not None]
     slower = find_slower_drops([drops[i].found.dropped_channels for i in open_], motions) if body else ()
     given = list(drops)
     for i, is_slower in zip(open_, slower, strict=False):
@@ -125,15 +129,15 @@ def _with_loads(
 def _of(drop: DetectedDrop, held: Sequence[str], names: Sequence[str]) -> DetectedDrop:
     """Give a drop with the readings of other channels than those it holds, or in another order."""
     channels = [held.index(name) if name in held else None for name in names]
-    return replace(drop, seen=drop.seen.at(channels), slow=None if drop.slow is None else drop.slow.at(channels))
+    return drop.at(channels)
 
 
 def _part(
     name: str, score: float, drops: Sequence[DetectedDrop], channel: int
 ) -> tuple[Literal["body", "wheel"], tuple[str, ...]]:
     """Tell body from wheel by how it moves; by its name only where it never fell."""
-    peak = float(np.nanmax([drop.seen.peak[channel] for drop in drops])) / STANDARD_GRAVITY
-    depth = float(np.nanmax([drop.seen.depth[channel] for drop in drops])) / STANDARD_GRAVITY
+    peak = float(np.nanmax([drop.features.peak[channel] for drop in drops])) / STANDARD_GRAVITY
+    depth = float(np.nanmax([drop.features.depth[channel] for drop in drops])) / STANDARD_GRAVITY
     seen: Literal["body", "wheel"] = "wheel" if score > 1 else "body"
     note = f"falls {depth:.2g} g below rest and lands with {peak:.2g} g: {'a wheel' if seen == 'wheel' else 'the body'}"
     if 1 / 3 < score < 3:
@@ -147,7 +151,7 @@ def _part(
 
 
 def _deepest(drops: Sequence[DetectedDrop]) -> float:
-    return max(float(np.nanmax(drop.seen.depth)) for drop in drops) / STANDARD_GRAVITY
+    return max(float(np.nanmax(drop.features.depth)) for drop in drops) / STANDARD_GRAVITY
 
 
 def _places(
@@ -212,7 +216,7 @@ def _sensor(
 ) -> DraftSensor:
     direction, own = channel.direction, list(channel.notes)
     if channel.coupling == "AC":
-        onsets = [float(drop.seen.onset[index]) for drop in drops if np.isfinite(drop.seen.onset[index])]
+        onsets = [float(drop.features.onset[index]) for drop in drops if np.isfinite(drop.features.onset[index])]
         first = max(onsets, key=abs, default=0.0)
         direction = "down" if first > 0 else "up"
         own.append(
@@ -245,7 +249,7 @@ def _corner(drops: Sequence[DetectedDrop], index: int, turned: bool) -> Wheel | 
     depths: dict[str, list[float]] = {key: [] for key in ("f", "r", "l", "R")}
     for drop in drops:
         ends, sides = {wheel[0] for wheel in drop.wheels}, {wheel[1] for wheel in drop.wheels}
-        onset = float(np.nan_to_num(drop.seen.onset[index]))
+        onset = float(np.nan_to_num(drop.features.onset[index]))
         depth = max(onset if turned else -onset, 0.0)
         if len(ends) == 1 and len(sides) == 2:
             depths["f" if ends == {"f"} else "r"].append(depth)

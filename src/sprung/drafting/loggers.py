@@ -10,15 +10,15 @@ from functools import reduce
 from pathlib import PurePath
 
 from sprung.drafting.detected_drop import DetectedDrop
+from sprung.drafting.drop_features import DropFeatures
 from sprung.drafting.look import Look
 from sprung.drafting.names import tokens
-from sprung.preprocess import DropFeatures
 
-Recorded = tuple[tuple[str, ...], DetectedDrop, tuple[str, ...]]
+RecordedDrop = tuple[tuple[str, ...], DetectedDrop, tuple[str, ...]]
 """Files, drop, and the channels whose readings the drop has."""
 
 
-def together(looks: Sequence[Look]) -> Iterator[Recorded]:
+def together(looks: Sequence[Look]) -> Iterator[RecordedDrop]:
     """Give every drop with the files that recorded it.
 
     Parameters
@@ -94,9 +94,9 @@ def _belonging(looks: Sequence[Look]) -> dict[str, str]:
     return {}
 
 
-def _merged(group: Sequence[Look]) -> Recorded:
+def _merged(group: Sequence[Look]) -> RecordedDrop:
     """Put the readings of several loggers side by side; each has a clock of its own, and the first one's times are given."""
     seen = [one for one in group if one.drops]
-    readings = reduce(DropFeatures.beside, (one.drops[0].seen for one in seen))
+    readings = reduce(DropFeatures.joined_with, (one.drops[0].features for one in seen))
     held = tuple(channel.name for one in seen for channel in one.channels)
-    return tuple(one.file.name for one in group), replace(seen[0].drops[0], seen=readings, slow=None), held
+    return tuple(one.file.name for one in group), replace(seen[0].drops[0], features=readings, slow_motion=None), held

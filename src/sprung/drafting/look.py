@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +15,11 @@ from sprung.drafting.detection import Detection, detect_drops
 from sprung.drafting.records import DraftFile
 from sprung.drafting.survey import Survey, full_scales, largest, pieces, survey
 from sprung.errors import InputError, Problem
-from sprung.formats import MIN_RATE, Table, read_table
+from sprung.formats import MIN_RATE, read_table
 from sprung.units import acceleration_factor
+
+if TYPE_CHECKING:
+    from sprung.formats import SampleTable
 
 _UNITS = ("m/s^2", "g", "mm/s^2", "mg")
 """What a sensor that feels no gravity may read in where its file names no unit; the first in which wheels fall is taken."""
@@ -85,7 +89,7 @@ def look(folder: Path, name: str, progress: Callable[[float], None]) -> Look:
         first, last = (int((time - seen.start) * seen.rate) for time in (drop.release, drop.end))
         for channel, size in full_scales(table, seen, first, last).items():
             scales[channel] = max(size, scales.get(channel, 0.0))
-    file = DraftFile(name, seen.rate, seen.start, seen.end, len(drops), found.refused, found.events, seen.left_out)
+    file = DraftFile(name, seen.rate, seen.start, seen.end, len(drops), found.rejected, found.events, seen.left_out)
     return Look(file, seen.channels, drops, scales)
 
 
@@ -103,7 +107,7 @@ def _refuse(name: str, seen: Survey) -> None:
         )
 
 
-def _found(table: Table, seen: Survey, progress: Callable[[float], None]) -> tuple[Survey, Detection]:
+def _found(table: SampleTable, seen: Survey, progress: Callable[[float], None]) -> tuple[Survey, Detection]:
     """Find the drops; where a unit is not known, in one in which wheels fall as wheels do."""
     if all(channel.unit is not None for channel in seen.channels):
         return seen, _drops_of(table, seen, progress)
@@ -122,15 +126,15 @@ def _found(table: Table, seen: Survey, progress: Callable[[float], None]) -> tup
     return max(results, key=lambda result: result[:2])[2:]
 
 
-def _drops_of(table: Table, seen: Survey, progress: Callable[[float], None]) -> Detection:
+def _drops_of(table: SampleTable, seen: Survey, progress: Callable[[float], None]) -> Detection:
     factors = np.array([channel.factor for channel in seen.channels])
     read = pieces(table, seen, factors)
     return detect_drops(read, seen.rate, start=seen.start, samples=seen.samples, progress=progress)
 
 
-def _on_clock(drop: DetectedDrop, table: Table, seen: Survey) -> DetectedDrop:
+def _on_clock(drop: DetectedDrop, table: SampleTable, seen: Survey) -> DetectedDrop:
     """Put a drop's times on a clock that is not quite even."""
     clock = table.clock
     if not isinstance(clock, np.ndarray):
         return drop
-    return drop.interpolate(lambda time: float(clock[min(round((time - seen.start) * seen.rate), seen.samples - 1)]))
+    return drop.on_clock(lambda time: float(clock[min(round((time - seen.start) * seen.rate), seen.samples - 1)]))

@@ -109,7 +109,7 @@ class DraftFile:
         s on its clock.
     drops
         How many drops were found in it.
-    refused
+    rejected
         The largest of the other events, and why they are no drops.
     events
         How many other events there were.
@@ -122,7 +122,7 @@ class DraftFile:
     start: float
     end: float
     drops: int
-    refused: tuple[RejectedEvent, ...]
+    rejected: tuple[RejectedEvent, ...]
     events: int
     left_out: Mapping[str, str]
 
@@ -233,7 +233,7 @@ class DraftCampaign:
                     "end": _rounded(file.end),
                     "drops": file.drops,
                     "events": file.events,
-                    "refused": [{"time": _rounded(one.time), "why": one.why} for one in file.refused],
+                    "refused": [{"time": _rounded(one.time), "why": one.why} for one in file.rejected],
                     "left_out": dict(file.left_out),
                 }
                 for file in self.files

@@ -105,7 +105,7 @@ def _together(group: Mapping[str, Look], folder: Path) -> Look:
     found = detect_drops([(0, joined.values)], joined.rate, start=joined.start)
     first = next(iter(group.values()))
     scales = {f"{logger} {name}": size for logger, one in group.items() for name, size in one.full_scale.items()}
-    file = replace(first.file, drops=len(found.drops), refused=found.refused, events=found.events)
+    file = replace(first.file, drops=len(found.drops), rejected=found.rejected, events=found.events)
     return Look(file, channels, found.drops, scales, tuple(one.file.name for one in group.values()))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,9 @@ from scipy.ndimage import uniform_filter1d
 from sprung.drafting.channel import Channel, channel_of, disambiguate_units
 from sprung.drafting.names import axis_named
 from sprung.errors import Problem
-from sprung.formats import Table
+
+if TYPE_CHECKING:
+    from sprung.formats import SampleTable
 
 Real = NDArray[np.float64]
 
@@ -58,7 +61,7 @@ class Survey:
     samples: int
 
 
-def survey(table: Table) -> Survey:
+def survey(table: SampleTable) -> Survey:
     """Tell what the channels of a recording are.
 
     Parameters
@@ -96,14 +99,14 @@ def survey(table: Table) -> Survey:
     return Survey(disambiguate_units(channels), tuple(columns), left_out, rate, start, end, samples)
 
 
-def _spots(table: Table, rate: float) -> tuple[list[int], Real]:
+def _spots(table: SampleTable, rate: float) -> tuple[list[int], Real]:
     """Take some short stretches of all channels: the samples they begin with, and shape (stretch, channel, time)."""
     length = max(1, min(table.samples, int(_SPOT * rate) if np.isfinite(rate) else 1))
     begins: list[int] = np.unique(np.linspace(0, table.samples - length, _SPOTS).astype(int)).tolist()
     return begins, np.array([table.take(None, begin, begin + length) for begin in begins])
 
 
-def _spoilt(table: Table, column: int, begins: list[int], spots: Real) -> Problem | None:
+def _spoilt(table: SampleTable, column: int, begins: list[int], spots: Real) -> Problem | None:
     """Say what stands in the stretches of a channel that is no number."""
     length = spots.shape[1]
     missing = (begin for begin, spot in zip(begins, spots, strict=True) if not np.isfinite(spot).all())
@@ -112,7 +115,7 @@ def _spoilt(table: Table, column: int, begins: list[int], spots: Real) -> Proble
     )
 
 
-def pieces(table: Table, surveyed: Survey, factors: Real) -> Iterator[tuple[int, Real]]:
+def pieces(table: SampleTable, surveyed: Survey, factors: Real) -> Iterator[tuple[int, Real]]:
     """Give a recording's accelerations piece by piece.
 
     Parameters
@@ -133,7 +136,7 @@ def pieces(table: Table, surveyed: Survey, factors: Real) -> Iterator[tuple[int,
         yield begin, piece * factors[:, None]
 
 
-def largest(table: Table, surveyed: Survey) -> float:
+def largest(table: SampleTable, surveyed: Survey) -> float:
     """Give the largest reading of the channels whose unit nothing tells, averaged over some milliseconds.
 
     Parameters
@@ -157,7 +160,7 @@ def largest(table: Table, surveyed: Survey) -> float:
     return most
 
 
-def full_scales(table: Table, surveyed: Survey, first: int, last: int) -> dict[str, float]:
+def full_scales(table: SampleTable, surveyed: Survey, first: int, last: int) -> dict[str, float]:
     """Find channels that stay at their extreme for some samples, as at full scale.
 
     Parameters

@@ -176,7 +176,7 @@ def _drop(drop: DraftDrop) -> str:
 def _without_drop(draft: DraftCampaign) -> Iterator[str]:
     for file in draft.files:
         if not file.drops:
-            why = file.refused[0].why if file.refused else "nothing in it moves"
+            why = file.rejected[0].why if file.rejected else "nothing in it moves"
             yield _comment(f"No drop was found in {file.name}: {why}.")
 
 

@@ -129,7 +129,7 @@ class _Transaction:
         return self.folder / JOURNAL.format(token=self.token)
 
     def commit(self, checksums: Mapping[str, str]) -> None:
-        """Give the new files their names; may be undone until the list of checksums is replaced."""
+        """Rename the new files to their names; this can be undone until the list of checksums is replaced."""
         everything = [*self.places, *self.stale]
         before = {
             str(place.target.relative_to(self.folder)): checksum(place.target.read_bytes())
@@ -153,7 +153,7 @@ class _Transaction:
             self.journal.unlink()
 
     def undo(self) -> None:
-        """Put everything back as it was; killed at any moment, this leaves what `recover` puts in order."""
+        """Restore the previous state; killed at any moment, this leaves what `recover` puts in order."""
         if self.journal.exists():
             for place in self.places:
                 if not place.new.exists() and place.target.exists():

@@ -79,7 +79,7 @@ def overwriting_problems(folder: Path, files: Collection[str] | Mapping[str, byt
             others.append(f"{name} ({'changed since sprung wrote it' if name in listed else 'not written by sprung'})")
     if others:
         found = f"{len(others)} file{'s' * (len(others) > 1)} that would be overwritten: {', '.join(others)}"
-        yield Problem(str(folder), found, "none but files that sprung wrote and nobody changed", _INSIST)
+        yield Problem(str(folder), found, "only files that sprung wrote and that are unchanged", _INSIST)
     place = next((path for path in (folder, *folder.absolute().parents) if path.exists()), folder)
     if not place.is_dir() or not os.access(place, os.W_OK):
         yield unwritable(folder, "no permission")
@@ -90,7 +90,7 @@ def unwritable(folder: Path, why: str) -> Problem:
     found = f"a place that cannot be written to ({why})"
     if any(path.is_file() for path in (folder, *folder.parents)):
         found = "a file where the folder should be"
-    return Problem(str(folder), found, "a folder to write to", "Choose another folder, or see to its permissions.")
+    return Problem(str(folder), found, "a folder to write to", "Choose another folder, or check its permissions.")
 
 
 def refuse_overwriting(folder: Path, files: Collection[str] | Mapping[str, bytes]) -> None:

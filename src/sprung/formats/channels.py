@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Problem
+from sprung.formats.interpolation import MIN_RATE
 from sprung.formats.reading_errors import check_declared_size, input_error
-from sprung.formats.resampling import MIN_RATE, ResampledChannel, resample
+from sprung.formats.resampling import ResampledChannel, resample
 from sprung.formats.sample_store import Samples, join_samples, missing_samples
-from sprung.formats.table import Table
+from sprung.formats.table import SampleTable
 
 AGREE = 1e-3
 """By how much of a step the times of two clocks, or of a clock and an even one, may differ to be the same."""
@@ -49,7 +50,7 @@ class ChannelClock:
         return self.all_times()
 
     def agrees(self, other: ChannelClock) -> bool:
-        """Say whether both are one clock, but for rounding."""
+        """Return whether two clocks agree within rounding."""
         if self is other or self.count != other.count or self.count == 0:
             return self.count == other.count
         slack = AGREE * (self.end - self.start) / max(self.count - 1, 1)
@@ -60,7 +61,7 @@ class ChannelClock:
         return bool(np.abs(self.all_times() - other.all_times()).max() <= slack)
 
     def all_times(self) -> NDArray[np.float64]:
-        """Give the time of every sample, s; shape (time,)."""
+        """Return the time of every sample, s; shape (time,)."""
         if self.times is not None:
             return self.times
         assert self.rate is not None  # noqa: S101 (a clock has a rate or times; for the type checker)
@@ -93,7 +94,7 @@ class Column:
 
 
 def regular_clock(start: float, step: float, count: int, uncertainty: float, where: str) -> ChannelClock:
-    """Make the clock of samples at a fixed rate.
+    """Return the clock of samples at a fixed rate.
 
     Parameters
     ----------
@@ -121,7 +122,7 @@ def regular_clock(start: float, step: float, count: int, uncertainty: float, whe
 
 
 def clock_from_times(times: NDArray[np.float64]) -> ChannelClock:
-    """Make the clock of samples that each have a time, and recover its rate if it is even.
+    """Return the clock of samples that each have a time, with its rate if it is regular.
 
     Parameters
     ----------
@@ -144,7 +145,7 @@ def clock_from_times(times: NDArray[np.float64]) -> ChannelClock:
 
 
 def _rate(step: float, uncertainty: float) -> float:
-    """Give the rate that was meant by a rounded step: of a short decimal step, or in whole hertz."""
+    """Return the rate that a rounded step stands for: of a short decimal step, or in whole hertz."""
     for meant in (float(f"{step:.3e}"), 1 / max(round(1 / step), 1)):
         if abs(meant - step) <= uncertainty:
             whole = float(round(1 / meant))
@@ -152,8 +153,8 @@ def _rate(step: float, uncertainty: float) -> float:
     return 1 / step
 
 
-def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: Sequence[str] = ()) -> Table:
-    """Put the channels that share one clock into a table.
+def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: Sequence[str] = ()) -> SampleTable:
+    """Return the channels that share one clock as a table.
 
     Of several clocks the one with the most numbers on it is taken, channels times samples. The channels on other clocks
     are read at its times. Those that are too slow to see wheels hop, or on a clock of another time, are spoilt: a problem
@@ -209,7 +210,7 @@ def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: 
         "on another clock, and read at the times of the others": [names[column] for column in others],
         "left out, as they are on another clock": [names[column] for column in elsewhere],
     }
-    return Table(
+    return SampleTable(
         channels=tuple(names[column] for column in rows),
         units=tuple(column.unit for column in rows),
         store=join_samples(tuple(rows.values())),
@@ -241,7 +242,7 @@ def _sets(columns: Sequence[Column]) -> list[list[Column]]:
 
 
 def _names(columns: Sequence[Column]) -> dict[Column, str]:
-    """Give every channel a name of its own."""
+    """Return a unique name for every channel."""
     often = Counter(column.name for column in columns)
     names: dict[Column, str] = {}
     taken: set[str] = set()

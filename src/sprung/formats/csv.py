@@ -17,11 +17,12 @@ import numpy as np
 from sprung.formats.reading_errors import input_error, reading
 from sprung.formats.sample_store import Samples, Store, join_samples, regroup, store_in_memory
 from sprung.formats.stated_rates import TIME_UNITS, Rate, find_stated_rate
-from sprung.formats.table import Table, split_unit
+from sprung.formats.table import SampleTable
 from sprung.formats.text_blocks import Encoding, LineBlock, detect_encoding, read_blocks
 from sprung.formats.text_cells import Cells
 from sprung.formats.text_clock import TIME_NAMES, Columns, find_text_clock, find_time_candidates
 from sprung.formats.text_layout import Layout, detect_layout, split_cells
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -48,7 +49,7 @@ class CsvFormat:
         marked = head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         return path.suffix.lower() in {".csv", ".tsv", ".txt", ".dat", ".asc"} and (marked or b"\0" not in head)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -61,14 +62,16 @@ class CsvFormat:
             encoding = detect_encoding(path)
         except UnicodeDecodeError as error:
             do = "Export the recording again, as UTF-8."
-            raise input_error(file, f"a file marked as UTF-16 that is none ({error.reason})", "text", do) from error
+            raise input_error(
+                file, f"a file marked as UTF-16 with invalid text ({error.reason})", "text", do
+            ) from error
         ahead = read_blocks(path, encoding)
         head = next(ahead, LineBlock(0, []))
         layout, rate, times = _understood(head, file)
         return _table(_Text(path, encoding, layout), chain([head], ahead), rate, times)
 
 
-def table_from_lines(file: str, lines: Sequence[str]) -> Table:
+def table_from_lines(file: str, lines: Sequence[str]) -> SampleTable:
     """Understand lines as a text table, for formats whose cells can be written as text.
 
     Parameters
@@ -80,7 +83,7 @@ def table_from_lines(file: str, lines: Sequence[str]) -> Table:
 
     Returns
     -------
-    Table
+    SampleTable
 
     Raises
     ------
@@ -146,7 +149,7 @@ def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
 
 
 def _may_be_time(text: str, layout: Layout) -> list[int]:
-    """Give the columns that may be the time, by their names or by what stands in their first cells."""
+    """Return the columns that may hold the time, by their names or their first cells."""
     rows = [split_cells(line, layout.delimiter) for line in text[layout.start :].split("\n", _LOOKED_AT)[:_LOOKED_AT]]
     return find_time_candidates(layout.names, rows)
 
@@ -179,7 +182,7 @@ class _Text:
         return self.size <= _SMALL
 
     def read_blocks(self, start: int) -> Iterator[LineBlock]:
-        """Give its lines from a byte on."""
+        """Yield the lines from a byte on."""
         return read_blocks(self.path, self.encoding, start)
 
     def cells(self, columns: Sequence[int], first: int, last: int) -> Iterator[tuple[int, Cells]]:
@@ -200,7 +203,7 @@ class _Text:
         return regroup((cells.values[:, max(first - sample, 0) :] for sample, cells in found), step)
 
     def find_non_number(self, column: int, first: int, last: int) -> Problem | None:
-        """Say what is no number, as a store does."""
+        """Return a problem for text that is not a number, as a store does."""
         whole = Cells(self.path.name, self.layout, [column], self.size)
         for _, cells in self.cells([column], first, last):
             for all_, own in ((whole.text, cells.text), (whole.clock_cells, cells.clock_cells)):
@@ -233,18 +236,18 @@ class _Lines(_Text):
         return True
 
     def read_blocks(self, start: int) -> Iterator[LineBlock]:  # noqa: ARG002 (there is one block)
-        """Give all lines."""
+        """Return all lines."""
         return iter([self.held])
 
 
 def _samples(block: LineBlock, number: int, layout: Layout) -> LineBlock:
-    """Give the lines of a block that are not above the samples, and the number of the first of them."""
+    """Return the lines of a block with samples, and the number of the first of them."""
     above = max(layout.line - number, 0)
     return LineBlock(number + min(above, len(block.lines)), block.lines[above:])
 
 
 def _gone_through(text: _Text, ahead: Iterable[LineBlock], columns: Sequence[int]) -> tuple[_Text, Cells, int]:
-    """Go through a file for its lines and some columns; give the number of its last line too if that is cut short."""
+    """Return the cells of some columns of a file, and the number of its last line if that is cut short."""
     layout = text.layout
     cells = Cells(text.path.name, layout, columns, text.size)
     marks: list[tuple[int, int, int]] = []
@@ -269,7 +272,7 @@ def _gone_through(text: _Text, ahead: Iterable[LineBlock], columns: Sequence[int
     return replace(text, marks=marks), cells, cut
 
 
-def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidates: Sequence[int]) -> Table:
+def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidates: Sequence[int]) -> SampleTable:
     layout = text.layout
     small = text.small
     read = range(len(layout.names)) if small else candidates
@@ -301,7 +304,7 @@ def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidate
     named = [split_unit(layout.names[column]) for column in channels]
     in_memory = store_in_memory(cells.values) if small else None
     store = Store(len(layout.names), cells.count, in_memory.read if in_memory else text.read, text.find_non_number)
-    return Table(
+    return SampleTable(
         channels=tuple(name for name, _ in named),
         units=tuple(
             unit if unit is not None else units[column] or None

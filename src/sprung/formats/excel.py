@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _KIND = "an Excel workbook"
 _ZIP, _COMPOUND = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
@@ -31,7 +31,7 @@ class ExcelFormat:
         """Claim by the ending, older and other workbooks too, so that the refusal can say what to do."""
         return path.suffix.lower() in {".xlsx", ".xlsm", ".xls", ".xlsb", ".ods"}
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read the only sheet that holds a recording; dates, decimal commas and rows of units as in a text table.
 
         Raises
@@ -94,13 +94,13 @@ def _cell(value: object) -> str:
             return " ".join(str(value).split())
 
 
-def _the_table(sheets: dict[str, list[str]], path: Path) -> Table:
+def _the_table(sheets: dict[str, list[str]], path: Path) -> SampleTable:
     """Understand every sheet; the one that is a recording is meant, and others, such as a cover, are not."""
     if not sheets:
         raise input_error(
             path.name, "a workbook without content", "a sheet with the time and the channels", "Export it again."
         )
-    tables: dict[str, Table] = {}
+    tables: dict[str, SampleTable] = {}
     problems: dict[str, InputError] = {}
     for name, lines in sheets.items():
         try:

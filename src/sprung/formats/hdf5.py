@@ -15,7 +15,7 @@ from sprung.formats.vectors import table_from_nested
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 PER_OBJECT = 1000
@@ -34,7 +34,7 @@ class Hdf5Format:
         endings = {".h5", ".hdf5", ".hdf", ".he5", ".h5py", ".nc", ".mat"}  # Octave writes plain HDF5 as .mat
         return signed and not head.startswith(b"MATLAB") and path.suffix.lower() in endings
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -49,7 +49,7 @@ class Hdf5Format:
 
 
 def named(items: Any) -> list[str]:
-    """Give the names in a group or among attributes, without those that are no text.
+    """Return the names in a group or among attributes, without those that are not text.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def _words(h5py: Any, dataset: Any, budget: MemoryBudget) -> Node:
 
 
 def _attributes(h5py: Any, item: Any, budget: MemoryBudget) -> dict[str, Node]:
-    """Give the attributes that are words or single numbers."""
+    """Return the attributes that are text or single numbers."""
     node: dict[str, Node] = {}
     for name in named(item.attrs):
         identity = item.attrs.get_id(name)

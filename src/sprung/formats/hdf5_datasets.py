@@ -145,7 +145,7 @@ def _vector(samples: Samples) -> Numbers:
 def _store(
     path: Path, name: str, size: tuple[int, int], get: Callable[..., NDArray[np.float64]], at_once: int
 ) -> Store:
-    """Make a store of a dataset, which stays open from piece to piece: its library keeps what it unpacked that long."""
+    """Return a store of a dataset, which stays open from piece to piece: its library keeps what it unpacked that long."""
 
     def read(columns: Sequence[int], first: int, last: int, step: int) -> Iterator[NDArray[np.float64]]:
         kind = "an HDF5 file"

@@ -8,12 +8,15 @@ from scipy.interpolate import CubicSpline, make_lsq_spline
 
 Real = NDArray[np.float64]
 
+MIN_RATE = 64.0
+"""Samples per second below which wheel hop, up to some 20 Hz, is lost."""
+
 _SLOWER = 1.5
 """Ratio of two rates from which samples of the faster clock are averaged: a spline through them would fold their noise."""
 
 
 def interpolate(values: Real, time_from: Real, time_to: Real) -> Real:
-    """Give what a sensor would have read at other times.
+    """Return samples at the times of another clock.
 
     Parameters
     ----------

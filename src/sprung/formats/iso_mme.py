@@ -13,7 +13,7 @@ import numpy as np
 from sprung.errors import InputError, Problem, Problems
 from sprung.formats.sample_store import Samples, Store, join_samples, missing_samples, regroup
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import Table
+from sprung.formats.table import SampleTable
 from sprung.formats.text_blocks import Encoding, detect_encoding, read_blocks
 from sprung.formats.text_layout import EMPTY
 
@@ -51,7 +51,7 @@ class _Channel:
         return self.header.get("channel code", self.name)
 
     def number(self, key: str, problems: Problems) -> float | None:
-        """Give a number of the header; None where it says nothing."""
+        """Return a number of the header; None where it is missing."""
         written = self.header.get(key)
         if written is None:
             return None
@@ -72,7 +72,7 @@ class IsoMmeFormat:
         """Claim by the ending: both files are plain text that may say anything."""
         return path.suffix.lower() in {".mme", ".chn"} and b"\0" not in head
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read all channels of a test.
 
         Channels of another length or clock than most are left out, as spoilt.
@@ -101,7 +101,7 @@ class IsoMmeFormat:
             else missing_samples(count, _other(channel, clocks[id(channel)], clock))
             for channel in measured
         ]
-        return Table(
+        return SampleTable(
             channels=tuple(channel.name for channel in measured),
             units=tuple(channel.header.get("unit") for channel in measured),
             store=join_samples(samples),
@@ -119,7 +119,7 @@ def _files(path: Path) -> list[Path]:
         files = [file for folder in folders for file in folder.iterdir() if file.suffix[1:].isdecimal()]
         files = sorted((file for file in files if file.is_file()), key=lambda file: (int(file.suffix[1:]), file.name))
     except OSError as error:
-        do = "See to its permissions."
+        do = "Check its permissions."
         raise InputError([Problem(path.name, f"a folder that cannot be read ({error.strerror})", "one", do)]) from error
     files = [file for file in files if file.stem.lower() == path.stem.lower()] or files
     if not files:
@@ -134,9 +134,9 @@ def _reading(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         found = f"a file that cannot be read ({error.strerror})"
-        raise InputError([Problem(path.name, found, "a channel", "See to its permissions.")]) from error
+        raise InputError([Problem(path.name, found, "a channel", "Check its permissions.")]) from error
     except UnicodeDecodeError as error:
-        found = f"a file marked as UTF-16 that is none ({error.reason})"
+        found = f"a file marked as UTF-16 with invalid text ({error.reason})"
         raise InputError([Problem(path.name, found, "text", "Export the channel again.")]) from error
 
 
@@ -164,7 +164,7 @@ def _is_header(line: str) -> bool:
 
 
 def _cells(channel: _Channel) -> Iterator[list[tuple[int, str]]]:
-    """Give the lines with samples block by block, and their numbers."""
+    """Yield the lines with samples and their line numbers, block by block."""
     number = 1
     with _reading(channel.path):
         for block in read_blocks(channel.path, channel.encoding):
@@ -206,7 +206,7 @@ def _spoilt(file: str, line: int, cell: str, count: int) -> Problem:
 
 
 def _clock(channel: _Channel, codes: Mapping[str, _Channel], problems: Problems) -> _Clock | None:
-    """Say when a channel was sampled; None if nothing says so."""
+    """Return the clock of a channel; None where its header and its file state none."""
     count = channel.count
     reference = channel.header.get("reference channel name")
     if (
@@ -227,7 +227,7 @@ def _clock(channel: _Channel, codes: Mapping[str, _Channel], problems: Problems)
 
 
 def _times(channel: _Channel) -> NDArray[np.float64]:
-    """Give the times that a channel of times holds, s."""
+    """Return the times in a channel of times, s, shape (time,)."""
     problems = Problems()
     unit = channel.header.get("unit", "s").strip("[]() ").lower()
     if unit not in TIME_UNITS:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _KIND = "a MATLAB file of vectors"
 _DO = "In MATLAB, save the time in s and the channels as plain vectors, such as t = seconds(tt.Time) and a = tt.a."
@@ -38,7 +38,7 @@ class MatFormat:
         signed = head.startswith(SIGNATURE)
         return path.suffix.lower() == ".mat" and (named or old) and not signed
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises

@@ -158,7 +158,7 @@ def _inflated(stream: BinaryIO, element: Element) -> Iterator[bytes]:
 
 
 def _elements(source: Bytes, place: int, end: int) -> Iterator[Element]:
-    """Give the elements that follow each other."""
+    """Yield the elements that follow each other."""
     while place < end:
         source.stream.seek(place)
         kind, size = struct.unpack(source.order + "II", source.stream.read(8))
@@ -172,7 +172,7 @@ def _elements(source: Bytes, place: int, end: int) -> Iterator[Element]:
 
 
 def _array(source: Bytes, element: Element, budget: MemoryBudget, depth: int) -> tuple[str, Node]:
-    """Give the name and the content of an array."""
+    """Return the name and the content of an array."""
     budget.take(_PER_ARRAY)
     if not element.size:
         return "", np.empty(0)
@@ -201,7 +201,7 @@ def _array(source: Bytes, element: Element, budget: MemoryBudget, depth: int) ->
 
 
 def numbers(source: Bytes, values: Element, sides: Sequence[int], budget: MemoryBudget) -> Node:
-    """Give an array of numbers: as it is where it is small, otherwise its rows and columns, still unread."""
+    """Return an array of numbers: read where it is small, otherwise its rows and columns, still in the file."""
     dtype = np.dtype(source.order + _NUMBERS[values.kind])
     count, rest = divmod(values.size, dtype.itemsize)
     if rest or count != int(np.prod(sides, dtype=object)):
@@ -226,7 +226,7 @@ def _store(
     shape: tuple[int, ...],
     upright: bool,
 ) -> Store:
-    """Make a store of numbers that stand column after column, or with all columns' samples side by side."""
+    """Return a store of numbers that stand column after column, or with the samples of all columns side by side."""
     (start, dtype), length, width = written, shape[0], shape[1] if len(shape) == 2 else 1
 
     def taken(stream: BinaryIO, place: int, count: int) -> NDArray[np.generic]:
@@ -264,7 +264,7 @@ def _structs(source: Bytes, parts: Iterator[Element], budget: MemoryBudget, dept
 
 
 def words(letters: str, sides: tuple[int, ...]) -> Node:
-    """Take letters apart that stand column by column, as those of a matrix do."""
+    """Return the rows of a matrix of letters, which stand column by column."""
     rows = sides[0] if sides and sides[0] > 1 else 1
     words = [letters[row::rows].strip() for row in range(min(rows, len(letters)))]
     return words if len(words) > 1 else "".join(words)

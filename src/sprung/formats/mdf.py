@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".mdf", ".mf3", ".mf4", ".dat"))
 _SYNC_TIME = 1
@@ -40,7 +40,7 @@ class MdfFormat:
         """Claim by the ending and the mark of the format."""
         return path.suffix.lower() in _SUFFIXES and head.startswith(MAGIC)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -96,7 +96,7 @@ def _closing_what_was_begun() -> Iterator[None]:
 
 
 def _clock(measurement: Any, index: int, file: str, largest: float) -> ChannelClock | None:
-    """Give the clock of a group; None if it has none or no samples."""
+    """Return the clock of a group; None where it has none or no samples."""
     group = measurement.groups[index]
     count, size = group.channel_group.cycles_nr, group.channel_group.samples_byte_nr
     if index not in measurement.masters_db or not count or not size:
@@ -115,7 +115,7 @@ def _clock(measurement: Any, index: int, file: str, largest: float) -> ChannelCl
 
 
 def _refuse_misfit(group: Any, where: str) -> None:
-    """See that the channels lie within the records, and the records within the data: the library trusts that they do."""
+    """Check that the channels lie within the records, and the records within the data; the library does not."""
     record = group.channel_group
     held = sum(int(block.original_size) for block in group.data_blocks)
     if held < record.cycles_nr * record.samples_byte_nr:
@@ -146,7 +146,7 @@ def _columns(measurement: Any, index: int, clock: ChannelClock | None, path: Pat
 
 
 def _is_number(channel: Any, group: Any, index: int) -> bool:
-    """Say whether the samples of a channel are single numbers, from what it is and from what they are turned into."""
+    """Return whether the samples of a channel, converted, are single numbers."""
     kind, version_3 = channel.dtype_fmt, hasattr(channel, "start_offset")
     words = channel.data_type in _WORDS_3 if version_3 else channel.data_type > _LAST_NUMBER_4
     if (
@@ -189,7 +189,7 @@ def _store(path: Path, group: int, channels: Sequence[int], length: int) -> Stor
 
 
 def _records(measurement: Any, group: int, first: int, count: int) -> Iterator[Any]:
-    """Give the records of a range once for all channels: its own way, the library reads all of them for each channel."""
+    """Yield the records of a range, once for all channels: the library itself would read them again for each channel."""
     found: Iterator[Any] = measurement._mdf._load_data(
         measurement.groups[group], record_offset=first, record_count=count
     )
@@ -197,7 +197,7 @@ def _records(measurement: Any, group: int, first: int, count: int) -> Iterator[A
 
 
 def _samples(measurement: Any, group: int, channel: int, records: Any) -> NDArray[np.float64]:
-    """Take the samples of a channel out of records, NaN where they are invalid or were turned into words."""
+    """Return the samples of a channel from records; NaN where they are invalid or were converted to text."""
     samples, invalid = measurement.get(
         group=group, index=channel, samples_only=True, ignore_invalidation_bits=True, data=records
     )

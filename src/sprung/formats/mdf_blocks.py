@@ -49,13 +49,13 @@ class Content:
         return self._size
 
     def at(self, address: int, count: int) -> bytes:
-        """Give as many bytes from an address on, or those that there are."""
+        """Return the bytes from an address on; fewer at the end of the file."""
         self._stream.seek(min(address, self._size))
         return self._stream.read(min(count, self._size))
 
 
 def check_blocks(content: Content, file: str) -> None:
-    """Go through the blocks of a file, which the library would follow for ever where they lead back to themselves.
+    """Check the blocks of a file, which the library would follow for ever where they refer to themselves.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def check_blocks(content: Content, file: str) -> None:
 
 
 def _links_4(content: Content, address: int, where: str) -> tuple[list[int], list[int]]:
-    """Give the blocks that a block of a version 4 file leads to, those of its own and those that others may share."""
+    """Return the addresses to which a block of a version 4 file refers: its own blocks, and those that others may share."""
     if address + 24 > len(content):
         raise truncation_error(where, f"a file of {len(content)} bytes")
     kind, _, length, count = struct.unpack("<4sIQQ", content.at(address, 24))
@@ -106,7 +106,7 @@ def _links_4(content: Content, address: int, where: str) -> tuple[list[int], lis
 
 
 def _links_3(content: Content, address: int, where: str) -> tuple[list[int], list[int]]:
-    """Give the blocks that a block of a version 3 file leads to."""
+    """Return the addresses to which a block of a version 3 file refers."""
     if address + 12 > len(content):
         raise truncation_error(where, f"a file of {len(content)} bytes")
     kind, length, *links = struct.unpack("<2sH2I", content.at(address, 12))
@@ -118,7 +118,7 @@ def _links_3(content: Content, address: int, where: str) -> tuple[list[int], lis
 
 
 def _refuse_misinflated(content: Content, address: int, where: str) -> None:
-    """See that a compressed block holds what it declares: the library trusts that it does."""
+    """Check that a compressed block holds what it declares; the library does not."""
     if address + 48 > len(content):
         raise truncation_error(where, f"a file of {len(content)} bytes")
     kind, _, _, size, packed = struct.unpack("<BBIQQ", content.at(address + 26, 22))

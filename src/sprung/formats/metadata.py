@@ -41,7 +41,7 @@ def normalise_name(name: str) -> str:
 
 
 def matches_any(name: str, words: Collection[str]) -> bool:
-    """Say whether a name is one of some plain words, or the plural of one.
+    """Return whether a name, normalised, is one of some words or their plural.
 
     Parameters
     ----------
@@ -69,19 +69,19 @@ class MetadataScope:
         self._homes |= {path[:-1] for path in held}
 
     def home(self, path: Path) -> Path:
-        """Give the innermost thing around a name that holds vectors."""
+        """Return the path of the innermost group around a name that holds vectors."""
         depth = len(path) - 1
         while depth > 0 and path[:depth] not in self._homes:
             depth -= 1
         return path[:depth]
 
     def nearest(self, said: Collection[Said], to: Path) -> Said | None:
-        """Give what stands nearest among those that speak for the vector of that path; None if none does."""
+        """Return the nearest of the entries whose scope contains the vector of that path; None where there is none."""
         speaking = [one for one in said if to[: len(self.home(one.path))] == self.home(one.path)]
         return min(speaking, key=lambda one: (-len(self.home(one.path)), len(one.path)), default=None)
 
     def called(self, path: Path) -> Path:
-        """Give the path that ends with what something is called: ``ch1.data`` is ``ch1``, or as ``ch1.name`` says."""
+        """Return the path that ends with a vector's name: ``ch1`` for ``ch1.data``, or what ``ch1.name`` states."""
         if not path or normalise_name(path[-1]) not in GENERIC:
             return path
         for text in self._texts:
@@ -91,7 +91,7 @@ class MetadataScope:
         return path[:-1] or path
 
     def column_names(self, path: Path, count: int) -> tuple[str, ...] | None:
-        """Give the names of a matrix's columns: words of their number, rather those that are called names."""
+        """Return the names of a matrix's columns: a list of words of that length, preferably one that is called names."""
         lists = {text: _listed(text, count) for text in self._texts if text.path}
         lists = {text: words for text, words in lists.items() if not matches_any(text.path[-1], UNITS)}
         fitting = [text for text, words in lists.items() if words]
@@ -100,7 +100,7 @@ class MetadataScope:
         return lists[near] if near else None
 
     def unit_of(self, path: Path, name: str) -> str | None:
-        """Give the unit that is said of this one vector, as ``acc_unit`` or ``units.acc`` say it of ``acc``."""
+        """Return the unit stated for one vector, as ``acc_unit`` or ``units.acc`` state it for ``acc``; None without one."""
         name = normalise_name(name)
         for text in self._texts:
             by_name = len(text.path) > 1 and matches_any(text.path[-2], UNITS) and normalise_name(text.path[-1]) == name
@@ -115,12 +115,12 @@ class MetadataScope:
         return None
 
     def unit_lists(self) -> tuple[Text, ...]:
-        """Give all words that are called units."""
+        """Return all texts that are called units."""
         return tuple(text for text in self._texts if text.path and matches_any(text.path[-1], UNITS))
 
 
 def split_list(text: Text) -> tuple[str, ...]:
-    """Give the words of a list, also where they stand in one text: ``s, m/s^2``.
+    """Return the words of a list, also where they stand in one text: ``s, m/s^2``.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def split_list(text: Text) -> tuple[str, ...]:
 
 
 def _listed(text: Text, count: int) -> tuple[str, ...] | None:
-    """Give as many names as there are columns, of a list that may name the time as well, which stands elsewhere."""
+    """Return a list of as many names as there are columns, that of a time left out; None where the number differs."""
     words = split_list(text) if matches_any(text.path[-1], NAMES) else text.words
     if len(words) == count + 1 and normalise_name(words[0]) in {"t", "time"}:
         words = words[1:]

@@ -107,7 +107,7 @@ class Content:
 
 
 def flatten_nested(node: Node) -> Content:
-    """Gather what lies beneath a node.
+    """Return everything beneath a node, without the nesting.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ class _Gathered(NamedTuple):
     foreign: list[str]
 
     def take(self, path: Path, node: Node) -> list[tuple[Path, Node]]:
-        """Take up what a node is, and give what lies in it."""
+        """Add what a node is, and return the nodes in it."""
         match node:
             case str():
                 self.texts.append(Text(path, (node,)))
@@ -184,14 +184,14 @@ class _Gathered(NamedTuple):
 
 
 def non_numeric_kind(dtype: np.dtype[Any]) -> str | None:
-    """Say what values are that are no real numbers; None if they are."""
+    """Return what values are that are not real numbers; None for real numbers."""
     if dtype.kind in "fiub":
         return None
     return "complex numbers" if dtype.kind == "c" else f"values of type {dtype}"
 
 
 def wrap_array(array: NDArray[Any]) -> Numbers:
-    """Take numbers that are in memory for unread ones.
+    """Return numbers in memory as `Numbers`.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _KIND = "a Parquet file"
 _TICKS = {"s": 1, "ms": 1_000, "us": 1_000_000, "ns": 1_000_000_000}
@@ -32,7 +32,7 @@ class ParquetFormat:
         """Claim by the ending and the first bytes."""
         return head.startswith(b"PAR1") and path.suffix.lower() in {".parquet", ".pq", ".parq"}
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file; of dates and times of day only the seconds since the first count.
 
         Raises
@@ -94,7 +94,7 @@ def _pieces(path: Path, names: Sequence[str], first: int, last: int, step: int) 
 
 
 def _origins(arrow: Any, file: Any, names: Sequence[str]) -> dict[str, int]:
-    """Give the first of the counts of every column of dates or times of day."""
+    """Return the first count of every column of dates or times of day."""
     schema = file.schema_arrow
     named = [n for n in names if _ticks(arrow, (kind := schema.field(n).type)) and not arrow.types.is_duration(kind)]
     if not named:
@@ -109,13 +109,13 @@ def _is_number(arrow: Any, kind: Any) -> bool:
 
 
 def _ticks(arrow: Any, kind: Any) -> int | None:
-    """Give how many counts of a type of time are a second; None for other types."""
+    """Return the counts per second of a type of time; None for other types."""
     types = arrow.types
     return _TICKS[kind.unit] if types.is_timestamp(kind) or types.is_duration(kind) or types.is_time(kind) else None
 
 
 def _values(arrow: Any, column: Any, since: int) -> NDArray[np.float64]:
-    """Give numbers, or of times the seconds since a count."""
+    """Return the numbers of a column; of times, the seconds since a count."""
     ticks = _ticks(arrow, column.type)
     if ticks is None:
         if arrow.types.is_boolean(column.type):
@@ -134,7 +134,7 @@ def _counts(arrow: Any, column: Any) -> NDArray[np.int64]:
 
 
 def _said(metadata: Mapping[bytes, bytes] | None) -> dict[str, Node]:
-    """Give metadata as words; those in JSON, as pandas writes a frame's attributes, with what is in them."""
+    """Return metadata as text; JSON, as pandas writes a frame's attributes, is parsed."""
     node: dict[str, Node] = {}
     for key, value in (metadata or {}).items():
         name, text = key.decode("utf-8", "replace"), value.decode("utf-8", "replace")

@@ -24,7 +24,7 @@ SPARE = 50_000_000
 
 
 def memory_limit(size: int) -> int:
-    """Give the bytes that reading a file may take, from its size in bytes."""
+    """Return the bytes of memory that reading a file may take, from its size in bytes."""
     return LARGEST * size + SPARE
 
 
@@ -42,12 +42,12 @@ def check_declared_size(numbers: int, file: str, largest: float) -> None:
 
 
 def input_error(where: str, found: str, expected: str, do: str) -> InputError:
-    """Make the error of a single problem."""
+    """Return the error of a single problem."""
     return InputError([Problem(where, found, expected, do)])
 
 
 def truncation_error(where: str, found: str) -> InputError:
-    """Make the error of a file that ends too early."""
+    """Return the error of a file that ends too early."""
     return input_error(where, found, "a complete file", "It is cut short: copy or export the recording again.")
 
 
@@ -98,7 +98,7 @@ class MemoryBudget:
         self._left = memory_limit(self._size)
 
     def take(self, count: int) -> None:
-        """Take some bytes of it.
+        """Reserve some bytes.
 
         Raises
         ------

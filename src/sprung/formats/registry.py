@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 GROUP = "sprung.formats"
 HEAD = 8192
@@ -48,11 +48,28 @@ class Format(Protocol):
     """
 
     def claims(self, path: Path, head: bytes) -> bool:
-        """Say whether the file is of this format, from its name and its first bytes."""
+        """Return whether a file is of this format.
+
+        Parameters
+        ----------
+        path
+            The file.
+        head
+            Its first 8192 bytes.
+        """
         ...
 
-    def read(self, path: Path) -> Table:
-        """Read it.
+    def read(self, path: Path) -> SampleTable:
+        """Read a file.
+
+        Parameters
+        ----------
+        path
+            The file.
+
+        Returns
+        -------
+        SampleTable
 
         Raises
         ------
@@ -63,12 +80,12 @@ class Format(Protocol):
 
 
 def formats() -> dict[str, Format]:
-    """Give every installed format by its name, sprung's own first."""
+    """Return every installed format by its name, sprung's own first."""
     found = {entry.name: entry for entry in (*_OWN, *entry_points(group=GROUP))}
     return {name: entry.load()() for name, entry in found.items()}
 
 
-def read_table(path: Path, others: Collection[str] = ()) -> Table:
+def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
     """Read a file in whatever known format it is.
 
     Parameters
@@ -80,7 +97,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> Table:
 
     Returns
     -------
-    Table
+    SampleTable
 
     Raises
     ------
@@ -101,7 +118,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> Table:
         raise InputError([Problem(path.name, "a folder", "a recording", "Name the file in it.")]) from None
     except OSError as error:
         reason = f"a file that cannot be read ({error.strerror})"
-        raise InputError([Problem(path.name, reason, "a recording", "See to its permissions.")]) from error
+        raise InputError([Problem(path.name, reason, "a recording", "Check its permissions.")]) from error
     known = formats()
     claiming = [name for name, format_ in known.items() if format_.claims(path, head)]
     match claiming:

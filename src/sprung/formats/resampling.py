@@ -11,9 +11,6 @@ from numpy.typing import NDArray
 from sprung.formats.interpolation import interpolate
 from sprung.formats.sample_store import Samples, Store, store_by_ranges
 
-MIN_RATE = 64.0
-"""Samples per second below which wheel hop, up to some 20 Hz, is lost."""
-
 _BESIDE = 64
 """Samples on either side of a stretch that are read with it: a cubic spline forgets what is farther away."""
 
@@ -40,7 +37,7 @@ class ResampledChannel(NamedTuple):
     last: int
 
     def within(self, first: int, last: int) -> ResampledChannel:
-        """Give the same for the part of the column from first up to last, last apart."""
+        """Return the record for the part of the column from first up to last, last excluded."""
         return ResampledChannel(self.rate_ratio, max(self.first - first, 0), max(min(self.last, last) - first, 0))
 
 

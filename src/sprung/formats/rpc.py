@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".rpc", ".rpc3", ".rsp", ".drv", ".tim"))
 _BLOCK, _RECORD, _KEY = 512, 128, 32
@@ -34,7 +34,7 @@ class RpcFormat:
         """Claim by the ending and the first key of the header."""
         return path.suffix.lower() in _SUFFIXES and head[:_KEY].rstrip(b" \0") == b"FORMAT"
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -108,7 +108,7 @@ class _Header:
         return int(value)
 
     def step(self) -> tuple[float, float]:
-        """Give the time step and how far it may be rounded, half a unit of its last digit, s."""
+        """Return the time step and its rounding error, half a unit of its last digit, s."""
         value = self._decimal("DELTA_T", "the time step in s")
         exponent = value.as_tuple().exponent
         assert isinstance(exponent, int)  # noqa: S101 (it is finite; for the type checker)

@@ -21,7 +21,7 @@ BUDGET = 1 << 25
 
 
 def _nothing_spoilt(column: int, first: int, last: int) -> None:
-    """Say that every sample is a number, or missing."""
+    """Return None: every sample is a number, or missing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,12 +52,12 @@ class Samples(NamedTuple):
     column: int
 
     def all(self) -> NDArray[np.float64]:
-        """Give every sample; shape (time,)."""
+        """Return every sample; shape (time,)."""
         length = self.store.length
         return next(self.store.read([self.column], 0, length, length))[0] if length else np.empty(0)
 
     def pieces(self) -> Iterator[NDArray[np.float64]]:
-        """Give the samples piece by piece, each of shape (time,)."""
+        """Return an iterator over the samples, piece by piece, each of shape (time,)."""
         return (piece[0] for piece in self.store.read([self.column], 0, self.store.length, BUDGET // 8))
 
 
@@ -69,7 +69,7 @@ def split_range(first: int, last: int, step: int) -> Iterator[tuple[int, int]]:
 def store_by_ranges(
     width: int, length: int, get: Callable[[Sequence[int], int, int], NDArray[np.float64]], at_once: int = BUDGET // 8
 ) -> Store:
-    """Make a store of which any range can be read at once.
+    """Return a store of which any range can be read at once.
 
     Parameters
     ----------
@@ -95,12 +95,12 @@ def store_by_ranges(
 
 
 def samples_per_read(size: int) -> int:
-    """Say how many samples to read at once of which each takes so many bytes in the file."""
+    """Return the number of samples to read at once, from the bytes that one takes in the file."""
     return max((BUDGET >> 3) // max(size, 1), 1)
 
 
 def store_in_memory(values: NDArray[np.generic]) -> Store:
-    """Make a store of numbers that are in memory.
+    """Return a store of numbers in memory.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def store_in_memory(values: NDArray[np.generic]) -> Store:
 
 
 def missing_samples(length: int, problem: Problem) -> Samples:
-    """Make a column without a single number.
+    """Return a column without a single number.
 
     Parameters
     ----------
@@ -130,7 +130,7 @@ def missing_samples(length: int, problem: Problem) -> Samples:
 
 
 def join_samples(members: Sequence[Samples]) -> Store:
-    """Make one store of columns of one length, of however many stores.
+    """Return one store of columns of one length from any number of stores.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from sprung.formats.sample_store import Samples, store_in_memory
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 REQUIRED = ("name", "data", "unit_str")
 OPTIONAL = ("fs", "time", "start_timestamp", "quantity", "location")
@@ -25,8 +25,8 @@ Signals = Mapping[str, Sequence[Mapping[str, object]]]
 """Recordings by name, each a list of dictionaries, one per signal."""
 
 
-def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") -> Table:
-    """Make a table of signals.
+def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") -> SampleTable:
+    """Return a table of signals.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") 
 
     Returns
     -------
-    Table
+    SampleTable
 
     Raises
     ------
@@ -54,7 +54,7 @@ def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") 
         problems.raise_if_any()
     columns: list[Column] = []
     for index, signal in enumerate(signals):
-        with problems.collecting():
+        with problems.collect():
             columns.append(_column(signal, f"{name}[{index}]"))
     starts = {start for signal in signals if (start := _start(signal))}
     if len(starts) > 1:
@@ -84,11 +84,11 @@ def _column(signal: object, where: str) -> Column:
         if signal.get(key) is not None and not isinstance(signal[key], str):
             problems.add(f"{where}.{key}", _written(signal[key]), "text", "Write it in quotation marks.")
     data = np.empty(0)
-    with problems.collecting():
+    with problems.collect():
         if "data" in signal:
             data = _numbers(signal["data"], f"{where}.data")
     clock = ChannelClock(0.0, 0.0, len(data), None, np.zeros(len(data)))
-    with problems.collecting():
+    with problems.collect():
         clock = _clock(signal, len(data), where)
     problems.raise_if_any()
     name, location = str(signal["name"] or "").strip(), str(signal.get("location") or "").strip()
@@ -98,7 +98,7 @@ def _column(signal: object, where: str) -> Column:
 
 
 def _clock(signal: Mapping[str, object], count: int, where: str) -> ChannelClock:
-    """Take the clock from the times, or else from the rate; where both are, they must agree."""
+    """Return the clock from the times, otherwise from the rate; where both are given, they must agree."""
     rate, problems = _rate(signal.get("fs"), f"{where}.fs"), Problems()
     if signal.get("time") is None:
         if rate is None:
@@ -141,7 +141,7 @@ def _written(given: object) -> str:
 
 
 def _numbers(given: object, where: str) -> NDArray[np.float64]:
-    """Take an array of shape (time,) of real numbers."""
+    """Return real numbers as an array of shape (time,)."""
     problems = Problems()
     try:
         array = np.asarray(given)

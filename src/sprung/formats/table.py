@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -10,7 +9,6 @@ import numpy as np
 
 from sprung.display import shown
 from sprung.formats.sample_store import BUDGET, Store
-from sprung.units import acceleration_factor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,50 +18,15 @@ if TYPE_CHECKING:
     from sprung.errors import Problem
     from sprung.formats.resampling import ResampledChannel
 
-_BRACKETS = re.compile(r"^(?P<name>.*\S)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))$", re.DOTALL)
-
-
-def split_unit(text: str) -> tuple[str, str | None]:
-    """Split the unit off a column's name.
-
-    Parameters
-    ----------
-    text
-        As the file has it: ``body_fl [g]``, ``body_fl (m/s^2)`` or plainly ``body_fl``.
-
-    Returns
-    -------
-    name
-        What stands before the brackets.
-    unit
-        What stands in them; None without brackets. Round brackets are taken as a unit only where they hold one of
-        acceleration: ``body (left)`` is a name.
-
-    Examples
-    --------
-    >>> split_unit("body_fl [g]"), split_unit("body (left)")
-    (('body_fl', 'g'), ('body (left)', None))
-    """
-    match = _BRACKETS.match(text.strip())
-    if match is None:
-        return text.strip(), None
-    if match["square"] is not None:
-        return match["name"], match["square"].strip()
-    try:
-        acceleration_factor(match["round"])
-    except ValueError:
-        return text.strip(), None
-    return match["name"], match["round"].strip()
-
 
 def sample_number(sample: int) -> str:
-    """Say which sample it is, from 1, for formats in which nothing else says where one stands."""
+    """Return the number of a sample, from 1, as its place in the file."""
     return f"sample {sample + 1}"
 
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Table:
+class SampleTable:
     """The columns of one file, as the file has them. Their samples stay there until `take` or `pieces` ask for them.
 
     `take` reads some columns at once, all of them or those of a range; `pieces` goes through the file from its beginning
@@ -151,7 +114,7 @@ class Table:
     def pieces(
         self, columns: Sequence[int] | None = None, samples: int = 1 << 14
     ) -> Iterator[tuple[int, NDArray[np.float64]]]:
-        """Go through some columns piece by piece, in memory that does not grow with the file.
+        """Yield some columns piece by piece, in memory that does not grow with the file.
 
         Parameters
         ----------
@@ -179,8 +142,8 @@ class Table:
                 yield first + begin, read[:, begin : begin + samples]
             first += read.shape[1]
 
-    def part(self, first: int, last: int) -> Table:
-        """Give the samples from first up to last, last apart, as a table of their own, still unread."""
+    def part(self, first: int, last: int) -> SampleTable:
+        """Return the samples from first up to last, last excluded, as a table; nothing is read."""
 
         def read(columns: Sequence[int], begin: int, end: int, step: int) -> Iterator[NDArray[np.float64]]:
             return self.store.read(columns, first + begin, first + end, step)
@@ -197,7 +160,7 @@ class Table:
         )
 
     def find_non_number(self, column: int, first: int = 0, last: int | None = None) -> Problem | None:
-        """Say what stands in a column that is no number; None if nothing does, or if cells are merely empty.
+        """Return a problem for text in a column that is not a number; None where there is none, or where cells are only empty.
 
         A problem only where somebody needs the column. It may read the file again: ask where samples are missing.
 

@@ -12,8 +12,8 @@ from sprung.formats.libraries import load_library
 from sprung.formats.reading_errors import check_declared_size, input_error, memory_limit, reading, truncation_error
 from sprung.formats.sample_store import Samples, Store, split_range
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import split_unit
 from sprung.formats.text_clock import TIME_NAMES
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _MAGIC = b"TDSm"
 _LEAD_IN, _BIG_ENDIAN = 28, 1 << 6
@@ -35,7 +35,7 @@ class TdmsFormat:
         """Claim by the ending and the mark that begins every segment."""
         return path.suffix.lower() == ".tdms" and head.startswith(_MAGIC)
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -71,7 +71,7 @@ class TdmsFormat:
 
 
 def _refuse_cut_short(path: Path) -> None:
-    """Go from segment to segment: the last must end where the file does."""
+    """Check that the last segment ends where the file does."""
     size, position = path.stat().st_size, 0
     with path.open("rb") as stream:
         while position < size:
@@ -92,7 +92,7 @@ def _refuse_cut_short(path: Path) -> None:
 def _columns(
     channels: Sequence[Any], group: str, zero: Any, file: str, samples: Mapping[str, Samples]
 ) -> tuple[list[Column], list[str]]:
-    """Give the channels of a group, and the names of those that have no time."""
+    """Return the channels of a group, and the names of those without time."""
     times = next((channel for channel in channels if _is_time(channel)), None)
     shared = None if times is None else _times(times, file)
     columns: list[Column] = []
@@ -144,7 +144,7 @@ def _clock(channel: Any, shared: ChannelClock | None, zero: Any, where: str) -> 
 
 
 def _zero(channels: Sequence[Any]) -> Any:
-    """Give the earliest start, from which those of all channels are counted."""
+    """Return the earliest start of all channels, from which the others are counted; None where one has none."""
     starts = [channel.properties.get("wf_start_time") for channel in channels if len(channel)]
     absolute = [start for start in starts if isinstance(start, np.datetime64) and not np.isnat(start)]
     return min(absolute) if absolute and len(absolute) == len(starts) else None
@@ -157,7 +157,7 @@ def _name_and_unit(channel: Any) -> tuple[str, str | None]:
 
 
 def _samples(channels: Sequence[Any], path: Path) -> dict[str, Samples]:
-    """Give the samples of all channels of numbers by their paths in the file; those of one length share a store."""
+    """Return the samples of all numeric channels by their paths in the file; those of one length share a store."""
     lengths: dict[int, list[str]] = {}
     for channel in channels:
         if channel.dtype.kind in "fiub":

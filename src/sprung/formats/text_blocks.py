@@ -59,7 +59,7 @@ def detect_encoding(path: Path) -> Encoding:
 
 
 def _decode(path: Path, encoding: str, start: int) -> None:
-    """Go through a file to see whether it can be decoded."""
+    """Check that a file can be decoded."""
     decoder = codecs.getincrementaldecoder(encoding)()
     plain = not encoding.startswith("utf-16")
     with path.open("rb") as stream:
@@ -71,7 +71,7 @@ def _decode(path: Path, encoding: str, start: int) -> None:
 
 
 def read_blocks(path: Path, encoding: Encoding, start: int | None = None, size: int = BLOCK) -> Iterator[LineBlock]:
-    r"""Give the lines of a file block by block; ends of lines are ``\n``, ``\r\n`` or ``\r``.
+    r"""Yield the lines of a file block by block; ends of lines are ``\n``, ``\r\n`` or ``\r``.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ def read_blocks(path: Path, encoding: Encoding, start: int | None = None, size: 
 
 
 def _last_end(data: bytes, encoding: str) -> int:
-    r"""Say where the last line ends in some bytes; a last ``\r`` may yet be followed by ``\n``."""
+    r"""Return where the last line ends in some bytes; a last ``\r`` may yet be followed by ``\n``."""
     unit = len("\n".encode(encoding))
     for mark, spare in (("\n", 0), ("\r", unit)):
         end = len(data) - spare

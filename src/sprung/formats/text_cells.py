@@ -149,7 +149,7 @@ class Cells:
         return True
 
     def _is_plain(self, text: str) -> bool:
-        """Say whether there is nothing in a text that float would take and no logger means: 1_000, digits of others."""
+        """Return whether a text has only numbers as loggers write them: Python also reads 1_000, and digits beyond ASCII."""
         return text.isascii() and "_" not in text and (self.layout.decimal != "," or "." not in text)
 
     def _add_slowly(self, line: str, number: int) -> bool:
@@ -173,7 +173,7 @@ class Cells:
         return True
 
     def _number(self, cell: str, column: int, line: int) -> float:
-        """Give the number in a cell, NaN where there is none; keep what stands there instead."""
+        """Return the number in a cell; NaN where there is none, and the text is kept."""
         if cell.lower() in EMPTY:
             return float(cell) if cell.lower().endswith("inf") else np.nan
         other = "." if self.layout.decimal == "," else ","
@@ -192,11 +192,11 @@ class Cells:
         return np.nan
 
     def wrong(self, column: int) -> Problem | None:
-        """Say what is neither a number nor a clock time in a column."""
+        """Return a problem for text in a column that is neither a number nor a clock time; None where there is none."""
         return _problem(column, self.text[column], self.layout, self.file) if column in self.text else None
 
     def find_non_number(self, column: int) -> Problem | None:
-        """Say what is no number in a column."""
+        """Return a problem for text in a column that is not a number; None where there is none."""
         kept = self.text.get(column) or self.clock_cells.get(column)
         return _problem(column, kept, self.layout, self.file) if kept else None
 

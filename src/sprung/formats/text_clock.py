@@ -76,12 +76,12 @@ class TextClock:
 
 
 def is_time_name(name: str) -> bool:
-    """Say whether a column's name is one of a time, its unit apart."""
+    """Return whether a column's name, without its unit, is one of time."""
     return _base(name)[0].lower() in TIME_NAMES
 
 
 def find_time_candidates(names: Sequence[str], rows: Sequence[Sequence[str]]) -> list[int]:
-    """Give the columns among which the time is found, if any is: these alone are read for it.
+    """Return the columns that may hold the time.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def find_time_candidates(names: Sequence[str], rows: Sequence[Sequence[str]]) ->
 
 
 def parse_clock_time(cell: str) -> float | None:
-    """Give a clock time in seconds since midnight, or None if it is none; dates do not matter to what lasts seconds."""
+    """Return a clock time in seconds since midnight, its date left out; None for other text."""
     match = CLOCK.fullmatch(cell)
     if match is None:
         return None
@@ -175,7 +175,7 @@ def _holds_time_word(name: str) -> bool:
 
 
 def _is_time_in_other_words(columns: Columns, index: int) -> bool:
-    """Say whether a name holds the word time among others, as SampleTimeFine, and its numbers mostly increase."""
+    """Return whether a column's name contains a word for time, as SampleTimeFine, and its numbers mostly increase."""
     if not _holds_time_word(columns.names[index]) or index in columns.wrong:
         return False
     with np.errstate(all="ignore"):
@@ -192,7 +192,7 @@ def _first_is_time(columns: Columns, rate: Rate | None) -> bool:
 
 
 def _unit_from(rate: Rate, time: NDArray[np.float64]) -> float | None:
-    """Give the unit, s, in which the usual step of a time is that of the rate; None where there is no such unit."""
+    """Return the unit, s, in which the median time step matches the stated rate; None where there is none."""
     with np.errstate(all="ignore"):
         step = float(np.median(np.diff(time))) * rate.hertz if len(time) > 1 else np.nan
     return next((unit for unit in (1.0, 1e-3, 1e-6, 1e-9) if abs(step * unit - 1) < 0.05), None)

@@ -82,7 +82,7 @@ class _Run:
 
 
 def iterate_lines(text: str, start: int, end: int) -> Iterator[str]:
-    """Give the lines of a part of a text one by one, never all at once."""
+    """Yield the lines of a part of a text."""
     while start <= end:
         stop = text.find("\n", min(start + 65536, end), end)
         stop = end if stop < 0 else stop
@@ -158,7 +158,7 @@ def _runs(text: str, end: int) -> dict[str, _Run]:
 
 
 def _numbers(line: str, delimiter: str) -> tuple[int, float]:
-    """Give the number of cells, and the share of numbers and clock times among those that are not empty."""
+    """Return the number of cells, and the fraction of numbers and clock times among those that are not empty."""
     if _COMMENT.match(line) or line.count(delimiter) >= COLUMNS:
         return 0, 0.0
     cells = split_cells(line, delimiter)
@@ -170,7 +170,7 @@ def _numbers(line: str, delimiter: str) -> tuple[int, float]:
 
 
 def _above(text: str, start: int) -> Iterator[tuple[int, str]]:
-    """Give the lines above a place and where they begin, nearest first."""
+    """Yield the lines above a place and where they begin, nearest first."""
     while start > 0:
         stop = start - 1
         start = text.rfind("\n", 0, stop) + 1
@@ -242,7 +242,7 @@ def _without_numbers(text: str, end: int) -> Layout:
 
 
 def _names(line: str, delimiter: str, width: int) -> tuple[str, ...]:
-    """Give the cells of a line of words; between spaces a unit in brackets belongs to the name before it."""
+    """Return the cells of a header line; in a table separated by spaces, a unit in brackets belongs to the name before it."""
     names = split_cells(line, delimiter)
     if delimiter == " " and len(names) != width:
         join_samples: list[str] = []
@@ -259,7 +259,7 @@ def _names(line: str, delimiter: str, width: int) -> tuple[str, ...]:
 
 
 def _are_units(cells: tuple[str, ...]) -> bool:
-    """Say whether a row holds units: one of time or acceleration, or anything in brackets, and no name of a time."""
+    """Return whether a row holds units: one of time or acceleration, or text in brackets, and no name of time."""
     return not any(is_time_name(cell) for cell in cells) and any(_is_unit(cell) for cell in cells)
 
 
@@ -274,7 +274,7 @@ def _is_unit(cell: str) -> bool:
 
 
 def _decimal(text: str, start: int, delimiter: str) -> str:
-    """Give the decimal mark: the one that more of the first numbers have, or else the comma where any number has it."""
+    """Return the decimal mark: that of the majority of the first numbers, otherwise the comma where any number has one."""
     between = r"[ \t\n]" if delimiter == " " else rf"[{delimiter}\n]"
     quote = '"' if delimiter == "," else '"?'  # between commas, a comma is a decimal mark only within quotation marks
     ends = rf"[ ]{{0,40}}(?={between}|\Z)"

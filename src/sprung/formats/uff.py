@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from sprung.formats.table import Table
+    from sprung.formats.table import SampleTable
 
 _SUFFIXES = frozenset((".uff", ".unv", ".uf", ".58", ".bunv"))
 _HEAD = re.compile(rb"\s*-1 *\r?\n {0,5}\d+")
@@ -38,7 +38,7 @@ class UffFormat:
         """Claim by the ending and the mark that begins every data set."""
         return path.suffix.lower() in _SUFFIXES and _HEAD.match(head) is not None
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read one file.
 
         Raises
@@ -110,7 +110,7 @@ def _clock(function: dict[str, Any], times: NDArray[np.float64] | None, count: i
 
 
 def _point(function: dict[str, Any]) -> str:
-    """Name where and in which direction was measured: ``3Z+``."""
+    """Return the node and direction of a measurement: ``3Z+``."""
     node, direction = int(function["rsp_node"]), int(function["rsp_dir"])
     if abs(direction) >= len(_DIRECTIONS):
         return f"{node}"

@@ -12,8 +12,8 @@ from sprung.errors import InputError, Problem, did_you_mean
 from sprung.formats.metadata import MetadataScope, normalise_name
 from sprung.formats.nested import Number
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import split_unit
 from sprung.formats.text_clock import TIME_NAMES
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,15 +60,15 @@ class Vector:
         return ".".join(self.called)
 
     def is_time(self) -> bool:
-        """Say whether it is called time, or declared to be times."""
+        """Return whether it is called time, or declared to be times."""
         return self.moments or time_name_unit(self.called[-1]) is not None
 
     def __len__(self) -> int:
-        """Give the number of its samples."""
+        """Return the number of its samples."""
         return self.samples.store.length
 
     def increases(self) -> bool:
-        """Say whether every sample is larger than the one before; of others no more is read than shows it."""
+        """Return whether every sample is larger than the one before; reading stops at the first that is not."""
         before = -np.inf
         for piece in self.samples.pieces():
             if not (piece[:1] > before).all() or not (piece[1:] > piece[:-1]).all():
@@ -97,7 +97,7 @@ class VectorClock:
 
 
 def time_name_unit(name: str) -> str | None:
-    """Give the unit of a name for time: ``ms`` of ``time_ms`` or ``time (ms)``, empty of ``time``; None of other names.
+    """Return the unit in a name of time: ``ms`` for ``time_ms`` or ``time (ms)``, empty for ``time``; None for other names.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def find_vector_clock(vectors: Sequence[Vector], content: Content, scope: Metada
 
 
 def _time(times: Sequence[Vector], rates: dict[float, Number], file: str) -> VectorClock:
-    """Take the times that can be a clock; where several can, they must agree."""
+    """Return the times of the clock; where several vectors can be it, they must agree."""
     ranked = sorted(times, key=lambda vector: (not vector.increases(), not vector.moments))
     best = ranked[0]
     seconds = _seconds(best, file)
@@ -186,7 +186,7 @@ def _seconds(vector: Vector, file: str) -> NDArray[np.float64]:
 
 
 def _said_rates(content: Content, scope: MetadataScope) -> dict[Number, str | None]:
-    """Give all numbers that are called rates or intervals, also those written as text, with the units they come with."""
+    """Return all numbers that are called rates or intervals, also those written as text, with their units."""
     units = {text.path[:-1]: text.words[0] for text in scope.unit_lists()}
     said: dict[Number, str | None] = {}
     for number in content.numbers:
@@ -200,7 +200,7 @@ def _said_rates(content: Content, scope: MetadataScope) -> dict[Number, str | No
 
 
 def _kind(path: Path) -> tuple[bool, str | None] | None:
-    """Say whether a name is one of a rate (True) or an interval (False), and which unit it bears."""
+    """Return whether a name is one of a rate (True) or an interval (False), and its unit; None for other names."""
     name, unit = split_unit(path[-1])
     ending = re.fullmatch(r"(.+?)_(\w+)", name)
     for bare, of in ((name, unit), *([(ending[1], ending[2])] if ending else [])):

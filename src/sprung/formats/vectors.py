@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.errors import InputError, Problem
+from sprung.formats.interpolation import MIN_RATE
 from sprung.formats.metadata import MetadataScope, split_list
 from sprung.formats.nested import Numbers, flatten_nested
-from sprung.formats.resampling import MIN_RATE, ResampledChannel, resample
+from sprung.formats.resampling import ResampledChannel, resample
 from sprung.formats.sample_store import join_samples
 from sprung.formats.stated_rates import TIME_UNITS
-from sprung.formats.table import Table, split_unit
+from sprung.formats.table import SampleTable
 from sprung.formats.vector_clock import Vector, VectorClock, find_vector_clock, time_name_unit
+from sprung.units import split_unit
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from sprung.formats.sample_store import Samples
 
 
-def table_from_nested(node: Node, file: File, do: str) -> Table:
+def table_from_nested(node: Node, file: File, do: str) -> SampleTable:
     """Find the recording in what a file holds.
 
     It is made of the vectors of one length: of those with a time, or with a rate in the file, the ones that hold most
@@ -42,7 +44,7 @@ def table_from_nested(node: Node, file: File, do: str) -> Table:
 
     Returns
     -------
-    Table
+    SampleTable
         Its notes say what was a guess, and what was left out.
 
     Raises
@@ -81,7 +83,7 @@ def table_from_nested(node: Node, file: File, do: str) -> Table:
     if left_out:
         more = f" and {len(left_out) - 8} more" if len(left_out) > 8 else ""
         notes.append(f"left out: {', '.join(left_out[:8])}{more}")
-    return Table(
+    return SampleTable(
         channels=_shortest([vector.called for vector in (*channels, *others)]),
         units=tuple(vector.unit for vector in (*channels, *others)),
         store=join_samples([*(vector.samples for vector in channels), *(samples for samples, _ in others.values())]),
@@ -117,7 +119,7 @@ def _on_other_clocks(
 
 
 def _vectors(content: Content, scope: MetadataScope, notes: list[str]) -> list[Vector]:
-    """Take matrices apart, and find what everything is called."""
+    """Return the vectors of all blocks with their names."""
     lengths = {shape[0] for block in content.blocks if len(shape := _shape(block)) == 1}
     called = Counter(scope.called(block.path) for block in content.blocks)
     vectors: list[Vector] = []
@@ -140,14 +142,14 @@ def _vectors(content: Content, scope: MetadataScope, notes: list[str]) -> list[V
 
 
 def _shape(block: NumberBlock) -> tuple[int, ...]:
-    """Give the sides of a block; those of vectors of one length are two."""
+    """Return the shape of a block; that of vectors of one length has two sides."""
     if isinstance(block.numbers, Numbers):
         return block.numbers.shape
     return (*block.numbers[0].shape, len(block.numbers))
 
 
 def _columns(block: NumberBlock, lengths: set[int], notes: list[str]) -> Sequence[Samples]:
-    """Give the vectors in a block: a matrix lies along the side that some vector shares, or along its longer one."""
+    """Return the vectors in a block: along the side of a matrix as long as another vector, otherwise along its longer one."""
     if not isinstance(block.numbers, Numbers):
         return [vector.along(0)[0] for vector in block.numbers]
     if len(block.numbers.shape) == 1:
@@ -163,7 +165,7 @@ def _columns(block: NumberBlock, lengths: set[int], notes: list[str]) -> Sequenc
 
 
 def _recording(every: Sequence[Vector]) -> list[Vector]:
-    """Give the vectors of the length that the recording has."""
+    """Return the vectors that have the length of the recording."""
     counts = Counter(len(vector) for vector in every)
     timed = {len(vector) for vector in every if vector.is_time()}
     timed = {length for length in timed if counts[length] > 1} or set(counts)
@@ -203,7 +205,7 @@ def _with_units(vectors: Sequence[Vector], scope: MetadataScope, notes: list[str
 
 
 def _shortest(paths: Sequence[Path]) -> tuple[str, ...]:
-    """Name each by as few of its last names as tell it from the others."""
+    """Return a unique name for each path, of as few of its last parts as possible."""
     counts = Counter(path[-depth:] for path in paths for depth in range(1, len(path) + 1))
     depths = (next((d for d in range(1, len(p)) if counts[p[-d:]] == 1), len(p)) for p in paths)
     return tuple(".".join(path[-depth:]) for path, depth in zip(paths, depths, strict=True))

@@ -10,7 +10,7 @@ import numpy as np
 
 from sprung.formats.reading_errors import input_error, reading
 from sprung.formats.sample_store import Store, samples_per_read, store_by_ranges
-from sprung.formats.table import Table
+from sprung.formats.table import SampleTable
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,7 +29,7 @@ class WavFormat:
         """Return whether the file name and the first bytes are those of a WAV file."""
         return head[:4] in _SIGNATURES and head[8:12] == b"WAVE" and path.suffix.lower() in {".wav", ".wave"}
 
-    def read(self, path: Path) -> Table:
+    def read(self, path: Path) -> SampleTable:
         """Read a file; integers are divided by full scale.
 
         Raises
@@ -43,7 +43,7 @@ class WavFormat:
             raise input_error(path.name, found, _KIND, "Copy or export it again.")
         note = "integers were divided by full scale; a WAV file does not say what full scale is in m/s²"
         width = samples.shape[1]
-        return Table(
+        return SampleTable(
             channels=tuple(f"ch{index}" for index in range(1, width + 1)),
             units=(None,) * width,
             store=_store(path, samples),

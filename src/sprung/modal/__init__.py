@@ -4,9 +4,9 @@ from sprung.modal.amplitude import AmplitudeDependence, amplitude_dependence
 from sprung.modal.confirmation import confirm_modes
 from sprung.modal.criteria import modal_phase_collinearity
 from sprung.modal.era import eigensystem_realisation
-from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.maximum_likelihood import cramer_rao_bound, maximum_likelihood
 from sprung.modal.methods import APPROXIMATE, DEFAULT_METHOD, METHODS, Method, identify_modes
+from sprung.modal.mode_set import ModeSet, RejectedPole
 from sprung.modal.peaks import find_spectral_peaks
 from sprung.modal.stabilisation import StabilisationDiagram, StabilityCriteria, stabilisation_diagram
 from sprung.modal.svm import StateVariableFit, state_matrix, state_variable_method

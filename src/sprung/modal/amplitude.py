@@ -1,7 +1,7 @@
-"""Modes followed through a decay: frequency and damping against amplitude, from the records alone.
+"""Amplitude dependence of modes: frequency and damping in windows of a decay, from the records alone.
 
-A linear system has one frequency and one damping ratio whatever the amplitude. Joints and leaf springs that rub do not: they
-are softer and damp more where they slide.
+A linear system has one frequency and one damping ratio whatever the amplitude. A suspension with dry friction does not: it
+is softer and damps more where the friction slides.
 """
 
 from __future__ import annotations
@@ -16,24 +16,24 @@ from sprung.display import shown
 from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
 from sprung.modal.likelihood import Poles
-from sprung.modal.records import as_records
+from sprung.modal.record_checks import check_records
 from sprung.modal.refinement import climb
-from sprung.modal.uncertainty import bound_alone
+from sprung.modal.uncertainty import pole_bound
 from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
 _FALL = 0.5
-"""Powers of e by which a mode falls in a window, ..."""
+"""Time constants of the decay in a window, ..."""
 
 _PERIODS, _SHARE = 1.5, 0.25
-"""... which is so many periods long at the least, and so much of the record at the most."""
+"""... which has at least so many periods, and at most this part of the record."""
 
-_HOP = 0.5
-"""Windows from one to the next."""
+_STRIDE = 0.5
+"""Distance of windows, as a part of their length."""
 
-_SURE = 0.05
-"""Turns by which a vibration may be unsure over a window whose frequency is believed."""
+_LARGEST_PHASE_STD = 0.05
+"""Largest standard uncertainty of a frequency that is used, cycles over the window."""
 
 _LEAST, _MOST = -0.1, 1.0
 """Damping ratios between which a window shows a free vibration."""
@@ -42,7 +42,7 @@ _LEAST, _MOST = -0.1, 1.0
 @shown
 @dataclass(frozen=True, eq=False)
 class AmplitudeDependence:
-    """One mode through the decays of one or several records; all arrays of shape (window,), the largest amplitude first.
+    """One mode in windows of the decays of one or several records; all arrays of shape (window,), the largest amplitude first.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class AmplitudeDependence:
 def amplitude_dependence(
     records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]
 ) -> tuple[AmplitudeDependence, ...]:
-    """Fit each mode anew in one window after the other of every record.
+    """Fit each mode in successive windows of every record.
 
     In each window the pole of one mode is free, those of the others and all shapes are as identified; amplitudes of all modes
     and offsets are free, and eliminated as they are linear.
@@ -94,10 +94,10 @@ def amplitude_dependence(
 
     Returns
     -------
-    tuple of ModeTrace
-        One for each mode that vibrates and is told in two windows at the least.
+    tuple of AmplitudeDependence
+        One for each mode that vibrates and is determined in at least two windows.
     """
-    arrays = as_records(records, rate, "amplitude")
+    arrays = check_records(records, rate, "amplitude")
     poles = Poles.of(
         np.array([mode.pole / rate for mode in modes], dtype=complex), np.stack([mode.shape for mode in modes], axis=1)
     )
@@ -112,38 +112,40 @@ def amplitude_dependence(
 
 
 def _windows(record: Real, rate: float, poles: Poles, which: int) -> list[tuple[float, ...]]:
-    """Give amplitude, frequency, damping ratio and their uncertainties in each window of a record that tells them."""
+    """Return amplitude, frequency, damping ratio and their uncertainties in each window of a record that determines them."""
     pole = complex(poles.exponent[which])
     longest = max(int(_SHARE * record.shape[1]), 1)
     length = max(min(int(_FALL / abs(pole.real)), longest), int(_PERIODS * 2 * np.pi / abs(pole)), 8)
     rows: list[tuple[float, ...]] = []
-    for first in range(0, record.shape[1] - length + 1, max(int(_HOP * length), 1)):
+    for first in range(0, record.shape[1] - length + 1, max(int(_STRIDE * length), 1)):
         decays = Decays.of([record[:, first : first + length]], rate)
-        stand = climb(decays, poles, only=which)
-        lost = decays.numbers / max(decays.numbers - stand.parameters / decays.channels, 1.0)
-        spread = bound_alone(stand.weighted(1 / (stand.variance * lost)), which)
-        own = Mode(complex(stand.poles.exponent[which] * rate), stand.poles.shapes[:, which], uncertainty=spread)
+        objective = climb(decays, poles, only=which)
+        lost = decays.sample_count / max(decays.sample_count - objective.parameters / decays.channels, 1.0)
+        uncertainty = pole_bound(objective.weighted(1 / (objective.variance * lost)), which)
+        own = Mode(
+            complex(objective.poles.exponent[which] * rate), objective.poles.shapes[:, which], uncertainty=uncertainty
+        )
         frequency_std, ratio_std = own.frequency_std or 0.0, own.damping_ratio_std or 0.0
         aliased = own.damped_frequency > NEAR_NYQUIST * rate / 2
-        if aliased or frequency_std * length / rate > _SURE or not _LEAST < own.damping_ratio < _MOST:
+        if aliased or frequency_std * length / rate > _LARGEST_PHASE_STD or not _LEAST < own.damping_ratio < _MOST:
             if rows:
-                break  # the motion has died
+                break  # the motion has decayed
             continue
-        middle = np.exp(stand.poles.exponent[which].real * length / 2)
-        size = 2 * float(np.abs(stand.coefficients[0, :, which]).max() * middle)
+        middle = np.exp(objective.poles.exponent[which].real * length / 2)
+        size = 2 * float(np.abs(objective.coefficients[0, :, which]).max() * middle)
         rows.append((size, own.frequency, frequency_std, own.damping_ratio, ratio_std))
     return rows
 
 
 def _trend(amplitude: Real, values: Real, stds: Real) -> tuple[float, float] | None:
-    """Fit a line against the logarithm to base 10 of the amplitude: its slope and how sure that is, scatter included."""
+    """Fit a line against the logarithm to base 10 of the amplitude: its slope and standard uncertainty, scatter included."""
     weights = 1 / np.maximum(stds, 1e-300) ** 2
     logs = np.log10(np.maximum(amplitude, 1e-300))
     centred = logs - weights @ logs / weights.sum()
-    spread = float(weights @ centred**2)
-    if len(values) < 3 or not spread > 0:
+    squares = float(weights @ centred**2)
+    if len(values) < 3 or not squares > 0:
         return None
-    slope = float(weights @ (centred * values)) / spread
-    left = values - weights @ values / weights.sum() - slope * centred
-    excess = max(float(weights @ left**2) / (len(values) - 2), 1.0)
-    return slope, float(np.sqrt(excess / spread))
+    slope = float(weights @ (centred * values)) / squares
+    residual = values - weights @ values / weights.sum() - slope * centred
+    excess = max(float(weights @ residual**2) / (len(values) - 2), 1.0)
+    return slope, float(np.sqrt(excess / squares))

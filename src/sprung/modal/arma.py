@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import ModeSet
-from sprung.modal.selection import Task
-from sprung.modal.subspace import recurring
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet
+from sprung.modal.subspace import poles_of_transition
 
-_RANK = 1e-15
+_RANK_TOLERANCE = 1e-15
 """Singular value, as a part of the largest, that is rounding."""
 
-_MORE = 2
+_OVERSIZE = 2
 """Times the lags that the order asks for: the ones too many take up noise."""
 
 
@@ -32,7 +32,7 @@ def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None 
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -44,17 +44,17 @@ def autoregression(records: Sequence[ArrayLike], rate: float, order: int | None 
     ----------
     P. Stoica, T. Söderström and B. Friedlander, IEEE Trans. Autom. Control 30 (1985) 1066.
     """
-    task = Task.of(records, rate, order, "arma")
-    thinned, channels = task.thinned, task.decays.channels
-    longest = max((thinned.shortest // thinned.step - 2) // 3, 1)
+    task = IdentificationTask.of(records, rate, order, "arma")
+    decimated, channels = task.decimated, task.decays.channels
+    longest = max((decimated.shortest // decimated.step - 2) // 3, 1)
     task.allow(longest * channels)
-    lags = min(_MORE * -(-task.order // channels), longest)
-    hankel = np.hstack(thinned.hankel(2 * lags))
+    lags = min(_OVERSIZE * -(-task.order // channels), longest)
+    hankel = np.hstack(decimated.hankel(2 * lags))
     instruments, regressors, target = np.split(hankel, [lags * channels, 2 * lags * channels])
     left, singular, right = np.linalg.svd(regressors @ instruments.T)
-    kept = min(task.order, int(np.sum(singular > _RANK * singular[0])))
+    kept = min(task.order, int(np.sum(singular > _RANK_TOLERANCE * singular[0])))
     inverse = (right[:kept].T / singular[:kept]) @ left[:, :kept].T
     coefficients = target @ instruments.T @ inverse
     companion = np.eye(lags * channels, k=channels)
     companion[-channels:] = coefficients
-    return task.modes(recurring(companion, np.eye(channels, lags * channels), thinned))
+    return task.modes(poles_of_transition(companion, np.eye(channels, lags * channels), decimated))

@@ -1,4 +1,4 @@
-"""Whether a mode is one of the structure: it is there at many orders of a model, or again in a later part of the records."""
+"""Confirmation of modes: by many orders of a model, or by a later part of the records."""
 
 from __future__ import annotations
 
@@ -9,27 +9,27 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.errors import InputError
-from sprung.modal.identified import ModeSet, RejectedPole
 from sprung.modal.methods import identify_modes
+from sprung.modal.mode_set import ModeSet, RejectedPole
 from sprung.modal.stabilisation import StabilisationDiagram, stabilisation_diagram
 from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
 _NEAR, _SURE = 0.02, 3.0
-"""Part of its frequency, and damping ratio, within which another pole is the same; and standard uncertainties besides."""
+"""Part of its frequency, and damping ratio, within which another pole is the same, plus standard uncertainties."""
 
 _LATER = 0.5
-"""Time constants of its decay by which the records begin later for a mode to be found again."""
+"""Time constants of its decay by which the records are shortened to identify a mode again."""
 
 
 def confirm_modes(
     found: ModeSet, records: Sequence[ArrayLike], rate: float, diagram: StabilisationDiagram | None = None
 ) -> ModeSet:
-    """Keep the modes that the records confirm.
+    """Return the modes that the records confirm.
 
     A free decay holds the same modes wherever it begins, and a model of any order that is high enough shows them. What a
-    landing, a tyre off the ground or dry friction adds does neither.
+    landing, a tyre off the ground or dry friction adds meets neither condition.
 
     Parameters
     ----------
@@ -40,38 +40,36 @@ def confirm_modes(
     rate
         Samples per second.
     diagram
-        Of the same records, if it was drawn already.
+        Of the same records, if it exists already.
 
     Returns
     -------
-    Modes
-        Those that stay in the stabilisation diagram, or that the same method finds again, within the uncertainties, once the
-        records begin later by half a time constant of the mode's decay. The others are rejected, with the reason.
+    ModeSet
+        Those that are stable in the stabilisation diagram, or that the same method identifies again, within the uncertainties,
+        from records that begin half a time constant of the mode's decay later. The others are rejected, with the reason.
     """
     arrays = [np.asarray(record, dtype=float) for record in records]
-    staying: list[complex] = []
-    with suppress(InputError):  # of records too short for a diagram the later beginning decides
-        staying = [one.pole for one in (diagram or stabilisation_diagram(arrays, rate)).chosen]
+    stable: list[complex] = []
+    with suppress(InputError):  # records too short for a diagram are shortened and identified again
+        stable = [one.pole for one in (diagram or stabilisation_diagram(arrays, rate)).chosen]
     kept, rejected = [], []
     later: dict[int, tuple[Mode, ...]] = {}
     for mode in found:
-        if any(_is_same(mode, Mode(pole, mode.shape)) for pole in staying):
+        if any(_is_same(mode, Mode(pole, mode.shape)) for pole in stable):
             kept.append(mode)
             continue
         skip = max(int(np.ceil(_LATER * rate / max(-mode.pole.real, 1e-9))), 1)
         if skip not in later:
-            later[skip] = _found_again([record[:, skip:] for record in arrays], rate, found.method)
+            later[skip] = _identify_again([record[:, skip:] for record in arrays], rate, found.method)
         if any(_is_same(mode, other) for other in later[skip]):
             kept.append(mode)
         else:
-            said = (
-                f"it is neither at most orders of the stabilisation diagram nor found again {skip / rate:.3g} s later"
-            )
-            rejected.append(RejectedPole(mode.pole, said))
+            reason = f"it is neither stable in the stabilisation diagram nor identified again {skip / rate:.3g} s later"
+            rejected.append(RejectedPole(mode.pole, reason))
     return ModeSet(tuple(kept), (*found.rejected, *rejected), found.method)
 
 
-def _found_again(records: Sequence[Real], rate: float, method: str) -> tuple[Mode, ...]:
+def _identify_again(records: Sequence[Real], rate: float, method: str) -> tuple[Mode, ...]:
     try:
         return tuple(identify_modes(records, rate, method))
     except InputError:
@@ -82,7 +80,7 @@ def _is_same(mode: Mode, other: Mode) -> bool:
     frequency = _NEAR * mode.frequency + _SURE * _both(mode.frequency_std, other.frequency_std)
     ratio = _NEAR + _SURE * _both(mode.damping_ratio_std, other.damping_ratio_std)
     apart = abs(mode.frequency - other.frequency), abs(mode.damping_ratio - other.damping_ratio)
-    return apart[0] <= frequency and apart[1] <= ratio and other.resolved
+    return apart[0] <= frequency and apart[1] <= ratio and other.is_resolved
 
 
 def _both(*stds: float | None) -> float:

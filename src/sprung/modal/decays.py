@@ -1,4 +1,4 @@
-"""Free decays of one load, taken up once: whatever a fit of poles and shapes needs of their samples."""
+"""Free decays of one load, prepared once for fits of poles and shapes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Decays:
 
     @classmethod
     def of(cls, records: Sequence[Real], rate: float) -> Decays:
-        """Take up records of shape (channel, time)."""
+        """Prepare records of shape (channel, time)."""
         values = tuple(record - record.mean(axis=1, keepdims=True) for record in records)
         return cls(
             values=values,
@@ -61,22 +61,22 @@ class Decays:
 
     @cached_property
     def spectrum(self) -> Spectrum:
-        """Of the records."""
+        """Spectrum of the records."""
         return Spectrum.of(self.values, self.rate)
 
     @property
     def channels(self) -> int:
-        """How many channels there are."""
+        """Number of channels."""
         return int(self.energy.shape[1])
 
     @property
     def count(self) -> int:
-        """How many records there are."""
+        """Number of records."""
         return len(self.values)
 
     @property
-    def numbers(self) -> float:
-        """How many numbers each channel has, all records together."""
+    def sample_count(self) -> float:
+        """Number of samples of each channel, all records together."""
         return float(self.samples.sum())
 
     @property
@@ -85,18 +85,18 @@ class Decays:
         return np.asarray(self.samples / self.rate)
 
     def gram(self, exponent: Complex) -> Complex:
-        """Give the inner products of (e^{λk}, k e^{λk}) with each other, λ per sample; shape (record, 2 pole, 2 pole)."""
+        """Return the Gram matrices of (e^{λk}, k e^{λk}), λ per sample; shape (record, 2 pole, 2 pole)."""
         lengths, which = np.unique(self.samples, return_inverse=True)
         return exponential_gram(exponent[None], lengths, np.zeros(len(lengths), dtype=np.int64))[which]
 
     def correlate(self, exponent: Complex) -> Complex:
-        """Give the inner products of (e^{λk}, k e^{λk}) with the records, shape (record, channel, 2 pole)."""
+        """Return the inner products of (e^{λk}, k e^{λk}) with the records, shape (record, channel, 2 pole)."""
         counts, group = -(-self.samples // BLOCK_LENGTH), np.zeros(self.count, dtype=np.int64)
         products = correlate_with_exponentials(self.blocked, counts, exponent[None], group)
         return products.reshape(*products.shape[:2], -1)
 
-    def less(self, exponent: Complex, coefficients: Complex) -> tuple[Real, ...]:
-        """Take a motion off the records: coefficients of e^{λk}, shape (record, channel, pole), conjugates included."""
+    def subtract(self, exponent: Complex, coefficients: Complex) -> tuple[Real, ...]:
+        """Subtract a motion from the records: coefficients of e^{λk}, shape (record, channel, pole), conjugates included."""
         motion = exponentials(exponent, int(self.samples.max()))
         motion = np.ascontiguousarray(motion.conj()).view(float)
         left = []

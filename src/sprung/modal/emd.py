@@ -9,23 +9,23 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import hilbert
 
-from sprung.modal.identified import ModeSet, RejectedPole
-from sprung.modal.residues import shapes_of
-from sprung.modal.selection import Task
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet, RejectedPole
+from sprung.modal.shape_fit import fit_shapes
 
 Real = NDArray[np.float64]
 
 _SIFTS, _SETTLED = 12, 0.05
-"""Times a motion is sifted at the most, and the change, as a part of its energy, at which it need not be any more."""
+"""Largest number of siftings, and the relative change of the motion at which sifting stops."""
 
-_FINER = 4
+_REFINEMENT = 4
 """Times the samples in a period that other methods work with."""
 
 _MOTIONS = 6
 """Intrinsic motions of a channel that are looked for."""
 
 _UPPER, _LOWER = 0.9, 0.1
-"""Parts of the largest amplitude between which a decay is followed."""
+"""Parts of the largest amplitude between which the decay is fitted."""
 
 _STRAIGHT = 0.9
 """Squared correlation that the logarithm of an amplitude must have with time to be a decay."""
@@ -34,8 +34,8 @@ _ALIKE = 0.2
 """Part of a frequency within which motions are taken for the same mode."""
 
 
-def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
-    """Take intrinsic motions of each channel for modes: phase and amplitude of their analytic signals against time.
+def empirical_mode_decomposition(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
+    """Identify modes from the intrinsic mode functions of each channel, by the phase and amplitude of their analytic signals.
 
     Not exact, not even without noise: sifting separates motions that are more than an octave apart and last for several
     periods, and the Hilbert transform of a record that begins with its largest motion is wrong there. On vehicles it finds the
@@ -46,11 +46,11 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
     records, rate
         As for `eigensystem_realisation`.
     order
-        Twice the modes to give, those of the most energy first; unless given all.
+        Twice the number of modes, those of the most energy first; unless given all.
 
     Returns
     -------
-    Modes
+    ModeSet
         Motions of several channels and records of about one frequency count as one, energies as weights.
 
     Raises
@@ -63,9 +63,9 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
     N. E. Huang et al., Proc. R. Soc. Lond. A 454 (1998) 903; free vibrations after J. N. Yang, Y. Lei, S. Pan and N. Huang,
     Earthq. Eng. Struct. Dyn. 32 (2003) 1443.
     """
-    task = Task.of(records, rate, order, "emd")
-    # Envelopes need more samples in a period than poles do.
-    every = max(task.thinned.every // _FINER, 1)
+    task = IdentificationTask.of(records, rate, order, "emd")
+    # Envelopes need more samples per period than poles.
+    every = max(task.decimated.every // _REFINEMENT, 1)
     found = []
     for record in task.decays.values:
         count = record.shape[1] // every
@@ -75,7 +75,7 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
                 pole = _decay(motion)
                 if pole is not None:
                     found.append((pole, float((motion**2).sum())))
-    # Motions of one frequency, the strongest first.
+    # Motions of one frequency are merged, the strongest first.
     poles, weights = [], []
     found.sort(key=lambda one: -one[1])
     while found:
@@ -90,14 +90,14 @@ def empirical_modes(records: Sequence[ArrayLike], rate: float, order: int | None
     rejected = tuple(
         RejectedPole(
             pole * rate / every,
-            "its motion is too weak beside the others, or was not asked for",
+            "its motion is too weak, or beyond the order",
         )
         for pole in poles
         if pole not in kept
     )
     if not kept:
         return ModeSet((), rejected, "emd")
-    modes = task.modes(shapes_of(task.thinned, np.array([pole / every for pole in kept], dtype=complex)))
+    modes = task.modes(fit_shapes(task.decimated, np.array([pole / every for pole in kept], dtype=complex)))
     return ModeSet(modes.modes, (*rejected, *modes.rejected), "emd")
 
 
@@ -107,7 +107,7 @@ def _intrinsic(values: Real) -> Iterator[Real]:
     for _ in range(_MOTIONS):
         motion = left
         for _ in range(_SIFTS):
-            middle = _middle(motion)
+            middle = _mean_envelope(motion)
             if middle is None:
                 return
             motion = motion - middle
@@ -117,8 +117,8 @@ def _intrinsic(values: Real) -> Iterator[Real]:
         left = left - motion
 
 
-def _middle(values: Real) -> Real | None:
-    """Give the mean of the envelopes through maxima and minima, mirrored at the ends; None with too few of either."""
+def _mean_envelope(values: Real) -> Real | None:
+    """Return the mean of the envelopes through maxima and minima, mirrored at the ends; None with too few of either."""
     inner = values[1:-1]
     time = np.arange(len(values))
     sides = []

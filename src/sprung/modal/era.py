@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import ModeSet
-from sprung.modal.selection import Task
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet
 
 
 def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
@@ -29,7 +29,7 @@ def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: in
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -41,5 +41,5 @@ def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: in
     ----------
     J.-N. Juang and R. S. Pappa, J. Guid. Control Dyn. 8 (1985) 620.
     """
-    task = Task.of(records, rate, order, "era")
-    return task.modes(task.span.poles(task.order))
+    task = IdentificationTask.of(records, rate, order, "era")
+    return task.modes(task.subspace.poles(task.order))

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import ModeSet
-from sprung.modal.selection import Task
-from sprung.modal.subspace import realised
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet
+from sprung.modal.subspace import realise_poles
 
 _ROWS = 300
 """Rows of the block Hankel matrix at the most, correlated ones among them."""
@@ -31,7 +31,7 @@ def realisation_by_correlations(records: Sequence[ArrayLike], rate: float, order
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -43,18 +43,18 @@ def realisation_by_correlations(records: Sequence[ArrayLike], rate: float, order
     ----------
     J.-N. Juang, J. E. Cooper and J. R. Wright, Control Theory Adv. Technol. 4 (1988) 5.
     """
-    task = Task.of(records, rate, order, "era-dc")
-    thinned, channels = task.thinned, task.decays.channels
-    own = min(_OWN, max(thinned.shifted(_ROWS) // 3, 1))
+    task = IdentificationTask.of(records, rate, order, "era-dc")
+    decimated, channels = task.decimated, task.decays.channels
+    own = min(_OWN, max(decimated.shifts_within(_ROWS) // 3, 1))
     rows = own * channels
-    shifts = thinned.shifted(_ROWS)
+    shifts = decimated.shifts_within(_ROWS)
     delays = shifts + 1 - own  # of H(j), j = 0 ... delays
     first = own if delays - own >= 3 else 0
     half = (delays - first) // 2
     task.allow(half * rows)
-    hankel = np.hstack(thinned.hankel(shifts))
+    hankel = np.hstack(decimated.hankel(shifts))
     correlations = hankel @ hankel[:rows].T
     blocks = [correlations[j * channels : j * channels + rows] for j in range(first, delays + 1)]
     stacked = np.vstack([np.hstack(blocks[i : i + len(blocks) - half]) for i in range(half + 1)])
     left = np.linalg.svd(stacked, full_matrices=False)[0]
-    return task.modes(realised(left[:, : task.order], thinned, rows))
+    return task.modes(realise_poles(left[:, : task.order], decimated, rows))

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.modal.decays import Decays
-from sprung.modal.identified import ModeSet
+from sprung.modal.identification_task import IdentificationTask, check_decay
+from sprung.modal.mode_set import ModeSet
 from sprung.modal.refinement import climb
-from sprung.modal.selection import Task, refuse_without_decay
-from sprung.modal.uncertainty import bounds
+from sprung.modal.uncertainty import cramer_rao_bounds
 from sprung.vibration import Mode, exponential_moments, sort_modes
 
 Real = NDArray[np.float64]
@@ -23,8 +23,8 @@ _WIDER = 1.5
 """Times the highest frequency of the motion up to which lines are used."""
 
 
-def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
-    """Identify modes as those that make the lines of a band likeliest.
+def frequency_domain_likelihood(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
+    """Identify modes by maximum likelihood on the spectral lines of a band.
 
     The transform of each whole record, on the lines of the discrete Fourier transform up to a little above the motion, is
     fitted with those of damped sinusoids, which are known in closed form for a finite record. White noise in that band is
@@ -37,8 +37,8 @@ def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | 
 
     Returns
     -------
-    Modes
-        Exact without noise, repeated and real poles too; with spreads for noise that is white in the band.
+    ModeSet
+        Exact without noise, repeated and real poles too; with uncertainties for noise that is white in the band.
 
     Raises
     ------
@@ -49,22 +49,22 @@ def likelihood_of_lines(records: Sequence[ArrayLike], rate: float, order: int | 
     ----------
     P. Guillaume, P. Verboven and S. Vanlanduit, Proc. ISMA 23 (1998) 359, here for the transform of free decays.
     """
-    task = Task.of(records, rate, order, "ml-frequency")
+    task = IdentificationTask.of(records, rate, order, "ml-frequency")
     high = task.decays.spectrum.band[1]
-    lines = Lines.up_to(task.decays, _WIDER * high)
-    start = task.span.poles(task.order)
-    refuse_without_decay(start, "ml-frequency")
-    stand = climb(lines, start)
-    lost = lines.numbers / max(lines.numbers - stand.parameters / lines.channels, 1.0)
-    spread = bounds(stand.weighted(1 / (stand.variance * lost)))
-    found = zip(stand.poles.exponent * rate, stand.poles.shapes.T, spread, strict=True)
+    lines = SpectralLines.up_to(task.decays, _WIDER * high)
+    start = task.subspace.poles(task.order)
+    check_decay(start, "ml-frequency")
+    objective = climb(lines, start)
+    lost = lines.sample_count / max(lines.sample_count - objective.parameters / lines.channels, 1.0)
+    spread = cramer_rao_bounds(objective.weighted(1 / (objective.variance * lost)))
+    found = zip(objective.poles.exponent * rate, objective.poles.shapes.T, spread, strict=True)
     return ModeSet(
         sort_modes([Mode(complex(pole), shape, uncertainty=own) for pole, shape, own in found]), (), "ml-frequency"
     )
 
 
 @dataclass(frozen=True, eq=False)
-class Lines(Decays):
+class SpectralLines(Decays):
     """Records as their Fourier transforms on the lines of a band; the line at 0 Hz, and with it the offsets, left out.
 
     Attributes
@@ -93,21 +93,21 @@ class Lines(Decays):
         return cls(decays.values, decays.rate, decays.samples, energy, decays.blocked, tuple(angles), tuple(transforms))
 
     @property
-    def numbers(self) -> float:
-        """How many numbers each channel has, all records together."""
+    def sample_count(self) -> float:
+        """Number of lines of each channel, all records together."""
         return float(sum(len(own) for own in self.angles))
 
     def gram(self, exponent: Complex) -> Complex:
-        """Give the inner products of the transforms of (e^{λk}, k e^{λk}) with each other."""
-        waves = self._waves(exponent)
+        """Return the Gram matrices of the transforms of (e^{λk}, k e^{λk})."""
+        waves = self._transformed_exponentials(exponent)
         return np.array([one.conj() @ one.T for one in waves])
 
     def correlate(self, exponent: Complex) -> Complex:
-        """Give the inner products of the transforms of (e^{λk}, k e^{λk}) with those of the records."""
-        pairs = zip(self._waves(exponent), self.transforms, strict=True)
+        """Return the inner products of the transforms of (e^{λk}, k e^{λk}) with those of the records."""
+        pairs = zip(self._transformed_exponentials(exponent), self.transforms, strict=True)
         return np.array([lines @ one.conj().T for one, lines in pairs])
 
-    def _waves(self, exponent: Complex) -> list[Complex]:
+    def _transformed_exponentials(self, exponent: Complex) -> list[Complex]:
         """Transform e^{λk} and k e^{λk}, for each record; shape (2 pole, line)."""
         found = []
         for angles, count in zip(self.angles, self.samples.tolist(), strict=True):

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.identified import ModeSet
-from sprung.modal.selection import Task
-from sprung.modal.subspace import recurring
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet
+from sprung.modal.subspace import poles_of_transition
 
 Real = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ def state_variables_in_rows(records: Sequence[ArrayLike], rate: float, order: in
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -48,10 +48,10 @@ def state_variables_in_rows(records: Sequence[ArrayLike], rate: float, order: in
     InputError
         As `eigensystem_realisation`.
     """
-    task = Task.of(records, rate, order, "svm-rows")
+    task = IdentificationTask.of(records, rate, order, "svm-rows")
     states = _states(task)
     transition = np.linalg.lstsq(states.before.T, states.after.T, rcond=None)[0].T
-    return task.modes(recurring(np.asarray(transition, dtype=float), states.seen, task.thinned))
+    return task.modes(poles_of_transition(np.asarray(transition, dtype=float), states.seen, task.decimated))
 
 
 def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
@@ -67,7 +67,7 @@ def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | 
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -80,19 +80,19 @@ def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | 
     S. R. Ibrahim and E. C. Mikulcik, Shock Vib. Bull. 47 (1977) 183; double least squares after S. R. Ibrahim, AIAA J. 24
     (1986) 1028.
     """
-    task = Task.of(records, rate, order, "itd")
+    task = IdentificationTask.of(records, rate, order, "itd")
     before, after, seen = _states(task)
     one = np.linalg.solve((before @ before.T).T, (after @ before.T).T).T
     other = np.linalg.solve((before @ after.T).T, (after @ after.T).T).T
-    return task.modes(recurring((one + other) / 2, seen, task.thinned))
+    return task.modes(poles_of_transition((one + other) / 2, seen, task.decimated))
 
 
-def _states(task: Task) -> _States:
-    """Give principal components of delayed samples, each of variance 1 over all records."""
-    thinned, channels = task.thinned, task.decays.channels
-    shifts = thinned.shifted(_ROWS)
+def _states(task: IdentificationTask) -> _States:
+    """Return principal components of delayed samples, each of variance 1 over all records."""
+    decimated, channels = task.decimated, task.decays.channels
+    shifts = decimated.shifts_within(_ROWS)
     task.allow(shifts * channels)
-    hankel = np.hstack(thinned.hankel(shifts))
+    hankel = np.hstack(decimated.hankel(shifts))
     left, singular, right = np.linalg.svd(hankel[:-channels], full_matrices=False)
     basis, sizes = left[:, : task.order], singular[: task.order]
     after = (basis / sizes).T @ hankel[channels:]

@@ -23,14 +23,14 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Index = NDArray[np.int64]
 
-_TINY = 1e-15
+_ROUNDING_SHARE = 1e-15
 """Part of its diagonal added to normal equations that are to be inverted: rounding must not make them indefinite."""
 
 _UNDETERMINED = 1e-13
-"""Information, in units of a parameter's own, that is lost in rounding."""
+"""Information, relative to that of a parameter alone, that is lost in rounding."""
 
 LEAST_NOISE = 1e-6
-"""Noise of a channel, as a part of its root-mean-square, below which nothing is told from rounding."""
+"""Noise of a channel, as a part of its root-mean-square, below which it cannot be told from rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,16 +71,16 @@ class Poles:
         return np.flatnonzero(self.exponent.imag != 0)
 
     def both(self, values: Complex, axis: int = -1) -> Complex:
-        """Put the conjugates of what belongs to paired poles behind it."""
+        """Append the conjugates of the values of paired poles."""
         return np.concatenate([values, np.take(values, self.paired, axis=axis).conj()], axis=axis)
 
     def without(self, which: int) -> Poles:
-        """Leave one mode out."""
+        """Return the poles without one mode."""
         kept = np.arange(self.count) != which
         return Poles(self.exponent[kept], self.shapes[:, kept], self.held[kept])
 
-    def beside(self, other: Poles) -> Poles:
-        """Put others behind these."""
+    def joined_with(self, other: Poles) -> Poles:
+        """Append other poles."""
         return Poles(
             np.concatenate([self.exponent, other.exponent]),
             np.concatenate([self.shapes, other.shapes], axis=1),
@@ -89,8 +89,8 @@ class Poles:
 
 
 @dataclass(frozen=True, eq=False)
-class Stand:
-    """The likelihood at some poles and shapes, channels weighted by 1/σ².
+class ModalObjective:
+    """The likelihood and its derivatives at given poles and shapes, channels weighted by 1/σ².
 
     Attributes
     ----------
@@ -112,25 +112,25 @@ class Stand:
     data: Complex
 
     @classmethod
-    def at(cls, decays: Decays, poles: Poles, weights: Real) -> Stand:
+    def at(cls, decays: Decays, poles: Poles, weights: Real) -> ModalObjective:
         """Sum over the samples."""
         exponent = poles.both(poles.exponent)
         own = decays.correlate(poles.exponent).reshape(decays.count, decays.channels, 2, poles.count)
         data = poles.both(own).reshape(decays.count, decays.channels, -1)
         return cls(decays, poles, weights, decays.gram(exponent), data)
 
-    def weighted(self, weights: Real) -> Stand:
-        """Give the same with other weights."""
-        return Stand(self.decays, self.poles, weights, self.gram, self.data)
+    def weighted(self, weights: Real) -> ModalObjective:
+        """Return the objective with other weights."""
+        return ModalObjective(self.decays, self.poles, weights, self.gram, self.data)
 
-    def without(self, which: int) -> Stand:
-        """Leave one mode out: its sums are left out too."""
+    def without(self, which: int) -> ModalObjective:
+        """Return the objective without one mode and its sums."""
         size = self.shapes.shape[1]
         gone = np.append(np.flatnonzero(self.poles.paired == which) + self.poles.count, which)
         kept = np.setdiff1d(np.arange(size), gone)
         both = np.concatenate([kept, kept + size])
         gram, data = self.gram[:, both[:, None], both], self.data[:, :, both]
-        return Stand(self.decays, self.poles.without(which), self.weights, gram, data)
+        return ModalObjective(self.decays, self.poles.without(which), self.weights, gram, data)
 
     @cached_property
     def shapes(self) -> Complex:
@@ -151,7 +151,7 @@ class Stand:
     @cached_property
     def inverse(self) -> Complex:
         """Their inverse."""
-        return inverse_of(self.normal)
+        return invert_normal_equations(self.normal)
 
     @cached_property
     def amplitudes(self) -> Complex:
@@ -185,46 +185,46 @@ class Stand:
         size, count = self.shapes.shape[1], self.poles.count
         twice = np.where(self.poles.exponent.imag != 0, 2.0, 1.0)
         own = np.diagonal(self.gram[:, :size, :size], axis1=1, axis2=2).real[:, None, :count]
-        # Poles that are none of the motion may have any amplitude.
+        # A pole outside the motion may have any amplitude.
         sizes = np.minimum(np.abs(self.coefficients[:, :, :count]) * np.sqrt(np.maximum(own, 0.0)), 1e100)
         energy = (sizes**2).sum(axis=0) * twice
         return np.asarray(energy / np.maximum(self.decays.energy.sum(axis=0), 1e-300)[:, None])
 
     @cached_property
-    def left(self) -> tuple[Real, ...]:
-        """What the model leaves of the records, each of shape (channel, time)."""
-        return self.decays.less(self.poles.both(self.poles.exponent), self.coefficients)
+    def residuals(self) -> tuple[Real, ...]:
+        """Residuals of each record, shape (channel, time)."""
+        return self.decays.subtract(self.poles.both(self.poles.exponent), self.coefficients)
 
     @cached_property
-    def left_spectrum(self) -> Spectrum:
-        """Spectrum of that."""
-        return Spectrum.of(self.left, self.decays.rate)
+    def residual_spectrum(self) -> Spectrum:
+        """Spectrum of the residuals."""
+        return Spectrum.of(self.residuals, self.decays.rate)
 
     @cached_property
     def variance(self) -> Real:
-        """σ² of each channel that makes the records likeliest, shape (channel,)."""
-        return np.asarray(np.maximum(self.residual.sum(axis=0) / self.decays.numbers, self.least_variance))
+        """Maximum likelihood estimate of σ² of each channel, shape (channel,)."""
+        return np.asarray(np.maximum(self.residual.sum(axis=0) / self.decays.sample_count, self.least_variance))
 
     @property
     def least_variance(self) -> Real:
-        """What no σ² is below, as it would be rounding: shape (channel,)."""
+        """Lower limit of σ², set by rounding, shape (channel,)."""
         energy = self.decays.energy.sum(axis=0)
-        return np.asarray(np.where(energy > 0, LEAST_NOISE**2 * energy, 1.0) / self.decays.numbers)
+        return np.asarray(np.where(energy > 0, LEAST_NOISE**2 * energy, 1.0) / self.decays.sample_count)
 
     @property
     def cost(self) -> float:
-        """Twice the negative logarithm of the likelihood, σ² at its best, less a constant."""
-        return float(self.decays.numbers * np.log(self.variance).sum())
+        """Twice the negative log-likelihood with σ² eliminated, less a constant."""
+        return float(self.decays.sample_count * np.log(self.variance).sum())
 
     @property
     def parameters(self) -> int:
-        """Real numbers that are free: poles, shapes, amplitudes, offsets."""
+        """Number of free real parameters: poles, shapes, amplitudes, offsets."""
         poles, channels, records = self.shapes.shape[1], self.decays.channels, self.decays.count
         return int(poles * (channels + records) + records * channels)
 
     @cached_property
     def free(self) -> Index:
-        """Which of (shapes, channel by channel; poles) are free and not held at 1; conjugates among them."""
+        """Positions of the free entries of (shapes, channel by channel; poles), without those held at 1; with conjugates."""
         size = self.shapes.shape[1]
         held = self.poles.both(self.poles.held.astype(np.complex128)).real.astype(np.int64)
         kept = np.ones((self.decays.channels + 1, size), dtype=np.bool_)
@@ -232,7 +232,7 @@ class Stand:
         return np.flatnonzero(kept)
 
     def pole_of(self, which: int) -> Index:
-        """Which of them is the pole of a mode, and its conjugate."""
+        """Return the positions of the pole of a mode and of its conjugate."""
         first = self.decays.channels * self.shapes.shape[1]
         twin = np.flatnonzero(self.poles.paired == which) + self.poles.count
         return np.asarray(np.concatenate([[which], twin]) + first, dtype=np.int64)
@@ -264,11 +264,11 @@ class Stand:
     def covariance(self) -> Complex:
         """The inverse of that over what is free; shape (parameter, parameter), zero for what is held."""
         covariance = np.zeros((self.gradient.size,) * 2, dtype=np.complex128)
-        covariance[np.ix_(self.free, self.free)] = inverse_information(self.information[np.ix_(self.free, self.free)])
+        covariance[np.ix_(self.free, self.free)] = invert_information(self.information[np.ix_(self.free, self.free)])
         return covariance
 
     def by_record(self) -> Iterator[tuple[Complex, Complex]]:
-        """Give each record's own gradient and information; shapes (parameter,) and (parameter, parameter)."""
+        """Yield the gradient and information of each record; shapes (parameter,) and (parameter, parameter)."""
         for record in range(self.decays.count):
             yield self._gradients[record].ravel(), self._information(np.array([record]))
 
@@ -285,43 +285,43 @@ class Stand:
         whole[:channels, :, channels, :] = w[:, None, None] * onward * s[:, None, :]
         whole[channels, :, :channels, :] = np.moveaxis(whole[:channels, :, channels, :].conj(), (0, 1, 2), (1, 2, 0))
         whole[channels, :, channels, :] = self._across * beyond
-        # What the amplitudes take up of it.
-        taken = np.empty((len(records), size, channels + 1, size), dtype=np.complex128)
+        # Elimination of the amplitudes (Schur complement).
+        coupling = np.empty((len(records), size, channels + 1, size), dtype=np.complex128)
         through = (s.conj() * w[:, None]).T
-        taken[:, :, :channels] = through[None, :, :, None] * gram[:, :size, None, :size] * q[:, None, None, :]
-        taken[:, :, channels] = self._across * gram[:, :size, size:] * q[:, None, :]
-        flat = taken.reshape(len(records), size, -1)
-        less = (np.swapaxes(flat.conj(), 1, 2) @ (self.inverse[records] @ flat)).sum(axis=0)
-        return np.asarray(whole.reshape(less.shape) - less)
+        coupling[:, :, :channels] = through[None, :, :, None] * gram[:, :size, None, :size] * q[:, None, None, :]
+        coupling[:, :, channels] = self._across * gram[:, :size, size:] * q[:, None, :]
+        flat = coupling.reshape(len(records), size, -1)
+        eliminated = (np.swapaxes(flat.conj(), 1, 2) @ (self.inverse[records] @ flat)).sum(axis=0)
+        return np.asarray(whole.reshape(eliminated.shape) - eliminated)
 
     def moved(self, step: Complex) -> Poles:
-        """Give the poles and shapes after a step, shape (channel + 1, pole)."""
+        """Return the poles and shapes after a step, shape (channel + 1, pole)."""
         count = self.poles.count
         real = self.poles.exponent.imag == 0
         exponent = self.poles.exponent + np.where(real, step[-1, :count].real, step[-1, :count])
-        # A pair that would cross the real axis stays a pair: which is likelier is asked elsewhere.
+        # A pair that would cross the real axis stays a pair: `real_axis_alternatives` tries the other side.
         exponent = np.where(real, exponent, exponent.real + 1j * np.abs(exponent.imag))
         return Poles.of(exponent, self.poles.shapes + step[:-1, :count])
 
 
-def scales(diagonal: Real) -> Real:
-    """Give what brings a diagonal, in the last axis, to 1, of what is not as good as zero."""
+def unit_scales(diagonal: Real) -> Real:
+    """Return the scales that turn a diagonal, in the last axis, into ones; limited for entries near zero."""
     least = np.maximum(1e-60 * diagonal.max(axis=-1, keepdims=True), 1e-200)
     return np.asarray(1 / np.sqrt(np.maximum(diagonal, least)))
 
 
-def inverse_information(information: Complex) -> Complex:
-    """Invert information, with as large a variance as can be told where there is none."""
-    scale = scales(np.diagonal(information).real)
+def invert_information(information: Complex) -> Complex:
+    """Invert an information matrix; directions without information get the largest variance that rounding allows."""
+    scale = unit_scales(np.diagonal(information).real)
     eigenvalues, vectors = np.linalg.eigh(information * scale[:, None] * scale)
-    # What rounding leaves of a direction that nothing determines: its variance is as large as can be told.
+    # Rounding alone is left in a direction that nothing determines: its variance has an upper limit.
     roots = scale[:, None] * vectors / np.sqrt(np.maximum(eigenvalues, _UNDETERMINED))
     return np.asarray(roots @ roots.conj().T, dtype=np.complex128)
 
 
-def inverse_of(normal: Complex) -> Complex:
+def invert_normal_equations(normal: Complex) -> Complex:
     """Invert normal equations of amplitudes, which may differ by orders of magnitude."""
-    scale = scales(np.diagonal(normal, axis1=1, axis2=2).real)
+    scale = unit_scales(np.diagonal(normal, axis1=1, axis2=2).real)
     both = scale[:, :, None] * scale[:, None, :]
-    scaled = normal * both + _TINY * np.eye(normal.shape[1])
+    scaled = normal * both + _ROUNDING_SHARE * np.eye(normal.shape[1])
     return np.asarray(np.linalg.inv(scaled) * both, dtype=np.complex128)

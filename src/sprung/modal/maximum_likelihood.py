@@ -1,4 +1,4 @@
-"""The default method: a subspace start, and the poles and shapes that make all records likeliest."""
+"""The default method: a subspace start, then maximum likelihood poles and shapes of all records."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from numpy.typing import ArrayLike
 
 from sprung.errors import Problems
 from sprung.modal.decays import Decays
-from sprung.modal.identified import ModeSet, RejectedPole
-from sprung.modal.likelihood import Poles, Stand
-from sprung.modal.modelling import agreement, model_by_data, model_of_order
-from sprung.modal.records import as_records
-from sprung.modal.selection import refuse_without_decay
-from sprung.modal.subspace import Span
-from sprung.modal.uncertainty import bounds, spreads
+from sprung.modal.identification_task import check_decay
+from sprung.modal.likelihood import ModalObjective, Poles
+from sprung.modal.mode_set import ModeSet, RejectedPole
+from sprung.modal.model_selection import fit_by_criterion, fit_order, inconsistency_factor
+from sprung.modal.record_checks import check_records
+from sprung.modal.subspace import SignalSubspace
+from sprung.modal.uncertainty import cramer_rao_bounds, mode_uncertainties
 from sprung.vibration import Mode, sort_modes
 
-_GROWS = 2.0
-"""Standard uncertainties by which a motion must grow for it to be none of a free decay."""
+_SIGNIFICANT_GROWTH = 2.0
+"""Standard uncertainties by which a growth rate must exceed zero for the pole to be rejected."""
 
 
 def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
@@ -28,7 +28,7 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
 
     Every record is a sum of the same modes, y_d = Re Σ_k φ_k q_dk e^{λ_k t} + offset_d, with white noise of its own variance
     in every channel. Poles λ and shapes φ are those of all records; how much of each mode a record holds is its own, so
-    that several different drops tell close modes apart which one alone cannot. A block Hankel matrix of all records gives
+    that several different drops separate close modes, which one drop alone cannot. A block Hankel matrix of all records gives
     the start, Gauss-Newton steps on the likelihood the rest, with amplitudes, offsets and noise eliminated.
 
     Parameters
@@ -43,9 +43,9 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
 
     Returns
     -------
-    Modes
-        With spreads: covariances at the Cramér-Rao bound for white noise, enlarged for residuals that are coloured around a
-        mode or contradict each other.
+    ModeSet
+        With uncertainties: covariances at the Cramér-Rao bound for white noise, enlarged for residuals that are coloured around
+        a mode or inconsistent.
 
     Raises
     ------
@@ -57,25 +57,25 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
     Variable projection after G. Golub and V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413; the bound after Y. Hua and T. K.
     Sarkar, IEEE Trans. Acoust. Speech Signal Process. 38 (1990) 814.
     """
-    arrays = as_records(records, rate, "ml")
+    arrays = check_records(records, rate, "ml")
     decays = Decays.of(arrays, rate)
-    span = Span.of(arrays, decays.spectrum)
+    subspace = SignalSubspace.of(arrays, decays.spectrum)
     problems = Problems()
-    if not span.standing_out:
-        problems.add("ml: records", "nothing that stands out from noise", "a free decay", "Look at the recordings.")
-    elif order is not None and not 1 <= order <= span.most:
-        expected = f"1 to {span.most} for {decays.channels} channels and {decays.seconds.min():.3g} s"
+    if not subspace.significant:
+        problems.add("ml: records", "nothing above the noise", "a free decay", "Check the recordings.")
+    elif order is not None and not 1 <= order <= subspace.most:
+        expected = f"1 to {subspace.most} for {decays.channels} channels and {decays.seconds.min():.3g} s"
         problems.add("ml: order", f"{order}", expected, "Choose it in that range, or leave it out.")
     problems.raise_if_any()
-    refuse_without_decay(span.poles(min(max(span.standing_out, 2), span.most)), "ml")
-    model = model_by_data(decays, span) if order is None else model_of_order(decays, span, order)
-    stand = model.stand
+    check_decay(subspace.poles(min(max(subspace.significant, 2), subspace.most)), "ml")
+    model = fit_by_criterion(decays, subspace) if order is None else fit_order(decays, subspace, order)
+    objective = model.objective
     found, rejected = [], list(model.rejected)
-    shapes = stand.poles.shapes.T
-    spread = spreads(stand, agreement(stand))
-    for pole, shape, own in zip(stand.poles.exponent * rate, shapes, spread, strict=True):
+    shapes = objective.poles.shapes.T
+    spread = mode_uncertainties(objective, inconsistency_factor(objective))
+    for pole, shape, own in zip(objective.poles.exponent * rate, shapes, spread, strict=True):
         growth, unsure = float(pole.real), float(np.sqrt(own.pole[0, 0]))
-        if growth > _GROWS * unsure:
+        if growth > _SIGNIFICANT_GROWTH * unsure:
             rejected.append(RejectedPole(complex(pole), f"it grows, by {growth:.3g} ± {unsure:.2g} 1/s"))
         else:
             found.append(Mode(complex(pole), shape, uncertainty=own))
@@ -85,7 +85,7 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
 def cramer_rao_bound(
     records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode], noise: ArrayLike
 ) -> tuple[Mode, ...]:
-    """Give known modes the uncertainty that no unbiased estimate from such records can better.
+    """Return known modes with their Cramér-Rao bound, the least uncertainty of any unbiased estimate from such records.
 
     Parameters
     ----------
@@ -103,8 +103,10 @@ def cramer_rao_bound(
     tuple of Mode
         The same, with the bound as their uncertainty; amplitudes and offsets of every record are unknown.
     """
-    arrays = as_records(records, rate, "bound")
+    arrays = check_records(records, rate, "bound")
     exponent = np.array([mode.pole / rate for mode in modes], dtype=complex)
     poles = Poles.of(exponent, np.stack([mode.shape for mode in modes], axis=1))
-    stand = Stand.at(Decays.of(arrays, rate), poles, 1 / np.asarray(noise, dtype=float) ** 2)
-    return tuple(replace(mode, uncertainty=spread) for mode, spread in zip(modes, bounds(stand), strict=True))
+    objective = ModalObjective.at(Decays.of(arrays, rate), poles, 1 / np.asarray(noise, dtype=float) ** 2)
+    return tuple(
+        replace(mode, uncertainty=spread) for mode, spread in zip(modes, cramer_rao_bounds(objective), strict=True)
+    )

@@ -1,4 +1,4 @@
-"""One door to all methods of modal identification."""
+"""The methods of modal identification, by name."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from sprung.errors import Problems, did_you_mean
 from sprung.modal.arma import autoregression
 from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
-from sprung.modal.emd import empirical_modes
+from sprung.modal.emd import empirical_mode_decomposition
 from sprung.modal.era import eigensystem_realisation
 from sprung.modal.era_dc import realisation_by_correlations
-from sprung.modal.frequency_likelihood import likelihood_of_lines
-from sprung.modal.identified import ModeSet, RejectedPole
+from sprung.modal.frequency_likelihood import frequency_domain_likelihood
 from sprung.modal.itd import ibrahim_time_domain, state_variables_in_rows
-from sprung.modal.likelihood import Poles, Stand
+from sprung.modal.likelihood import ModalObjective, Poles
 from sprung.modal.maximum_likelihood import maximum_likelihood
+from sprung.modal.mode_set import ModeSet, RejectedPole
 from sprung.modal.peak_picking import peak_picking
 from sprung.modal.polynomials import complex_frequency, rational_fractions
-from sprung.modal.records import as_records
+from sprung.modal.record_checks import check_records
 from sprung.modal.ssi import subspace_by_covariances, subspace_by_data
 from sprung.modal.svm import state_variable_method
 from sprung.vibration import Mode
@@ -30,24 +30,24 @@ from sprung.vibration import Mode
 Real = NDArray[np.float64]
 
 Method = Callable[[Sequence[ArrayLike], float, int | None], ModeSet]
-"""Takes records of shape (channel, time), the sampling rate and the order, None to choose it; gives modes."""
+"""Function of records of shape (channel, time), the sampling rate and the order, None to choose it, to modes."""
 
 _SVM_STEP = 0.015
 """s between the states of the State Variable Method, where it is not taken as printed."""
 
 
 def _svm(records: Sequence[ArrayLike], rate: float, order: int | None) -> ModeSet:
-    """Apply the State Variable Method with a longer lag to as many combinations of channels as half the order."""
+    """Apply the State Variable Method, with a longer lag, to half as many combinations of channels as the order."""
     return _state_variables(records, rate, order, "svm", max(1, round(_SVM_STEP * rate)))
 
 
 def _svm_as_printed(records: Sequence[ArrayLike], rate: float, order: int | None) -> ModeSet:
-    """Apply it as it is printed, from sample to sample."""
+    """Apply the State Variable Method as printed, from sample to sample."""
     return _state_variables(records, rate, order, "svm-printed", 1)
 
 
 def _state_variables(records: Sequence[ArrayLike], rate: float, order: int | None, method: str, lag: int) -> ModeSet:
-    arrays = as_records(records, rate, method)
+    arrays = check_records(records, rate, method)
     channels = len(arrays[0]) if arrays else 0
     degrees = min(channels, 7) if order is None else (order + 1) // 2
     if order is not None and not 0 < degrees <= channels:
@@ -87,32 +87,32 @@ METHODS: Mapping[str, Method] = MappingProxyType(
         "lscf": complex_frequency,
         "rfp": rational_fractions,
         "peaks": peak_picking,
-        "ml-frequency": likelihood_of_lines,
-        "emd": empirical_modes,
+        "ml-frequency": frequency_domain_likelihood,
+        "emd": empirical_mode_decomposition,
     }
 )
-"""The methods, by the name that `identify_modes` takes; the first is the one it takes unless told otherwise."""
+"""The methods, by the name that `identify_modes` takes; the first is the one it takes by default."""
 
 DEFAULT_METHOD = next(iter(METHODS))
-"""The method that is taken unless another is named."""
+"""Name of the default method."""
 
 APPROXIMATE = frozenset({"peaks", "emd"})
-"""Those that are not exact, not even without noise."""
+"""Methods that are not exact even without noise."""
 
-_CREDULOUS = APPROXIMATE | {"svm", "svm-printed"}
-"""Those that find slow motions in noise: they are left out, and say nothing of the records."""
+_TOLERANT = APPROXIMATE | {"svm", "svm-printed"}
+"""Methods that find slow motions in noise: these are rejected, without consequence for the records."""
 
 _LEAST_PERIODS, _LEAST_DECAY = 2.0, 3.0
-"""Periods of a vibration, and powers of e of an overdamped motion, that a record must hold for it to be told."""
+"""Periods of a vibration, and time constants of an overdamped motion, that a record must hold to determine it."""
 
-_HARDLY_A_VIBRATION = 0.7
-"""Damping ratio from which on a motion is judged by its decay: its periods are hardly seen."""
+_OVERDAMPED_FROM = 0.7
+"""Damping ratio above which a motion is judged by its decay instead of its periods."""
 
 _LEAST_SAMPLES = 16
-"""Samples without which nothing at all can be told."""
+"""Least number of samples."""
 
 _SMALL = 0.05
-"""Part of a channel's energy up to which a motion that is too slow for the records is left out instead of refused."""
+"""Part of a channel's energy up to which a motion that is too slow for the records is rejected without an error."""
 
 
 def identify_modes(
@@ -127,8 +127,8 @@ def identify_modes(
     rate
         Samples per second.
     method
-        One of `METHODS`. The default ``ml``, the likeliest poles and shapes, reaches the Cramér-Rao bound and says how sure it
-        is; so does ``ml-frequency``, for the lines of a band. Realisations: ``era``, ``era-dc``, ``ssi-cov``, ``ssi-data``.
+        One of `METHODS`. The default ``ml``, maximum likelihood, reaches the Cramér-Rao bound and gives uncertainties; so does
+        ``ml-frequency``, for the lines of a band. Realisations: ``era``, ``era-dc``, ``ssi-cov``, ``ssi-data``.
         Recursions: ``itd``, ``arma``, and the paper's State Variable Method, ``svm-printed`` as it stands there, ``svm`` with a
         longer lag, ``svm-rows`` with more block rows too. In the frequency domain: ``lscf`` (PolyMAX), ``rfp``. Not exact:
         ``peaks``, ``emd``.
@@ -137,51 +137,50 @@ def identify_modes(
 
     Returns
     -------
-    Modes
+    ModeSet
         Shapes at the channels, without names, in the order of undamped natural frequency.
 
     Raises
     ------
     InputError
-        If there is no such method, the records cannot be used, or they are shorter than two periods of what they mostly
-        show.
+        If there is no such method, the records cannot be used, or they are shorter than two periods of their main motion.
     """
     problems = Problems()
     if method not in METHODS:
         expected = " or ".join(f"'{name}'" for name in METHODS)
         problems.add("identify_modes: method", f"'{method}'", expected, did_you_mean(method, METHODS))
         problems.raise_if_any()
-    arrays = as_records(records, rate, method)
+    arrays = check_records(records, rate, method)
     if len(arrays[0]) < 2:
         expected = "two or more: shapes are ratios of channels"
         problems.add(f"{method}: records", f"{len(arrays[0])} channel", expected, "Give all channels together.")
     shortest = min(record.shape[1] for record in arrays)
     if shortest < _LEAST_SAMPLES:
-        said = f"{shortest} samples in the shortest", f"at least {_LEAST_SAMPLES}"
-        problems.add(f"{method}: records", *said, "Give longer decays.")
+        reason = f"{shortest} samples in the shortest", f"at least {_LEAST_SAMPLES}"
+        problems.add(f"{method}: records", *reason, "Give longer decays.")
     elif not any(np.ptp(record, axis=1).any() for record in arrays if record.size):
-        problems.add(f"{method}: records", "no motion in any channel", "a free decay", "Look at the recordings.")
+        problems.add(f"{method}: records", "no motion in any channel", "a free decay", "Check the recordings.")
     problems.raise_if_any()
     found = METHODS[method](arrays, rate, order)
     below, fast = _below_nyquist(found.modes, rate)
-    kept, slow = _split(below, arrays, rate, refusing=method not in _CREDULOUS)
+    kept, slow = _split(below, arrays, rate, refusing=method not in _TOLERANT)
     return ModeSet(kept, (*found.rejected, *fast, *slow), method)
 
 
 def _below_nyquist(modes: tuple[Mode, ...], rate: float) -> tuple[tuple[Mode, ...], tuple[RejectedPole, ...]]:
-    """Leave out what changes its sign from sample to sample, or nearly so: noise, aliases and the edge of a filter do that."""
+    """Reject modes near the Nyquist frequency: noise, aliases and the edge of a filter lie there."""
     limit = NEAR_NYQUIST * rate / 2
     fast = [mode for mode in modes if mode.damped_frequency > limit]
-    said = f"its frequency is above {limit:.4g} Hz, {NEAR_NYQUIST:.0%} of half the sampling rate"
-    return tuple(mode for mode in modes if mode not in fast), tuple(RejectedPole(mode.pole, said) for mode in fast)
+    reason = f"its frequency is above {limit:.4g} Hz, {NEAR_NYQUIST:.0%} of half the sampling rate"
+    return tuple(mode for mode in modes if mode not in fast), tuple(RejectedPole(mode.pole, reason) for mode in fast)
 
 
 def _split(
     modes: tuple[Mode, ...], records: Sequence[Real], rate: float, refusing: bool
 ) -> tuple[tuple[Mode, ...], tuple[RejectedPole, ...]]:
-    """Leave out modes that are too slow for the records; refuse the records where these are most of them."""
+    """Reject modes that are too slow for the records; raise an error if they are the main motion."""
     seconds = max(record.shape[1] for record in records) / rate
-    slow = [mode for mode in modes if not _is_told(mode, seconds)]
+    slow = [mode for mode in modes if not _is_long_enough(mode, seconds)]
     if not slow:
         return modes, ()
     decays = Decays.of(records, rate)
@@ -189,7 +188,7 @@ def _split(
         np.array([mode.pole / rate for mode in modes], dtype=complex),
         np.stack([mode.shape for mode in modes], axis=1),
     )
-    shares = Stand.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)).shares
+    shares = ModalObjective.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)).shares
     problems = Problems()
     for mode in slow:
         share = float(shares[:, modes.index(mode)].max())
@@ -200,14 +199,14 @@ def _split(
     return tuple(mode for mode in modes if mode not in slow), rejected
 
 
-def _is_told(mode: Mode, seconds: float) -> bool:
-    if mode.damping_ratio > _HARDLY_A_VIBRATION:
+def _is_long_enough(mode: Mode, seconds: float) -> bool:
+    if mode.damping_ratio > _OVERDAMPED_FROM:
         return -mode.pole.real * seconds >= _LEAST_DECAY
     return mode.frequency * seconds >= _LEAST_PERIODS
 
 
 def _too_short(mode: Mode, seconds: float) -> tuple[str, str]:
-    if mode.damping_ratio > _HARDLY_A_VIBRATION:
+    if mode.damping_ratio > _OVERDAMPED_FROM:
         decay = -1 / mode.pole.real
         return (
             f"{seconds:.3g} s of a motion that decays in {decay:.3g} s",

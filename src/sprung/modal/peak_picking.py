@@ -7,36 +7,36 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.identified import ModeSet, RejectedPole
-from sprung.modal.residues import shapes_of
-from sprung.modal.selection import Task
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet, RejectedPole
+from sprung.modal.shape_fit import fit_shapes
 from sprung.modal.spectrum import Spectrum
 
 Real = NDArray[np.float64]
 
-_FINER = 8
+_REFINEMENT = 8
 """Times the resolution of the records to which spectra are interpolated, by zeros behind them."""
 
 _PROMINENT = 1.3
-"""Times the lowest power between a peak and a higher one that it must have."""
+"""Least ratio of a peak to the lowest power between it and a higher one."""
 
 
 def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
-    """Take the peaks of the summed spectra for modes, and the width at half their power for their damping.
+    """Identify modes as the peaks of the summed spectra, with damping from the half-power bandwidth.
 
     Not exact, not even without noise: a peak of an acceleration lies beside the damped frequency once damping is high, and
-    modes that are closer than their widths have one peak. It is what the paper calls P-P, and says to be difficult on vehicles.
+    modes that are closer than their widths have one peak. The paper calls it P-P, and difficult on vehicles.
 
     Parameters
     ----------
     records, rate
         As for `eigensystem_realisation`.
     order
-        Twice the peaks to take, the highest first; unless given all that stand out.
+        Twice the number of peaks, the highest first; unless given all that exceed the noise.
 
     Returns
     -------
-    Modes
+    ModeSet
         Of the peaks with a width at half power; the others are rejected.
 
     Raises
@@ -44,30 +44,32 @@ def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = 
     InputError
         As `eigensystem_realisation`.
     """
-    task = Task.of(records, rate, order, "peaks")
-    values = [record / task.thinned.scale[:, None] for record in task.decays.values]
-    length = _FINER * max(record.shape[1] for record in values)
+    task = IdentificationTask.of(records, rate, order, "peaks")
+    values = [record / task.decimated.scale[:, None] for record in task.decays.values]
+    length = _REFINEMENT * max(record.shape[1] for record in values)
     spectrum = Spectrum.of(values, rate)
     transforms = [np.abs(np.fft.rfft(record, length)) ** 2 / record.shape[1] for record in values]
     power = np.sum([one.sum(axis=0) for one in transforms], axis=0)
     noise = float(len(values) * np.sum(spectrum.floor))
     step = rate / length
     poles, rejected = [], []
-    for top in _tops(power, 4 * noise)[: task.order if order is None else max(order // 2, 1)]:
+    for top in _find_peaks(power, 4 * noise)[: task.order if order is None else max(order // 2, 1)]:
         low, high = _half_power(power, top)
         if low is None or high is None:
-            rejected.append(RejectedPole(2j * np.pi * top * step, "no width at half power: a neighbour covers it"))
+            rejected.append(
+                RejectedPole(2j * np.pi * top * step, "no half-power bandwidth: a neighbouring peak covers it")
+            )
             continue
         ratio = min((high - low) / (2 * top), 0.99)
         poles.append(2 * np.pi * top * step * complex(-ratio / np.sqrt(1 - ratio**2), 1.0))
     if not poles:
         return ModeSet((), tuple(rejected), "peaks")
-    found = task.modes(shapes_of(task.thinned, np.array([pole / rate for pole in poles], dtype=complex)))
+    found = task.modes(fit_shapes(task.decimated, np.array([pole / rate for pole in poles], dtype=complex)))
     return ModeSet(found.modes, (*rejected, *found.rejected), "peaks")
 
 
-def _tops(power: Real, least: float) -> list[int]:
-    """Find local maxima above a power that stand out from what lies between them and higher ones, the highest first."""
+def _find_peaks(power: Real, least: float) -> list[int]:
+    """Find prominent local maxima above a power, the highest first."""
     inner = power[1:-1]
     tops = np.flatnonzero((inner > power[:-2]) & (inner >= power[2:]) & (inner > least)) + 1
     kept: list[int] = []
@@ -79,7 +81,7 @@ def _tops(power: Real, least: float) -> list[int]:
 
 
 def _half_power(power: Real, top: int) -> tuple[float | None, float | None]:
-    """Give where power falls to half that of a peak on either side, in bins, where it does before it rises again."""
+    """Return the bins at which power falls to half that of a peak on either side; None where it rises again before."""
     half = power[top] / 2
     below = np.flatnonzero(power[:top][::-1] <= half)
     above = np.flatnonzero(power[top:] <= half)

@@ -1,4 +1,4 @@
-"""Peaks of spectra: what a Fourier transform alone tells of a mode, as in the paper's Table 3."""
+"""Peaks of Fourier spectra near modes, as in the paper's Table 3."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
-_FINER = 8
+_REFINEMENT = 8
 """Times the resolution of the longest record to which spectra are interpolated, by zeros behind the records."""
 
 _NEAR, _WIDTHS, _LINES = 0.25, 3.0, 2.0
@@ -20,7 +20,7 @@ ratio, or so many lines of the transform."""
 
 
 def find_spectral_peaks(records: Sequence[ArrayLike], rate: float, modes: Sequence[Mode]) -> tuple[float | None, ...]:
-    """Find each mode's peak in the Fourier transform of what moves as it does.
+    """Find the peak of each mode in the Fourier transform of the records projected on its shape.
 
     The records are projected on the real part of the mode's shape, as the paper transforms vertical, pitch and roll
     acceleration each on its own (figures 4 to 6), and the power of all records is added up.
@@ -41,18 +41,20 @@ def find_spectral_peaks(records: Sequence[ArrayLike], rate: float, modes: Sequen
     """
     arrays = [np.asarray(record, dtype=float) for record in records]
     arrays = [record - record.mean(axis=1, keepdims=True) for record in arrays]
-    length = _FINER * max(record.shape[1] for record in arrays)
+    length = _REFINEMENT * max(record.shape[1] for record in arrays)
     found: list[float | None] = []
     for mode in modes:
         pattern = mode.shape.real / np.linalg.norm(mode.shape)
         motion = [np.abs(np.fft.rfft(pattern @ record, length)) ** 2 for record in arrays]
-        within = max(min(_NEAR, _WIDTHS * mode.damping_ratio) * mode.damped_frequency, _LINES * _FINER * rate / length)
-        found.append(peak_near(np.sum(motion, axis=0), rate / length, mode.damped_frequency, within))
+        within = max(
+            min(_NEAR, _WIDTHS * mode.damping_ratio) * mode.damped_frequency, _LINES * _REFINEMENT * rate / length
+        )
+        found.append(find_peak_near(np.sum(motion, axis=0), rate / length, mode.damped_frequency, within))
     return tuple(found)
 
 
-def peak_near(power: Real, step: float, frequency: float, within: float) -> float | None:
-    """Give the highest local maximum of a spectrum near a frequency, interpolated by a parabola; Hz.
+def find_peak_near(power: Real, step: float, frequency: float, within: float) -> float | None:
+    """Return the highest local maximum of a spectrum near a frequency, interpolated by a parabola; Hz.
 
     Parameters
     ----------

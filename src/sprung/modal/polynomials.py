@@ -13,11 +13,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from sprung.modal.identified import ModeSet
-from sprung.modal.residues import shapes_of
-from sprung.modal.selection import Task
-from sprung.modal.subspace import recurring
-from sprung.modal.thinning import Thinned, triangle
+from sprung.modal.decimation import DecimatedRecords, triangular_factor
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet
+from sprung.modal.shape_fit import fit_shapes
+from sprung.modal.subspace import poles_of_transition
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -31,10 +31,10 @@ _WEIGHINGS, _LEAST = 8, 1e-9
 
 _ROUNDING = 1e-12
 
-_RANK = 1e-15
+_RANK_TOLERANCE = 1e-15
 """Singular value, as a part of the largest, that is rounding."""
 
-_MORE = 3
+_OVERSIZE = 3
 """Times the lags that the order asks for: the ones too many take up noise."""
 
 
@@ -51,7 +51,7 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -63,26 +63,26 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
     ----------
     B. Peeters, H. Van der Auweraer, P. Guillaume and J. Leuridan, Shock Vib. 11 (2004) 395.
     """
-    task = Task.of(records, rate, order, "lscf")
-    thinned, channels = task.thinned, task.decays.channels
-    longest = max((thinned.shortest // 2 - 2) // (channels + 2), 1)
+    task = IdentificationTask.of(records, rate, order, "lscf")
+    decimated, channels = task.decimated, task.decays.channels
+    longest = max((decimated.shortest // 2 - 2) // (channels + 2), 1)
     task.allow(longest * channels)
-    lags = min(_MORE * -(-task.order // channels), longest)
+    lags = min(_OVERSIZE * -(-task.order // channels), longest)
     factors = []
-    for lines, transform in _transforms(thinned.records, thinned.step):
+    for lines, transform in _transforms(decimated.records, decimated.step):
         powers = lines[:, None] ** -np.arange(lags + 1)
         block = np.concatenate([powers[:, i : i + 1] * transform.T for i in range(lags + 1)], axis=1)
-        factors.append(_beside(powers[:, :-1], block))
+        factors.append(_eliminate(powers[:, :-1], block))
     stacked = np.vstack(factors)
     # A(z) begins with 1: the newest samples are what the delayed ones give, within the rank of the motion.
     left, singular, right = np.linalg.svd(stacked[:, channels:], full_matrices=False)
-    kept = slice(min(task.order, int(np.sum(singular > _RANK * singular[0]))))
+    kept = slice(min(task.order, int(np.sum(singular > _RANK_TOLERANCE * singular[0]))))
     inverse = (right[kept].T / singular[kept]) @ left[:, kept].T
     coefficients = (inverse @ stacked[:, :channels]).T
     companion = np.eye(lags * channels, k=-channels)
     companion[:channels] = coefficients
     seen = np.eye(channels, lags * channels)
-    return task.modes(recurring(companion, seen, thinned))
+    return task.modes(poles_of_transition(companion, seen, decimated))
 
 
 def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
@@ -100,7 +100,7 @@ def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | N
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -113,10 +113,10 @@ def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | N
     M. H. Richardson and D. L. Formenti, Proc. 1st Int. Modal Analysis Conf. (1982) 167; G. E. Forsythe, J. Soc. Ind. Appl.
     Math. 5 (1957) 74.
     """
-    task = Task.of(records, rate, order, "rfp")
-    thinned = task.thinned
-    task.allow(max(thinned.shortest // 2 - 2, 1) // 2)
-    lines = list(_on_the_axis(thinned))
+    task = IdentificationTask.of(records, rate, order, "rfp")
+    decimated = task.decimated
+    task.allow(max(decimated.shortest // 2 - 2, 1) // 2)
+    lines = list(_on_the_axis(decimated))
     weights = [np.ones(len(s)) for s, _ in lines]
     # Where several denominators fit exactly there is a smaller one.
     size = max(task.order + 1 - _exact(lines, weights, task.order), 1)
@@ -125,15 +125,15 @@ def rational_fractions(records: Sequence[ArrayLike], rate: float, order: int | N
         weights = [1 / np.maximum(size, _LEAST * size.max()) for size in sizes]
     z = (1 + poles) / (1 - poles)
     usable = (np.abs(z) > 1e-12) & ~((z.imag == 0) & (z.real < 0)) & (z.imag >= 0) & (np.abs(z) < 1)
-    exponent = np.log(z[usable].astype(complex)) / (thinned.step * thinned.every)
+    exponent = np.log(z[usable].astype(complex)) / (decimated.step * decimated.every)
     if not exponent.size:
         return ModeSet((), (), "rfp")
-    return task.modes(shapes_of(task.thinned, exponent))
+    return task.modes(fit_shapes(task.decimated, exponent))
 
 
-def _on_the_axis(thinned: Thinned) -> Iterator[tuple[Complex, Complex]]:
-    """Give the lines of all records on the imaginary axis of s, and their transforms."""
-    for lines, transform in _transforms(thinned.records, thinned.step):
+def _on_the_axis(decimated: DecimatedRecords) -> Iterator[tuple[Complex, Complex]]:
+    """Yield the lines of all records on the imaginary axis of s, and their transforms."""
+    for lines, transform in _transforms(decimated.records, decimated.step):
         s = (lines - 1) / (lines + 1)
         near = np.abs(s) < _FAR
         yield s[near], transform[:, near]
@@ -162,18 +162,18 @@ def _denominator(lines: list[tuple[Complex, Complex]], weights: list[Real], orde
 
 
 def _misfit(lines: list[tuple[Complex, Complex]], weights: list[Real], order: int) -> tuple[Real, Real]:
-    """Give what numerators leave of denominators in orthogonal polynomials, as R of its QR factorisation, and these."""
+    """Return the equations of the denominator with numerators eliminated, as R of the QR factorisation, and the recursion."""
     recursion = _orthogonal(lines[0][0], weights[0], order)[1]
     factors: list[Real] = []
     for (s, transform), weight in zip(lines, weights, strict=True):
         basis = _orthogonal(s, weight, order)[0]
         common = _continued(s, recursion) * weight[:, None]
-        factors.extend(_beside(basis, common * channel[:, None]) for channel in transform)
-    return triangle(np.vstack(factors)), recursion
+        factors.extend(_eliminate(basis, common * channel[:, None]) for channel in transform)
+    return triangular_factor(np.vstack(factors)), recursion
 
 
 def _transforms(records: Sequence[Real], step: int) -> Iterator[tuple[Complex, Complex]]:
-    """Give the lines z and the transform of every record, averaged over a lag; shapes (line,), (channel, line)."""
+    """Yield the lines z and the transform of every record, averaged over a lag; shapes (line,), (channel, line)."""
     for record in records:
         count = record.shape[1] // step
         means = record[:, : count * step].reshape(len(record), count, step).mean(axis=2)
@@ -184,8 +184,8 @@ def _transforms(records: Sequence[Real], step: int) -> Iterator[tuple[Complex, C
         yield lines[kept], transform[:, kept]
 
 
-def _beside(known: Complex, block: Complex) -> Real:
-    """Take off a block what some complex functions with real coefficients explain, and keep R of what remains.
+def _eliminate(known: Complex, block: Complex) -> Real:
+    """Eliminate complex functions with real coefficients from a block, and return R of the remainder.
 
     Parameters
     ----------
@@ -198,12 +198,12 @@ def _beside(known: Complex, block: Complex) -> Real:
         Shape (at most column, column): the same inner products as the block has beside the functions.
     """
     real = np.concatenate([np.vstack([part.real, part.imag]) for part in (known, block)], axis=1)
-    factor = triangle(real)
+    factor = triangular_factor(real)
     return factor[known.shape[1] :, known.shape[1] :]
 
 
 def _orthogonal(s: Complex, weight: Real, order: int) -> tuple[Complex, Real]:
-    """Give weighted polynomials of s up to an order that are orthonormal over the lines, and what they recur by.
+    """Return weighted polynomials of s up to an order, orthonormal over the lines, and their recursion.
 
     The recursion s p_k = Σ_i h_ik p_i (Arnoldi's) has real coefficients, as lines and their conjugates both count.
     """
@@ -233,7 +233,7 @@ def _continued(s: Complex, recursion: Real) -> Complex:
 
 
 def _roots(coefficients: Real, recursion: Real) -> Complex:
-    """Give the roots of Σ c_k p_k: eigenvalues of the recursion, closed by p_n = -Σ c_k p_k / c_n."""
+    """Return the roots of Σ c_k p_k: eigenvalues of the recursion, closed by p_n = -Σ c_k p_k / c_n."""
     order = recursion.shape[1]
     matrix = recursion[:order].T.copy()
     matrix[-1] -= recursion[order, -1] * coefficients[:order] / coefficients[order]

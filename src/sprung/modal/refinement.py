@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
-from sprung.modal.likelihood import Poles, Stand, scales
+from sprung.modal.likelihood import ModalObjective, Poles, unit_scales
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -24,7 +24,7 @@ _FIRMEST = 1e8
 
 def climb(
     decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _SETTLED, only: int | None = None
-) -> Stand:
+) -> ModalObjective:
     """Climb from given poles and shapes to the nearest summit of the likelihood.
 
     Parameters
@@ -45,39 +45,39 @@ def climb(
     Stand
         At the summit, channels weighted by the noise found there.
     """
-    stand = _weighted(Stand.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
+    objective = _weighted(ModalObjective.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
     damping = 1e-4
     for _ in range(steps):
-        free = stand.free if only is None else stand.pole_of(only)
-        information = stand.information[np.ix_(free, free)]
-        gradient = stand.gradient.ravel()[free]
-        scale = scales(np.diagonal(information).real)
+        free = objective.free if only is None else objective.pole_of(only)
+        information = objective.information[np.ix_(free, free)]
+        gradient = objective.gradient.ravel()[free]
+        scale = unit_scales(np.diagonal(information).real)
         scaled = information * scale[:, None] * scale
         better = None
         while better is None and damping < _FIRMEST:
             step = scale * np.linalg.solve(scaled + (damping + 1e-14) * np.eye(len(free)), scale * gradient)
             promised = float((step.conj() @ gradient).real)
             if promised < settled:
-                return stand
-            whole = np.zeros(stand.gradient.size, dtype=np.complex128)
+                return objective
+            whole = np.zeros(objective.gradient.size, dtype=np.complex128)
             whole[free] = step
-            moved = stand.moved(whole.reshape(stand.gradient.shape))
+            moved = objective.moved(whole.reshape(objective.gradient.shape))
             tried = None
             if _allowed(moved, decays):
-                tried = Stand.at(decays, moved, stand.weights)
-            if tried is not None and tried.cost < stand.cost:
+                tried = ModalObjective.at(decays, moved, objective.weights)
+            if tried is not None and tried.cost < objective.cost:
                 better = tried
                 damping = max(damping / 10, 1e-12)
             else:
                 damping *= 10
         if better is None:
-            return stand
-        stand = _weighted(better)
-    return stand
+            return objective
+        objective = _weighted(better)
+    return objective
 
 
-def _weighted(stand: Stand) -> Stand:
-    return stand.weighted(1 / stand.variance)
+def _weighted(objective: ModalObjective) -> ModalObjective:
+    return objective.weighted(1 / objective.variance)
 
 
 def _allowed(poles: Poles, decays: Decays) -> bool:

@@ -1,4 +1,4 @@
-"""Spectra of free decays: the noise below them, the band they fill, and their peaks."""
+"""Spectra of free decays: their noise floor and their band."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _LOWEST, _HIGHEST = 0.01, 0.95
 """Parts of the energy above the noise, in the mean over the channels, between which the band lies."""
 
 _CHANCE = 1e-3
-"""Chance that noise alone stands out anywhere, at one width."""
+"""Probability that noise alone exceeds the limit anywhere, at one width."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """Periodograms of several records, brought to one grid of frequencies.
+    """Periodograms of several records on one grid of frequencies.
 
     Attributes
     ----------
@@ -44,16 +44,16 @@ class Spectrum:
 
     @cached_property
     def floor(self) -> Real:
-        """Variance of each channel's noise, as the upper half of the band has it; shape (channel,)."""
+        """Variance of each channel's noise, from the upper half of the band; shape (channel,)."""
         upper = self.power[:, :, self.power.shape[2] // 2 :]
         return np.asarray(np.median(upper, axis=(0, 2)) / np.log(2))
 
     @cached_property
-    def standing_out(self) -> NDArray[np.bool_]:
-        """Which bins belong to a band, of any width, in which there is more than noise of that floor; shape (bin,)."""
+    def significant(self) -> NDArray[np.bool_]:
+        """Whether each bin belongs to a band, of any width, with more power than noise of that floor; shape (bin,)."""
         records, channels, bins = self.power.shape
         total = (self.power / np.maximum(self.floor, 1e-300)[:, None]).sum(axis=(0, 1))
-        total[0] = 0.0  # the mean was taken off
+        total[0] = 0.0  # the mean was subtracted
         sums = np.concatenate([[0.0], np.cumsum(total)])
         found, width = np.zeros(bins, dtype=np.bool_), 1
         while width <= bins:
@@ -68,14 +68,14 @@ class Spectrum:
 
     @cached_property
     def above(self) -> Real:
-        """Power above the noise where it stands out, that of each channel adding up to 1; shape (channel, bin)."""
+        """Power above the noise in the significant bins, with the sum 1 in each channel; shape (channel, bin)."""
         power = self.power.mean(axis=0)
-        above = np.maximum(power - self.floor[:, None], 0.0) * self.standing_out
+        above = np.maximum(power - self.floor[:, None], 0.0) * self.significant
         return np.asarray(above / np.maximum(above.sum(axis=1, keepdims=True), 1e-300))
 
     @cached_property
     def band(self) -> tuple[float, float]:
-        """Frequencies between which nearly all of the motion lies, Hz."""
+        """Frequency band of nearly all of the motion, Hz."""
         share = np.cumsum(self.above.mean(axis=0))
         if not share[-1] > 0:
             return float(self.frequency[1]), float(self.frequency[-1])

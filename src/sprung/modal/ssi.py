@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sprung.modal.identified import ModeSet
-from sprung.modal.selection import Task
-from sprung.modal.subspace import realised
-from sprung.modal.thinning import triangle
+from sprung.modal.decimation import triangular_factor
+from sprung.modal.identification_task import IdentificationTask
+from sprung.modal.mode_set import ModeSet
+from sprung.modal.subspace import realise_poles
 
 _ROWS = 300
 """Rows of past and future together at the most."""
@@ -29,7 +29,7 @@ def subspace_by_covariances(records: Sequence[ArrayLike], rate: float, order: in
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -41,11 +41,11 @@ def subspace_by_covariances(records: Sequence[ArrayLike], rate: float, order: in
     ----------
     B. Peeters and G. De Roeck, Mech. Syst. Signal Process. 13 (1999) 855, section 3.2.
     """
-    task = Task.of(records, rate, order, "ssi-cov")
+    task = IdentificationTask.of(records, rate, order, "ssi-cov")
     hankel, rows = _past_and_future(task)
     covariances = hankel[rows:] @ hankel[:rows].T
     left = np.linalg.svd(covariances, full_matrices=False)[0]
-    return task.modes(realised(left[:, : task.order], task.thinned))
+    return task.modes(realise_poles(left[:, : task.order], task.decimated))
 
 
 def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
@@ -58,7 +58,7 @@ def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | Non
 
     Returns
     -------
-    Modes
+    ModeSet
         Exact without noise, repeated and real poles too.
 
     Raises
@@ -70,16 +70,16 @@ def subspace_by_data(records: Sequence[ArrayLike], rate: float, order: int | Non
     ----------
     P. Van Overschee and B. De Moor, Automatica 29 (1993) 649; unweighted principal components.
     """
-    task = Task.of(records, rate, order, "ssi-data")
+    task = IdentificationTask.of(records, rate, order, "ssi-data")
     hankel, rows = _past_and_future(task)
-    lower = triangle(hankel.T).T
+    lower = triangular_factor(hankel.T).T
     left = np.linalg.svd(lower[rows:, :rows], full_matrices=False)[0]
-    return task.modes(realised(left[:, : task.order], task.thinned))
+    return task.modes(realise_poles(left[:, : task.order], task.decimated))
 
 
-def _past_and_future(task: Task) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], int]:
+def _past_and_future(task: IdentificationTask) -> tuple[np.ndarray[tuple[int, int], np.dtype[np.float64]], int]:
     """Stack past over future of all records, and count the rows of the past."""
-    thinned = task.thinned
-    rows = (thinned.shifted(_ROWS) + 1) // 2 * thinned.channels
-    task.allow(rows - thinned.channels)
-    return np.hstack(thinned.hankel(2 * (rows // thinned.channels) - 1)), rows
+    decimated = task.decimated
+    rows = (decimated.shifts_within(_ROWS) + 1) // 2 * decimated.channels
+    task.allow(rows - decimated.channels)
+    return np.hstack(decimated.hankel(2 * (rows // decimated.channels) - 1)), rows

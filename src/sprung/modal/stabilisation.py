@@ -1,4 +1,4 @@
-"""The stabilisation diagram: poles over the model's order, what stays, and why the rest does not."""
+"""The stabilisation diagram: poles over the order of the model, and which of them are stable."""
 
 from __future__ import annotations
 
@@ -11,36 +11,36 @@ from numpy.typing import ArrayLike, NDArray
 from sprung.display import shown
 from sprung.modal.criteria import modal_phase_collinearity
 from sprung.modal.decays import Decays
-from sprung.modal.identified import RejectedPole
-from sprung.modal.records import as_records
-from sprung.modal.subspace import Span
+from sprung.modal.mode_set import RejectedPole
+from sprung.modal.record_checks import check_records
+from sprung.modal.subspace import SignalSubspace
 from sprung.vibration import modal_assurance_criterion
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 HIGHEST_ORDER = 40
-"""Of the diagram, unless told otherwise."""
+"""Highest order of the diagram by default."""
 
 _LEAST_ORDERS = 4
-"""At which a pole must be there, however late it appears."""
+"""Orders at which a pole must be present, however late it appears."""
 
 
 @shown
 @dataclass(frozen=True)
 class StabilityCriteria:
-    """By how much a pole may change from one order to the next, and how long it must stay.
+    """Largest changes of a stable pole from one order to the next, and how many orders must have it.
 
     Attributes
     ----------
     frequency, damping
-        Of its frequency and damping ratio, as a part of them.
+        Largest change of frequency and damping ratio, as a part of them.
     similarity
         Least modal assurance criterion of its shape with the one before, dimensionless.
     coherence
         Least extended modal amplitude coherence, dimensionless.
     orders
-        Part of the orders, from its first one on, at which it must be there.
+        Part of the orders, from its first one on, at which it must be present.
     """
 
     frequency: float = 0.02
@@ -63,9 +63,9 @@ class DiagramPole:
     shape
         At the channels, largest entry 1.
     stable
-        Whether the order before has it too.
+        Whether the order before has the same pole.
     coherence
-        Extended modal amplitude coherence: how well its amplitude at the first block row foretells that at the last.
+        Extended modal amplitude coherence: how well its amplitude at the first block row predicts that at the last.
     collinearity
         Modal phase collinearity of its shape.
     """
@@ -79,8 +79,8 @@ class DiagramPole:
 
 
 @dataclass(frozen=True, eq=False)
-class Cluster:
-    """Poles of several orders that are one.
+class PoleCluster:
+    """Stable poles of successive orders.
 
     Attributes
     ----------
@@ -89,7 +89,7 @@ class Cluster:
     scatter
         Standard deviation over the orders, as a part of it.
     first, count
-        The order at which it first appears, and at how many it is there.
+        First order, and number of orders.
     """
 
     pole: complex
@@ -119,7 +119,7 @@ class StabilisationDiagram:
 
     orders: tuple[int, ...]
     poles: tuple[DiagramPole, ...]
-    chosen: tuple[Cluster, ...]
+    chosen: tuple[PoleCluster, ...]
     rejected: tuple[RejectedPole, ...]
     criteria: StabilityCriteria
 
@@ -127,7 +127,7 @@ class StabilisationDiagram:
 def stabilisation_diagram(
     records: Sequence[ArrayLike], rate: float, highest: int = HIGHEST_ORDER, criteria: StabilityCriteria | None = None
 ) -> StabilisationDiagram:
-    """Realise models of all even orders, and see which poles stay.
+    """Return the poles of models of all even orders, and those that are stable.
 
     Parameters
     ----------
@@ -138,28 +138,28 @@ def stabilisation_diagram(
     highest
         Order; less where the records do not allow it.
     criteria
-        When a pole counts as the one before, and a cluster as a mode.
+        For stable poles, and for clusters that are modes.
 
     Returns
     -------
-    Diagram
+    StabilisationDiagram
 
     Raises
     ------
     InputError
         If the records cannot be used.
     """
-    arrays = as_records(records, rate, "diagram")
-    span = Span.of(arrays, Decays.of(arrays, rate).spectrum)
+    arrays = check_records(records, rate, "diagram")
+    subspace = SignalSubspace.of(arrays, Decays.of(arrays, rate).spectrum)
     wanted = criteria or StabilityCriteria()
-    orders = tuple(range(2, min(highest, span.most) + 1, 2))
+    orders = tuple(range(2, min(highest, subspace.most) + 1, 2))
     chains: list[list[DiagramPole]] = []
     points: list[DiagramPole] = []
     before: list[tuple[DiagramPole, list[DiagramPole]]] = []
     for order in orders:
         now = []
-        for point in _poles(span, order, rate):
-            own, chain = _linked(point, before, wanted)
+        for point in _poles(subspace, order, rate):
+            own, chain = _link(point, before, wanted)
             if chain is None:
                 chain = []
                 chains.append(chain)
@@ -178,23 +178,23 @@ def stabilisation_diagram(
     return StabilisationDiagram(orders, tuple(points), tuple(chosen), tuple(rejected), wanted)
 
 
-def _poles(span: Span, order: int, rate: float) -> list[DiagramPole]:
-    """Give the poles of a model of some order."""
-    poles, channels = span.poles(order), span.thinned.channels
-    observability = span.left[:, :order]
+def _poles(subspace: SignalSubspace, order: int, rate: float) -> list[DiagramPole]:
+    """Return the poles of a model of some order."""
+    poles, channels = subspace.poles(order), subspace.decimated.channels
+    observability = subspace.left[:, :order]
     block = observability.shape[0] // channels - 1
-    lag = span.thinned.step * span.thinned.every
-    seen = poles.shapes / span.thinned.scale[:, None]
-    # What each mode puts into the first and into the last block row of the span.
+    lag = subspace.decimated.step * subspace.decimated.every
+    seen = poles.shapes / subspace.decimated.scale[:, None]
+    # The contributions of each mode to all block rows of the observability matrix.
     wide = np.vstack([seen * np.exp(poles.exponent * lag * i) for i in range(block + 1)])
     last = wide[-channels:]
     parts = observability @ (observability.T @ wide)
     found = []
     for j in range(poles.count):
-        there, foretold = parts[-channels:, j], last[:, j]
-        size = float(np.linalg.norm(there) * np.linalg.norm(foretold))
-        along = abs(complex(there.conj() @ foretold)) / size if size > 0 else 0.0
-        ratio = float(np.linalg.norm(there)) / max(float(np.linalg.norm(foretold)), 1e-300)
+        there, predicted = parts[-channels:, j], last[:, j]
+        size = float(np.linalg.norm(there) * np.linalg.norm(predicted))
+        along = abs(complex(there.conj() @ predicted)) / size if size > 0 else 0.0
+        ratio = float(np.linalg.norm(there)) / max(float(np.linalg.norm(predicted)), 1e-300)
         shape = poles.shapes[:, j]
         coherence = along * min(ratio, 1 / max(ratio, 1e-300))
         found.append(
@@ -205,10 +205,10 @@ def _poles(span: Span, order: int, rate: float) -> list[DiagramPole]:
     return found
 
 
-def _linked(
+def _link(
     point: DiagramPole, before: list[tuple[DiagramPole, list[DiagramPole]]], criteria: StabilityCriteria
 ) -> tuple[DiagramPole, list[DiagramPole] | None]:
-    """Find the pole of the order before that this one is, and the chain that one belongs to."""
+    """Return a pole and the chain of the same pole at the orders before, or None."""
     best, chain = np.inf, None
     for other, own in before:
         frequency = abs(abs(point.pole) / abs(other.pole) - 1)
@@ -224,20 +224,20 @@ def _linked(
 
 def _cluster(
     chain: list[DiagramPole], orders: Sequence[int], criteria: StabilityCriteria
-) -> tuple[Cluster, str | None]:
+) -> tuple[PoleCluster, str | None]:
     poles = np.array([one.pole for one in chain])
     middle = complex(np.median(poles.real), np.median(poles.imag))
     scatter = float(np.sqrt(np.mean(np.abs(poles - middle) ** 2)) / abs(middle))
     first = chain[0].order
     room = len([order for order in orders if order >= first])
-    cluster = Cluster(middle, scatter, first, len(chain))
+    cluster = PoleCluster(middle, scatter, first, len(chain))
     coherence = float(np.median([one.coherence for one in chain]))
     if middle.real >= 0:
         return cluster, f"it grows, by {middle.real:.2g} 1/s"
     if len(chain) < max(criteria.orders * room, min(_LEAST_ORDERS, len(orders))):
-        asked = f"{criteria.orders:.0%}, and at least {_LEAST_ORDERS}, are asked for"
-        return cluster, f"it is there at {len(chain)} of {room} orders from {first} on; {asked}"
+        asked = f"{criteria.orders:.0%}, and at least {_LEAST_ORDERS}, are required"
+        return cluster, f"it is present at {len(chain)} of {room} orders from {first} on; {asked}"
     if coherence < criteria.coherence:
-        said = f"its amplitude coherence is {coherence:.2f}; {criteria.coherence:g} is asked for"
-        return cluster, said
+        reason = f"its amplitude coherence is {coherence:.2f}; {criteria.coherence:g} is required"
+        return cluster, reason
     return cluster, None

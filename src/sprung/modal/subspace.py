@@ -1,4 +1,4 @@
-"""The span of a block Hankel matrix of all records: where the fit of poles and shapes starts, and how many stand out."""
+"""The signal subspace of the block Hankel matrix of all records: start of the fit, and number of poles above the noise."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.modal.decimation import DecimatedRecords, triangular_factor
 from sprung.modal.likelihood import Poles
 from sprung.modal.spectrum import Spectrum
-from sprung.modal.thinning import Thinned, triangle
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -18,21 +18,21 @@ Complex = NDArray[np.complex128]
 _ROWS = 150
 """Rows of the block Hankel matrix at the most."""
 
-_ABOVE = 1.3
-"""Times what white noise of a matrix without structure reaches."""
+_NOISE_FACTOR = 1.3
+"""Factor of the largest singular value of white noise."""
 
 _ROUNDING = 1e-12
 
-_STILL = 1e-6
-"""Change of the exponent over the longest record below which a pole is no motion."""
+_CONSTANT = 1e-6
+"""Change of the exponent over the longest record below which a pole is rejected as constant."""
 
 _GROWTH = 1.0
-"""Powers of e by which a motion may seem to grow over the longest record."""
+"""Powers of e by which a motion may appear to grow over the longest record."""
 
 
 @dataclass(frozen=True, eq=False)
-class Span:
-    """The span of delayed records, in the order of the energy they put into it.
+class SignalSubspace:
+    """Column space of the block Hankel matrix of all records, by singular value.
 
     Attributes
     ----------
@@ -43,44 +43,44 @@ class Span:
     singular
         Shape (direction,).
     noise
-        What noise alone may put into a direction.
+        Upper limit of a singular value of noise alone.
     """
 
-    thinned: Thinned
+    decimated: DecimatedRecords
     left: Real
     singular: Real
     noise: float
 
     @classmethod
-    def of(cls, records: Sequence[Real], spectrum: Spectrum) -> Span:
+    def of(cls, records: Sequence[Real], spectrum: Spectrum) -> SignalSubspace:
         """Decompose the block Hankel matrix of all records side by side."""
-        thinned = Thinned.of(records, spectrum)
-        hankel = thinned.hankel(thinned.shifted(_ROWS))
-        # Of each record only R of its QR factorisation is kept: the same span, and nothing grows with time.
-        factors = np.hstack([triangle(matrix.T).T for matrix in hankel])
-        left, singular, _ = np.linalg.svd(triangle(factors.T).T)
+        decimated = DecimatedRecords.of(records, spectrum)
+        hankel = decimated.hankel(decimated.shifts_within(_ROWS))
+        # Of each record only R of its QR factorisation is kept: the span is the same, its size independent of time.
+        factors = np.hstack([triangular_factor(matrix.T).T for matrix in hankel])
+        left, singular, _ = np.linalg.svd(triangular_factor(factors.T).T)
         columns = sum(matrix.shape[1] for matrix in hankel)
-        # Of white noise, with what the averages leave of it (the edge of Marchenko's and Pastur's law).
-        edge = (np.sqrt(columns) + np.sqrt(left.shape[0])) / np.sqrt(thinned.every)
-        return cls(thinned, left, singular, _ABOVE * float(edge))
+        # Largest singular value of averaged white noise (edge of the Marchenko-Pastur law).
+        edge = (np.sqrt(columns) + np.sqrt(left.shape[0])) / np.sqrt(decimated.every)
+        return cls(decimated, left, singular, _NOISE_FACTOR * float(edge))
 
     @property
     def most(self) -> int:
-        """The highest order that it allows."""
-        return min(int(self.left.shape[0]) - self.thinned.channels, int(self.left.shape[1]))
+        """Highest order."""
+        return min(int(self.left.shape[0]) - self.decimated.channels, int(self.left.shape[1]))
 
     @property
-    def standing_out(self) -> int:
-        """How many directions stand out from noise, and from rounding."""
+    def significant(self) -> int:
+        """Number of directions above noise and rounding."""
         return int(np.sum(self.singular > max(self.noise, _ROUNDING * float(self.singular[0]))))
 
     def poles(self, order: int) -> Poles:
-        """Give the poles that can be those of a free decay, and their shapes, of a system of some order."""
-        return realised(self.left[:, :order], self.thinned)
+        """Return poles and shapes of a system of some order, as far as a free decay can have them."""
+        return realise_poles(self.left[:, :order], self.decimated)
 
 
-def realised(observability: Real, thinned: Thinned, block: int | None = None) -> Poles:
-    """Give poles and shapes of what an observability matrix spans, those that can be of a free decay.
+def realise_poles(observability: Real, decimated: DecimatedRecords, block: int | None = None) -> Poles:
+    """Return poles and shapes of an observability matrix, as far as a free decay can have them.
 
     The shift from block row to block row is the transition matrix over a lag.
 
@@ -89,47 +89,47 @@ def realised(observability: Real, thinned: Thinned, block: int | None = None) ->
     observability
         Shape (block row · channel, order).
     thinned
-        The records it is of.
+        The records.
     block
-        Rows in a block row, the channels the first of them; just the channels unless given.
+        Rows in a block row, the channels first; the number of channels unless given.
     """
-    block = thinned.channels if block is None else block
+    block = decimated.channels if block is None else block
     transition = np.linalg.lstsq(observability[:-block], observability[block:], rcond=None)[0]
-    return recurring(np.asarray(transition, dtype=float), observability[: thinned.channels], thinned)
+    return poles_of_transition(np.asarray(transition, dtype=float), observability[: decimated.channels], decimated)
 
 
-def recurring(transition: Real, seen: Real, thinned: Thinned) -> Poles:
-    """Give poles and shapes of a state that recurs every lag, those that can be of a free decay.
+def poles_of_transition(transition: Real, observation: Real, decimated: DecimatedRecords) -> Poles:
+    """Return poles and shapes of a transition matrix, as far as a free decay can have them.
 
     Parameters
     ----------
     transition
         Of the state over a lag, shape (order, order).
-    seen
-        What the thinned channels see of the state, shape (channel, order).
+    observation
+        Observation matrix of the decimated channels, shape (channel, order).
     thinned
         The records.
     """
     z, vectors = np.linalg.eig(transition)
-    return vibrating(z, seen @ vectors, thinned, thinned.step)
+    return poles_of_recursion(z, observation @ vectors, decimated, decimated.step)
 
 
-def vibrating(z: Complex, shapes: Complex, thinned: Thinned, step: int = 1) -> Poles:
-    """Give poles from those of a recursion, without what no sampled decay can give: a negative real z, and growth.
+def poles_of_recursion(z: Complex, shapes: Complex, decimated: DecimatedRecords, step: int = 1) -> Poles:
+    """Return poles from those of a recursion, without those that no sampled decay has: a negative real z, and growth.
 
     Parameters
     ----------
     z
-        e^λ over so many samples of the thinned records, with conjugates; shape (pole,).
+        e^λ over so many samples of the decimated records, with conjugates; shape (pole,).
     shapes
-        At the thinned channels, shape (channel, pole).
+        At the decimated channels, shape (channel, pole).
     thinned
         The records.
     step
         How many.
     """
     usable = (np.abs(z) > 1e-12) & ~((z.imag == 0) & (z.real < 0)) & (z.imag >= 0)
-    exponent = np.log(z[usable].astype(complex)) / (step * thinned.every)
-    decaying = (exponent.real * thinned.longest < _GROWTH) & (np.abs(exponent) * thinned.longest > _STILL)
-    at_channels = thinned.scale[:, None] * shapes[:, usable]
+    exponent = np.log(z[usable].astype(complex)) / (step * decimated.every)
+    decaying = (exponent.real * decimated.longest < _GROWTH) & (np.abs(exponent) * decimated.longest > _CONSTANT)
+    at_channels = decimated.scale[:, None] * shapes[:, usable]
     return Poles.of(exponent[decaying], at_channels[:, decaying].astype(np.complex128))

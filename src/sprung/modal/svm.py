@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
 from sprung.errors import Problems
-from sprung.modal.records import as_records
+from sprung.modal.record_checks import check_records
 from sprung.vibration import Mode, make_modes
 
 Real = NDArray[np.float64]
@@ -20,7 +20,7 @@ Complex = NDArray[np.complex128]
 @shown
 @dataclass(frozen=True, eq=False)
 class StateVariableFit:
-    """What the State Variable Method finds.
+    """Result of the State Variable Method.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class StateVariableFit:
 
 
 def state_matrix(poles: ArrayLike, shapes: ArrayLike) -> Real:
-    """Put the state matrix together from its poles and shapes, eq. (12).
+    """Return the state matrix with given poles and shapes, eq. (12).
 
     Eq. (12) writes the poles as seven and their conjugates; here all 2n stand in one list, so that the real poles of
     overdamped modes have their place.
@@ -95,7 +95,7 @@ def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 
 
     Returns
     -------
-    StateVariables
+    StateVariableFit
 
     Raises
     ------
@@ -110,7 +110,7 @@ def state_variable_method(records: Sequence[ArrayLike], rate: float, lag: int = 
     ----------
     Zhang and Hayama's State Variable Method as given in section 2.2 of the paper.
     """
-    arrays = as_records(records, rate, "svm")
+    arrays = check_records(records, rate, "svm")
     channels = arrays[0].shape[0]
     equations = sum(max(record.shape[1] - 2 * lag, 0) for record in arrays)
     problems = Problems()

@@ -1,11 +1,11 @@
-"""How sure poles and shapes are that make the records likeliest."""
+"""Uncertainty of maximum likelihood poles and shapes."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.modal.likelihood import Stand, inverse_information
+from sprung.modal.likelihood import ModalObjective, invert_information
 from sprung.vibration import ModeUncertainty
 
 Real = NDArray[np.float64]
@@ -18,48 +18,50 @@ _SIGNIFICANT = 3.0
 """Standard errors by which an excess must be real before it counts."""
 
 
-def spreads(stand: Stand, disagreement: float) -> tuple[ModeUncertainty, ...]:
-    """Give the covariances of all modes: the inverse of the Fisher information, enlarged where the residuals are not white.
+def mode_uncertainties(objective: ModalObjective, disagreement: float) -> tuple[ModeUncertainty, ...]:
+    """Return the covariances of all modes: the inverse of the Fisher information, enlarged where the residuals are not white.
 
     Parameters
     ----------
     stand
-        At the summit of the likelihood.
+        At the maximum of the likelihood.
     disagreement
-        Variance by which pieces of the records differ, in units of what noise alone would make them; 1 for none.
+        Square of the Birge ratio of parts of the records; 1 where they agree.
 
     Returns
     -------
-    tuple of Spread
+    tuple of ModeUncertainty
         In the order of the poles.
     """
-    samples = stand.decays.numbers
-    # Degrees of freedom: what all of the fit takes up, spread over the channels.
-    lost = samples / max(samples - stand.parameters / stand.decays.channels, 1.0)
-    return bounds(stand, _colour_of_modes(stand) + disagreement - 1, lost)
+    samples = objective.decays.sample_count
+    # Degrees of freedom: the parameters of the fit are distributed over the channels.
+    lost = samples / max(samples - objective.parameters / objective.decays.channels, 1.0)
+    return cramer_rao_bounds(objective, _colour_of_modes(objective) + disagreement - 1, lost)
 
 
-def bounds(stand: Stand, excess: Real | None = None, lost: float = 1.0) -> tuple[ModeUncertainty, ...]:
-    """Give the Cramér-Rao bound of all modes: at true poles, shapes and noise, what no unbiased estimate can better.
+def cramer_rao_bounds(
+    objective: ModalObjective, excess: Real | None = None, lost: float = 1.0
+) -> tuple[ModeUncertainty, ...]:
+    """Return the Cramér-Rao bound of all modes: the least covariance of any unbiased estimate, at true poles, shapes and noise.
 
     Parameters
     ----------
     stand
         Poles, shapes and, in its weights, the noise of the channels.
     excess
-        By which to enlarge the variances of each mode, shape (mode,); by nothing unless given.
+        Factor of the variances of each mode, shape (mode,); 1 unless given.
     lost
-        By which the noise is larger than the weights have it.
+        Factor of the noise variance for lost degrees of freedom.
 
     Returns
     -------
-    tuple of Spread
+    tuple of ModeUncertainty
         In the order of the poles.
     """
-    size, count, channels = stand.shapes.shape[1], stand.poles.count, stand.decays.channels
-    covariance = stand.covariance.reshape(channels + 1, size, channels + 1, size)
+    size, count, channels = objective.shapes.shape[1], objective.poles.count, objective.decays.channels
+    covariance = objective.covariance.reshape(channels + 1, size, channels + 1, size)
     conjugate = np.arange(count)
-    conjugate[stand.poles.paired] = count + np.arange(len(stand.poles.paired))
+    conjugate[objective.poles.paired] = count + np.arange(len(objective.poles.paired))
     factors, every = np.ones(count) if excess is None else excess, np.arange(channels + 1)
     found = []
     for j, other in enumerate(conjugate.tolist()):
@@ -67,13 +69,13 @@ def bounds(stand: Stand, excess: Real | None = None, lost: float = 1.0) -> tuple
         parts = _parts(own, across if other != j else own) * (factors[j] * lost)
         entries = np.sqrt(np.maximum(parts[:-1, [0, 1], [0, 1]], 0.0))
         found.append(
-            ModeUncertainty(parts[-1] * stand.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j]))
+            ModeUncertainty(parts[-1] * objective.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j]))
         )
     return tuple(found)
 
 
-def bound_alone(stand: Stand, which: int) -> ModeUncertainty:
-    """Give the bound of one mode's pole, everything but amplitudes and offsets being known.
+def pole_bound(objective: ModalObjective, which: int) -> ModeUncertainty:
+    """Return the Cramér-Rao bound of one mode's pole, with only amplitudes and offsets unknown besides.
 
     Parameters
     ----------
@@ -82,10 +84,10 @@ def bound_alone(stand: Stand, which: int) -> ModeUncertainty:
     which
         The mode, which vibrates.
     """
-    free = stand.pole_of(which)
-    covariance = inverse_information(stand.information[np.ix_(free, free)])
-    pole = _parts(covariance[:1, 0].real, covariance[:1, 1])[0] * stand.decays.rate**2
-    return ModeUncertainty(pole, np.zeros(stand.decays.channels, dtype=np.complex128))
+    free = objective.pole_of(which)
+    covariance = invert_information(objective.information[np.ix_(free, free)])
+    pole = _parts(covariance[:1, 0].real, covariance[:1, 1])[0] * objective.decays.rate**2
+    return ModeUncertainty(pole, np.zeros(objective.decays.channels, dtype=np.complex128))
 
 
 def _parts(own: Real, across: Complex) -> Real:
@@ -101,17 +103,17 @@ def _parts(own: Real, across: Complex) -> Real:
     return np.asarray((vectors * np.maximum(eigenvalues, 0.0)[:, None, :]) @ np.swapaxes(vectors, 1, 2), dtype=float)
 
 
-def _colour_of_modes(stand: Stand) -> Real:
-    """Give by how much the residuals' spectrum around each mode exceeds its mean; at least 1, shape (mode,).
+def _colour_of_modes(objective: ModalObjective) -> Real:
+    """Return the ratio of the residuals' spectrum around each mode to its mean; at least 1, shape (mode,).
 
-    What a mode's pole and shape take from the noise lies in its own band. Channels count as they tell of the mode.
+    The noise that disturbs a mode's pole and shape lies in the band of the mode. Channels are weighted by their information.
     """
-    spectrum = stand.left_spectrum
+    spectrum = objective.residual_spectrum
     power = spectrum.power.mean(axis=0)
-    # The spectrum of what is only rounding is no noise's: nothing follows from its colour.
-    relative = power / np.maximum(power[:, 1:].mean(axis=1), stand.least_variance)[:, None]
-    poles = stand.poles.exponent * stand.decays.rate / (2 * np.pi)
-    shares = np.abs(stand.poles.shapes) ** 2 * stand.weights[:, None]
+    # The spectrum of rounding errors is not that of noise: its colour has no meaning.
+    relative = power / np.maximum(power[:, 1:].mean(axis=1), objective.least_variance)[:, None]
+    poles = objective.poles.exponent * objective.decays.rate / (2 * np.pi)
+    shares = np.abs(objective.poles.shapes) ** 2 * objective.weights[:, None]
     shares /= shares.sum(axis=0)
     bin_width = float(spectrum.frequency[1])
     found = np.ones(len(poles))
@@ -119,7 +121,7 @@ def _colour_of_modes(stand: Stand) -> Real:
         half = max(_BANDWIDTH * abs(pole.real), _BINS * bin_width)
         inside = (np.abs(spectrum.frequency - pole.imag) <= half) & (spectrum.frequency > 0)
         excess = float(shares[:, j] @ relative[:, inside].mean(axis=1))
-        independent = stand.decays.count * inside.sum() / float((shares[:, j] ** 2).sum())
+        independent = objective.decays.count * inside.sum() / float((shares[:, j] ** 2).sum())
         if excess > 1 + _SIGNIFICANT / np.sqrt(independent):
             found[j] = excess
     return found

@@ -14,7 +14,8 @@ from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Problems
 from sprung.modal import DEFAULT_METHOD
-from sprung.modal_survey.identified import LoadModes, modal_analysis
+from sprung.modal_survey.load_modes import LoadModes
+from sprung.modal_survey.modal_analysis import modal_analysis
 from sprung.modal_survey.recordings import RECORDINGS, is_recordings, modes_of_arrays, modes_of_recordings
 from sprung.preprocess import FreeDecay, prepare
 from sprung.progress import Progress, silent
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 Real = NDArray[np.float64]
 
 _SEVERAL = 3
-"""Dimensions of an array that holds several decays."""
+"""Dimensions of an array of several decays."""
 
 
 @shown
@@ -40,14 +41,14 @@ class ModesByLoad(NamedValues[LoadModes]):
 
         columns = ("frequency", "frequency_std", "damped_frequency", "damping_ratio", "damping_ratio_std", "status")
         rows = [
-            (load, mode.name, *(getattr(mode, one) for one in columns))
-            for load, found in self.items()
-            for mode in found
+            (load, mode.name, *(getattr(mode, column) for column in columns))
+            for load, modes_of_load in self.items()
+            for mode in modes_of_load
         ]
         return pd.DataFrame(rows, columns=["load", "mode", *columns]).set_index(["load", "mode"])
 
     def _repr_html_(self) -> str:
-        """Show them in a notebook."""
+        """Return the tables for a notebook."""
         return "".join(modes.table(load).html() for load, modes in self.items())
 
 
@@ -63,7 +64,7 @@ def modes(
     diagram: bool = False,
     progress: Progress = silent,
 ) -> ModesByLoad:
-    """Find modes from free decays; no vehicle model is needed.
+    """Identify modes from free decays; no vehicle model is needed.
 
     Parameters
     ----------
@@ -72,21 +73,21 @@ def modes(
         folder of nothing but recordings: the modes common to them. Or an array of shape (channel, time), or several, in any
         unit: one free decay each.
     method
-        One of `sprung.modal.METHODS`; ``ml``, the default, fits poles and shapes to all drops of a load at once and gives
-        every number its uncertainty.
+        One of `sprung.modal.METHODS`; ``ml``, the default, fits poles and shapes to all drops of a load by maximum likelihood,
+        with uncertainties.
     order
-        Number of poles to look for; the method chooses unless it is given.
+        Number of poles; chosen by the method unless given.
     rate
         Of arrays: samples per second.
     channels
         Of arrays: names of the channels.
     start
-        Of recordings and arrays: where the free decay begins, s; unless given, at a recording's largest reading, and at an
-        array's first sample.
+        Of recordings and arrays: start of the free decay, s; unless given, a recording's largest reading, and an array's first
+        sample.
     amplitude
-        Whether to follow each mode through the decays, for frequency and damping against amplitude.
+        Whether to identify frequency and damping of each mode against amplitude.
     diagram
-        Whether to draw up a stabilisation diagram beside it.
+        Whether to compute a stabilisation diagram too.
     progress
         Called with each step that begins.
 
@@ -94,8 +95,8 @@ def modes(
     -------
     ModesByLoad
         A dict by load, lowest frequency first; of recordings and arrays by the one key ``recordings``, their modes numbered and
-        in the unit of the channels. Otherwise they are named by the shapes at the sensors: one of `sprung.modal.MODE_NAMES`, or
-        ``unnamed``.
+        in the unit of the channels. The modes of a campaign are named by their shapes at the sensors: one of
+        `sprung.vibration.MODE_NAMES`, or ``unnamed``.
 
     Raises
     ------
@@ -117,13 +118,13 @@ def modes(
             arrays, rate, method, order, channels=channels, start=start, amplitude=amplitude, diagram=diagram
         )
         return ModesByLoad({RECORDINGS: in_memory})
-    _refuse("arrays", rate=rate, channels=channels)
+    _check_not_given("arrays", rate=rate, channels=channels)
     if not isinstance(source, Campaign) and is_recordings(source):
-        found = modes_of_recordings(
+        recorded = modes_of_recordings(
             source, method, order, start=start, amplitude=amplitude, diagram=diagram, progress=progress
         )
-        return ModesByLoad({RECORDINGS: found})
-    _refuse("arrays and recordings", start=start)
+        return ModesByLoad({RECORDINGS: recorded})
+    _check_not_given("arrays and recordings", start=start)
     campaign = resolve_campaign(source, progress)
     decays = prepare(campaign, progress).decays
     if not decays:
@@ -138,12 +139,12 @@ def modes(
     return by_load
 
 
-def _refuse(only: str, **given: object) -> None:
-    """Refuse what only some sources need."""
+def _check_not_given(sources: str, **given: object) -> None:
+    """Raise an error for arguments that only some sources need."""
     problems = Problems()
     for name, value in given.items():
         if value is not None:
-            problems.add(f"modes: {name}", repr(value), f"nothing: it is for {only}", f"Leave {name} out.")
+            problems.add(f"modes: {name}", repr(value), f"nothing: it is for {sources}", f"Leave {name} out.")
     problems.raise_if_any()
 
 
@@ -156,11 +157,11 @@ def _modes_of(
     diagram: bool,
     progress: Progress,
 ) -> LoadModes:
-    # Records of another rate, or channels that one drop lacks, cannot stand in the same matrix.
+    # One matrix holds records of one rate, and channels that all drops have.
     rate = Counter(decay.rate for decay in decays).most_common(1)[0][0]
-    same = [decay for decay in decays if decay.rate == rate]
-    usable = np.logical_and.reduce([decay.usable for decay in same])
-    records = [decay.values[usable] - _level(decay)[usable, None] for decay in same]
+    chosen = [decay for decay in decays if decay.rate == rate]
+    usable = np.logical_and.reduce([decay.usable for decay in chosen])
+    records = [decay.values[usable] - _offset(decay)[usable, None] for decay in chosen]
     sensors = [sensor for sensor, used in zip(campaign.sensors, usable, strict=True) if used]
     a = campaign.known.get("a")
     return modal_analysis(
@@ -169,7 +170,7 @@ def _modes_of(
         method,
         order,
         tuple(sensor.channel for sensor in sensors),
-        tuple(decay.name for decay in same),
+        tuple(decay.name for decay in chosen),
         sensors=sensors,
         a=a.value if a is not None else None,
         amplitude=amplitude,
@@ -179,6 +180,6 @@ def _modes_of(
     )
 
 
-def _level(decay: FreeDecay) -> Real:
-    """Give the offset of each channel: its reading at rest, or where there was none its mean; shape (channel,)."""
+def _offset(decay: FreeDecay) -> Real:
+    """Return the offset of each channel: its reading at rest, or its mean where there was none; shape (channel,)."""
     return np.where(np.isnan(decay.rest.level), decay.values.mean(axis=1), decay.rest.level)

@@ -1,4 +1,4 @@
-"""Modes of recordings alone: no campaign file, no vehicle, nothing but channels and a clock."""
+"""Modes of recordings and arrays alone, without a campaign file or a vehicle."""
 
 from __future__ import annotations
 
@@ -13,28 +13,29 @@ from numpy.typing import NDArray
 from sprung.campaign import CAMPAIGN_FILE
 from sprung.drafting import detect_drops
 from sprung.errors import Problems
-from sprung.formats import Table, read_table
-from sprung.modal_survey.identified import LoadModes, modal_analysis
+from sprung.formats import SampleTable, read_table
+from sprung.modal_survey.load_modes import LoadModes
+from sprung.modal_survey.modal_analysis import modal_analysis
 from sprung.progress import Progress, counted, silent
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
 
 Real = NDArray[np.float64]
 
 RECORDINGS = "recordings"
-"""What stands where a campaign has the name of a load."""
+"""Key of the modes, in place of the name of a load."""
 
 _OTHER_FILES = frozenset({".toml", ".json", ".md", ".html", ".svg", ".png", ".npz", ".py"})
 
-_MAY_HOP = 0.125
-"""s after the landing in which a tyre may leave the ground once more: a period of the slowest usual wheel hop, 8 Hz. Nothing
-says which channel is on a wheel."""
+_HOP_TIME = 0.125
+"""s after the landing in which a tyre may leave the ground once more: a period of the slowest usual wheel hop, 8 Hz. It is not
+known which channel is on a wheel."""
 
-_STEADY = 0.01
-"""Part of the sampling interval by which it may vary: a clock that does so more is none for a fit."""
+_LARGEST_JITTER = 0.01
+"""Largest variation of the sampling interval, as a part of it, of a recording that is fitted."""
 
 
 def is_recordings(path: str | os.PathLike[str]) -> bool:
-    """Say whether a path is a recording or a folder of them, and no campaign.
+    """Return whether a path is a recording or a folder of them, and no campaign.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def is_recordings(path: str | os.PathLike[str]) -> bool:
 
 
 def recordings_in(place: Path) -> list[Path]:
-    """Give the files that may be recordings: one file itself, or those in a folder."""
+    """Return the files that may be recordings: one file itself, or those in a folder."""
     files = sorted(place.iterdir()) if place.is_dir() else [place]
     return [
         file
@@ -69,7 +70,7 @@ def modes_of_recordings(
     diagram: bool,
     progress: Progress = silent,
 ) -> LoadModes:
-    """Find the modes common to free decays that nothing is known of but their recordings.
+    """Identify the modes common to the free decays of recordings.
 
     Parameters
     ----------
@@ -78,26 +79,26 @@ def modes_of_recordings(
     method, order, amplitude, diagram
         As for `modes`.
     start
-        Where the free decay begins, s on the files' own clock. Unless given, after the landing of each drop that is found in a
-        recording, as `check` finds it; in a recording without a drop at its largest reading.
+        Start of the free decay, s on the files' own clock. Unless given, after the landing of each drop that is detected in a
+        recording, as by `check`; in a recording without a drop at its largest reading.
     progress
         Called with each step that begins.
 
     Returns
     -------
     LoadModes
-        Modes are numbered. Channels keep their unit, but for accelerations, which come in m/s².
+        Modes are numbered. Channels keep their unit, except accelerations, which are in m/s².
 
     Raises
     ------
     InputError
-        If a file cannot be read, or they do not go together; every problem at once.
+        If a file cannot be read, or channels or rates differ; every problem at once.
     """
     problems = Problems()
-    tables: list[tuple[Path, Table]] = []
+    tables: list[tuple[Path, SampleTable]] = []
     files = recordings_in(Path(path))
     for file in counted(progress, "reading the recordings", files):
-        with problems.collecting():
+        with problems.collect():
             tables.append((file, read_table(file)))
     problems.raise_if_any()
     if not tables:
@@ -129,7 +130,7 @@ def modes_of_recordings(
             decay = values[:, begin:end]
             if not np.isfinite(decay).all():
                 bad = int((~np.isfinite(decay)).sum())
-                do = "Leave them out, or mend the file."
+                do = "Leave them out, or repair the file."
                 problems.add(file.name, f"{bad} cells that are not numbers", "numbers", do)
             records.append(decay)
             names.append(file.stem if len(spans) == 1 else f"{file.stem} from {table.time[begin]:.3f} s")
@@ -158,7 +159,7 @@ def modes_of_arrays(
     amplitude: bool,
     diagram: bool,
 ) -> LoadModes:
-    """Find the modes common to free decays in memory.
+    """Identify the modes common to free decays in memory.
 
     Parameters
     ----------
@@ -171,7 +172,7 @@ def modes_of_arrays(
     channels
         Names; ``channel 1`` and so on unless given.
     start
-        Where the free decay begins, s from the first sample; 0 unless given.
+        Start of the free decay, s from the first sample; 0 unless given.
 
     Returns
     -------
@@ -181,23 +182,23 @@ def modes_of_arrays(
     Raises
     ------
     InputError
-        If the arrays do not go together, or the rate is missing; every problem at once.
+        If the arrays cannot be used together, or the rate is missing; every problem at once.
     """
     problems = Problems()
     if rate is None or not (math.isfinite(rate) and rate > 0):
         found = "nothing" if rate is None else f"{rate:g}"
         problems.add("modes: rate", found, "samples per second", "Give rate = ... of the array.")
-    given = [np.asarray(one, dtype=float) for one in arrays]
-    for number, one in enumerate(given, start=1):
+    decays = [np.asarray(array, dtype=float) for array in arrays]
+    for number, decay in enumerate(decays, start=1):
         where = f"modes: array {number}"
-        if one.ndim != 2 or one.shape[0] < 2 or one.shape[1] <= one.shape[0]:
+        if decay.ndim != 2 or decay.shape[0] < 2 or decay.shape[1] <= decay.shape[0]:
             expected = "(channel, time), with two channels or more and more samples than channels"
-            problems.add(where, f"shape {one.shape}", expected, "Transpose it, or give all channels.")
-        elif not np.isfinite(one).all():
-            bad = int((~np.isfinite(one)).sum())
+            problems.add(where, f"shape {decay.shape}", expected, "Transpose it, or give all channels.")
+        elif not np.isfinite(decay).all():
+            bad = int((~np.isfinite(decay)).sum())
             problems.add(where, f"{bad} values that are not finite", "numbers", "Leave those channels or samples out.")
-    counts = {one.shape[0] for one in given}
-    if not given:
+    counts = {decay.shape[0] for decay in decays}
+    if not decays:
         problems.add("modes", "no array", "at least one", "Give an array of shape (channel, time).")
     elif len(counts) > 1:
         problems.add(
@@ -208,23 +209,23 @@ def modes_of_arrays(
     problems.raise_if_any()
     assert rate is not None  # noqa: S101 (checked above; for the type checker)
     begin = round((start or 0.0) * rate)
-    records = [one[:, begin:] for one in given]
-    named = tuple(channels or (f"channel {i + 1}" for i in range(given[0].shape[0])))
+    records = [decay[:, begin:] for decay in decays]
+    named = tuple(channels or (f"channel {i + 1}" for i in range(decays[0].shape[0])))
     numbers = tuple(f"array {i + 1}" for i in range(len(records)))
     return modal_analysis(records, rate, method, order, named, numbers, amplitude=amplitude, diagram=diagram)
 
 
-def _rate(file: Path, table: Table, problems: Problems) -> float:
+def _rate(file: Path, table: SampleTable, problems: Problems) -> float:
     steps = np.diff(table.time)
     step = float(np.median(steps)) if len(steps) else 0.0
-    if not step > 0 or float(np.abs(steps - step).max()) > _STEADY * step:
-        problems.add(file.name, "a clock that is not steady", "equal steps of time", "Resample the recording.")
+    if not step > 0 or float(np.abs(steps - step).max()) > _LARGEST_JITTER * step:
+        problems.add(file.name, "an uneven sampling interval", "equal sampling intervals", "Resample the recording.")
         return 1.0
     return (len(steps)) / float(table.time[-1] - table.time[0])
 
 
 def _factor(unit: str | None) -> float:
-    """Give what brings an acceleration to m/s²; everything else stays as it is."""
+    """Return the factor of an acceleration to m/s²; 1 for any other quantity."""
     try:
         return 1.0 if unit is None else acceleration_factor(unit)
     except ValueError:
@@ -232,20 +233,20 @@ def _factor(unit: str | None) -> float:
 
 
 def _decays(values: Real, rate: float, time: Real) -> list[tuple[int, int | None]]:
-    """Give first and last sample of each free decay: after each drop's landing, or without a drop from the largest reading."""
-    # Files that name no unit are as often in g as in m/s².
+    """Return first and last sample of each free decay: after the landing of each drop, or from the largest reading."""
+    # Files without a unit are as often in g as in m/s².
     for factor in (1.0, STANDARD_GRAVITY):
         if found := detect_drops([(0, factor * values)], rate, start=float(time[0])).drops:
             break
     else:
         return [(_begin(values), None)]
-    spans = [np.searchsorted(time, (drop.landing + _MAY_HOP, drop.end)).tolist() for drop in found]
+    spans = [np.searchsorted(time, (drop.landing + _HOP_TIME, drop.end)).tolist() for drop in found]
     return [(begin, end + 1) for begin, end in spans]
 
 
 def _begin(values: Real) -> int:
-    """Give the sample of the largest reading, each channel counted in its own size."""
-    off = values - np.nanmedian(values, axis=1, keepdims=True)
-    size = np.sqrt(np.nanmean(off**2, axis=1, keepdims=True))
-    weighed: Sequence[float] = np.nansum((off / np.where(size > 0, size, 1.0)) ** 2, axis=0).tolist()
-    return int(np.argmax(weighed))
+    """Return the sample of the largest reading, with each channel divided by its root-mean-square."""
+    deviation = values - np.nanmedian(values, axis=1, keepdims=True)
+    size = np.sqrt(np.nanmean(deviation**2, axis=1, keepdims=True))
+    power: Sequence[float] = np.nansum((deviation / np.where(size > 0, size, 1.0)) ** 2, axis=0).tolist()
+    return int(np.argmax(power))

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 from sprung.tables import Table, with_std
 
 if TYPE_CHECKING:
-    from sprung.modal_survey.identified import IdentifiedMode
+    from sprung.modal_survey.load_modes import IdentifiedMode
 
 
-def found_modes_table(load: str, method: str, drops: int, modes: Sequence[IdentifiedMode]) -> Table:
-    """Show modes that were found without a vehicle model.
+def identified_modes_table(load: str, method: str, drops: int, modes: Sequence[IdentifiedMode]) -> Table:
+    """Return the table of modes that were identified without a vehicle model.
 
     Parameters
     ----------
     load
-        Its name.
+        Name of the load.
     method, drops
-        By which they were found, in how many drops.
+        Name of the method, and number of drops.
     modes
         The modes.
 
@@ -29,21 +29,21 @@ def found_modes_table(load: str, method: str, drops: int, modes: Sequence[Identi
     """
     headers = ("mode", "f_n Hz", "± Hz", "f_d Hz", "damping", "±", "MPC")
     title = f"Modes, {load} ({method}, {drops} drop{'s' * (drops > 1)})"
-    return Table(title, headers, tuple(map(_found, modes)), frozenset(headers[1:]), ("MPC", "f_d Hz"))
+    return Table(title, headers, tuple(map(_cells, modes)), frozenset(headers[1:]), ("MPC", "f_d Hz"))
 
 
-def _found(mode: IdentifiedMode) -> tuple[str, ...]:
+def _cells(mode: IdentifiedMode) -> tuple[str, ...]:
     if mode.status == "unresolved":
         return (mode.name, f"~{mode.frequency:.2g}", "-", "-", "-", "-", "-")
     return (
         mode.name,
-        *_told(mode.frequency, mode.frequency_std),
+        *_rounded(mode.frequency, mode.frequency_std),
         f"{mode.damped_frequency:.4f}",
-        *_told(mode.damping_ratio, mode.damping_ratio_std),
+        *_rounded(mode.damping_ratio, mode.damping_ratio_std),
         f"{mode.collinearity:.2f}",
     )
 
 
-def _told(value: float, std: float | None) -> tuple[str, str]:
-    """Round by the uncertainty; a method that tells none gets four digits."""
+def _rounded(value: float, std: float | None) -> tuple[str, str]:
+    """Return value and uncertainty as text; four decimals where the method gives no uncertainty."""
     return (f"{value:.4f}", "-") if std is None else with_std(value, std)

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Campaign
+from sprung.campaign import DEFAULT_HEIGHT, Campaign
 from sprung.estimation import parameters_from_matrices
 from sprung.modal import state_variable_method
 from sprung.paper.added_mass import added_mass
 from sprung.preprocess import prepare
-from sprung.simulation import DEFAULT_HEIGHT, drop_from_blocks, half_sine_bumps, simulate
+from sprung.simulation import drop_from_blocks, half_sine_bumps, simulate
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel
 

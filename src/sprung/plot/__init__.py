@@ -1,6 +1,6 @@
-"""The pictures of the report as matplotlib figures, for notebooks and papers: axes in, axes out.
+"""The figures of the report with matplotlib, for notebooks and publications.
 
-Every function draws into the axes that it is given, or into a figure of its own, and returns the axes it drew into.
+Every function draws into given axes, or into a new figure, and returns the axes.
 
 Examples
 --------
@@ -14,9 +14,9 @@ Examples
 """
 
 try:
-    import matplotlib as _mpl  # noqa: F401, ICN001 (asked for here, so that its absence is told in words)
+    import matplotlib as _mpl  # noqa: F401, ICN001 (its absence is reported here)
 except ImportError as _error:
-    raise ImportError('sprung.plot draws with matplotlib, which is missing: pip install "sprung[plot]"') from _error
+    raise ImportError('sprung.plot needs matplotlib, which is not installed: pip install "sprung[plot]"') from _error
 
 from sprung.plot.drops import fit, recording
 from sprung.plot.modal import mode, spectra, stabilisation

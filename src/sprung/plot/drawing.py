@@ -1,4 +1,4 @@
-"""A picture drawn into matplotlib axes."""
+"""Pictures of the report in matplotlib axes."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from sprung.errors import InputError, Problem, did_you_mean
 from sprung.report import LIGHT, Band, Curve, Mark, Panel, Picture, Points, Rule
 
 _WIDTH, _HEIGHT = 7.0, 1.5
-"""inches: of a figure, and of a panel of height 1."""
+"""Width of a figure, and height of a panel of relative height 1, inches."""
 
-_AROUND = 0.9
-"""inches above and below the panels."""
+_MARGINS = 0.9
+"""Height above and below the panels, inches."""
 
 
-def drawn(picture: Picture, axes: Iterable[Axes] | None = None) -> tuple[Axes, ...]:
+def draw(picture: Picture, axes: Iterable[Axes] | None = None) -> tuple[Axes, ...]:
     """Draw a picture.
 
     Parameters
     ----------
     picture
-        What it shows.
+        Any.
     axes
-        One for each of its panels; a figure of its own unless given.
+        One for each of its panels; a new figure unless given.
 
     Returns
     -------
@@ -39,45 +39,43 @@ def drawn(picture: Picture, axes: Iterable[Axes] | None = None) -> tuple[Axes, .
     InputError
         If there are not as many axes as panels.
     """
-    own = _own_axes(picture) if axes is None else tuple(axes)
-    if len(own) != len(picture.panels):
-        wanted = f"{len(picture.panels)} axes, one for each panel"
-        raise InputError(
-            [Problem("axes", f"{len(own)} axes", wanted, "Give as many, or none for a figure of its own.")]
-        )
-    for number, (panel, one) in enumerate(zip(picture.panels, own, strict=True)):
-        _draw(picture, panel, one, first=number == 0, last=number == len(own) - 1)
-    return own
+    drawn = _new_axes(picture) if axes is None else tuple(axes)
+    if len(drawn) != len(picture.panels):
+        expected = f"{len(picture.panels)} axes, one for each panel"
+        raise InputError([Problem("axes", f"{len(drawn)} axes", expected, "Give as many, or none for a new figure.")])
+    for i, (panel, ax) in enumerate(zip(picture.panels, drawn, strict=True)):
+        _draw_panel(picture, panel, ax, first=i == 0, last=i == len(drawn) - 1)
+    return drawn
 
 
-def chosen(wanted: str, among: Sequence[str], what: str) -> str:
-    """Make sure that there is something of a name.
+def check_name(name: str, names: Sequence[str], what: str) -> str:
+    """Return a name that exists.
 
     Parameters
     ----------
-    wanted
-        The name.
-    among
-        Names that there are.
+    name
+        As given by the user.
+    names
+        Names that exist.
     what
-        What they are names of.
+        Kind of the named objects.
 
     Raises
     ------
     InputError
         If it is none of them.
     """
-    if wanted not in among:
-        raise InputError([Problem(what, f"'{wanted}'", f"the name of a {what}", did_you_mean(wanted, among))])
-    return wanted
+    if name not in names:
+        raise InputError([Problem(what, f"'{name}'", f"the name of a {what}", did_you_mean(name, names))])
+    return name
 
 
-def _own_axes(picture: Picture) -> tuple[Axes, ...]:
+def _new_axes(picture: Picture) -> tuple[Axes, ...]:
     heights = [panel.height for panel in picture.panels]
     figure, grid = plt.subplots(
         len(heights),
         1,
-        figsize=(_WIDTH, _HEIGHT * sum(heights) + _AROUND),
+        figsize=(_WIDTH, _HEIGHT * sum(heights) + _MARGINS),
         sharex=True,
         squeeze=False,
         height_ratios=heights,
@@ -87,39 +85,39 @@ def _own_axes(picture: Picture) -> tuple[Axes, ...]:
     return tuple(grid[:, 0])
 
 
-def _draw(picture: Picture, panel: Panel, axes: Axes, first: bool, last: bool) -> None:
+def _draw_panel(picture: Picture, panel: Panel, axes: Axes, first: bool, last: bool) -> None:
     for mark in panel.marks:
-        _mark(mark, axes, labelled=first)
+        _draw_mark(mark, axes, labelled=first)
     x, y = picture.x, panel.y
     axes.set_xscale("log" if x.log else "linear")
     axes.set_yscale("log" if y.log else "linear")
-    axes.set(xlim=(x.high, x.low) if x.falling else (x.low, x.high), ylim=(y.low, y.high))
-    for axis, marked in ((axes.xaxis, x.marked), (axes.yaxis, y.marked)):
-        axis.set_major_locator(FixedLocator([value for value, _ in marked]))
-        axis.set_major_formatter(FixedFormatter([text for _, text in marked]))
+    axes.set(xlim=(x.high, x.low) if x.descending else (x.low, x.high), ylim=(y.low, y.high))
+    for axis, ticks in ((axes.xaxis, x.all_ticks), (axes.yaxis, y.all_ticks)):
+        axis.set_major_locator(FixedLocator([value for value, _ in ticks]))
+        axis.set_major_formatter(FixedFormatter([text for _, text in ticks]))
         axis.set_minor_locator(NullLocator())
-    axes.tick_params(length=2, labelsize=7.5, color=LIGHT["quiet"], labelcolor=LIGHT["subdued"])
+    axes.tick_params(length=2, labelsize=7.5, color=LIGHT["reference"], labelcolor=LIGHT["subdued"])
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     for side in ("left", "bottom"):
-        axes.spines[side].set(color=LIGHT["quiet"], linewidth=0.8)
-    turned: dict[str, Any] = {"rotation": 0, "ha": "right", "va": "center"} if panel.name else {}
-    axes.set_ylabel(panel.name or y.label, fontsize=8, color=LIGHT["text"], parse_math=False, **turned)
+        axes.spines[side].set(color=LIGHT["reference"], linewidth=0.8)
+    rotated: dict[str, Any] = {"rotation": 0, "ha": "right", "va": "center"} if panel.name else {}
+    axes.set_ylabel(panel.name or y.label, fontsize=8, color=LIGHT["text"], parse_math=False, **rotated)
     if last:
         axes.set_xlabel(x.label, fontsize=8, color=LIGHT["text"])
     axes.tick_params(labelbottom=last)
-    said = ((panel.note, "subdued"), (panel.wrong, "fault"))
-    for line, (text, colour) in enumerate(one for one in said if one[0]):
+    notes = ((panel.note, "subdued"), (panel.warning, "fault"))
+    for line, (text, colour) in enumerate(note for note in notes if note[0]):
         look: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 7, "color": LIGHT[colour]}
         axes.annotate(text, (1, 1), (-3, -3 - 9 * line), "axes fraction", "offset points", **look).set_parse_math(False)
     if first and axes.get_legend_handles_labels()[1]:
-        # Above the panel, unless the labels of lines stand there.
+        # Above the panel, unless the labels of vertical lines are there.
         above: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0, 1), "borderaxespad": 0.2, "ncols": 3}
-        inside = any(isinstance(mark, Rule) and mark.label and not mark.lying for mark in panel.marks)
+        inside = any(isinstance(mark, Rule) and mark.label and not mark.horizontal for mark in panel.marks)
         axes.legend(frameon=False, fontsize=7, **({"loc": "best"} if inside else above))
 
 
-def _mark(mark: Mark, axes: Axes, labelled: bool) -> None:
+def _draw_mark(mark: Mark, axes: Axes, labelled: bool) -> None:
     match mark:
         case Curve():
             look: dict[str, Any] = {
@@ -136,9 +134,9 @@ def _mark(mark: Mark, axes: Axes, labelled: bool) -> None:
             )
         case Rule():
             look = {"color": LIGHT[mark.role], "lw": 0.8, "ls": "--" if mark.dashed else "-", "zorder": 1}
-            (axes.axhline if mark.lying else axes.axvline)(mark.at, **look)
-            if mark.label and labelled and not mark.lying:
-                # Above the panel and slanted: several that are close stay readable.
+            (axes.axhline if mark.horizontal else axes.axvline)(mark.at, **look)
+            if mark.label and labelled and not mark.horizontal:
+                # Above the panel and slanted: labels close to each other remain readable.
                 slanted: dict[str, Any] = {"rotation": 55, "rotation_mode": "anchor", "ha": "left", "fontsize": 6.5}
                 place = axes.get_xaxis_transform()
                 axes.text(
@@ -148,19 +146,19 @@ def _mark(mark: Mark, axes: Axes, labelled: bool) -> None:
             axes.axvspan(mark.low, mark.high, color=LIGHT["band"], lw=0, zorder=0)
 
 
-def single(axes: Axes | None) -> Axes:
-    """Give axes to draw into: those that were given, or those of a figure of its own.
+def axes_or_new(axes: Axes | None) -> Axes:
+    """Return the given axes, or those of a new figure.
 
     Parameters
     ----------
     axes
-        What was given.
+        As given by the user.
     """
     return plt.subplots(figsize=(5.5, 4.5), layout="constrained")[1] if axes is None else axes
 
 
-def matrix(names: Sequence[str], values: Sequence[Sequence[float]], axes: Axes) -> None:
-    """Draw a matrix of correlations.
+def draw_matrix(names: Sequence[str], values: Sequence[Sequence[float]], axes: Axes) -> None:
+    """Draw a correlation matrix.
 
     Parameters
     ----------
@@ -169,7 +167,7 @@ def matrix(names: Sequence[str], values: Sequence[Sequence[float]], axes: Axes) 
     values
         Between -1 and 1.
     axes
-        Where to.
+        Into which it is drawn.
     """
     shown = np.array(values, dtype=float).reshape(len(names), len(names))
     image = axes.imshow(shown, cmap="RdBu", vmin=-1, vmax=1)

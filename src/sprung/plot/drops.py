@@ -1,4 +1,4 @@
-"""Pictures of one drop."""
+"""Figures of one drop."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from matplotlib.axes import Axes
 
 from sprung.checking import Check
 from sprung.errors import InputError, Problem
-from sprung.plot.drawing import chosen, drawn
-from sprung.report import channels_picture, motion_picture, near_picture, whole_picture
+from sprung.plot.drawing import check_name, draw
+from sprung.report import channels_picture, landing_picture, motion_picture, recording_picture
 from sprung.results import Result
 
 
 def fit(
     result: Result, drop: str, channels: Sequence[str] | None = None, *, axes: Iterable[Axes] | None = None
 ) -> tuple[Axes, ...]:
-    """Draw measured against simulated for one drop, and below each curve what is left of it.
+    """Draw measured and simulated motion in one drop, and below each the residual.
 
     Parameters
     ----------
@@ -28,29 +28,29 @@ def fit(
         Names of channels to draw, m/s². Unless given, the body's vertical (m/s²), pitch and roll acceleration (rad/s²): the
         paper's figures 7 to 9.
     axes
-        Two for each curve, the second for what is left; a figure of its own unless given.
+        Two for each quantity, the second for the residual; a new figure unless given.
 
     Returns
     -------
     tuple of Axes
-        Those that were drawn into.
+        Those with the figure.
 
     Raises
     ------
     InputError
         If there is no such drop or channel.
     """
-    series = result.series[chosen(drop, list(result.series), "drop")]
+    series = result.series[check_name(drop, list(result.series), "drop")]
     if channels is not None:
-        names = [chosen(name, series.channels, "channel") for name in channels]
-        return drawn(channels_picture(drop, series, names), axes)
-    return drawn(motion_picture(drop, series, result.validation[drop]), axes)
+        names = [check_name(name, series.channels, "channel") for name in channels]
+        return draw(channels_picture(drop, series, names), axes)
+    return draw(motion_picture(drop, series, result.validation[drop]), axes)
 
 
 def recording(
     of: Result | Check, drop: str, *, near: bool = False, axes: Iterable[Axes] | None = None
 ) -> tuple[Axes, ...]:
-    """Draw a whole recording, one panel for each channel: release, landing, the decay that is used, what is wrong.
+    """Draw a recording, one panel for each channel, with release, landing, free decay and faulty samples.
 
     Parameters
     ----------
@@ -59,29 +59,29 @@ def recording(
     drop
         Its name, such as ``empty_bounce``.
     near
-        Whether to draw only what is around release and landing.
+        Whether to draw only the time around release and landing.
     axes
-        One for each channel; a figure of its own unless given.
+        One for each channel; a new figure unless given.
 
     Returns
     -------
     tuple of Axes
-        Those that were drawn into.
+        Those with the figure.
 
     Raises
     ------
     InputError
-        If there is no such drop, its recording is not held, or its release is asked for and was not found.
+        If there is no such drop, the result has no recording of it, or ``near`` is set and no release was detected.
     """
     recordings = (
         of.recordings
         if isinstance(of, Result)
         else {one.name: recorded for one, recorded in zip(of.drops, of.recorded, strict=True)}
     )
-    chosen(drop, list(recordings), "drop")
-    report = next(one for one in of.drops if one.name == drop)
-    picture = near_picture(report, recordings[drop]) if near else whole_picture(report, recordings[drop])
+    check_name(drop, list(recordings), "drop")
+    report = next(report for report in of.drops if report.name == drop)
+    picture = landing_picture(report, recordings[drop]) if near else recording_picture(report, recordings[drop])
     if picture is None:
-        do = "Draw the whole recording instead."
-        raise InputError([Problem(f"drop {drop}", "no release", "a recording that shows its release", do)])
-    return drawn(picture, axes)
+        do = "Draw the whole recording (near=False)."
+        raise InputError([Problem(f"drop {drop}", "no release", "a recording with a detected release", do)])
+    return draw(picture, axes)

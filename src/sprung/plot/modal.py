@@ -1,4 +1,4 @@
-"""Pictures of modes: spectra, stabilisation diagrams, shapes."""
+"""Figures of modes: spectra, stabilisation diagrams, mode shapes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from sprung.errors import InputError, Problem
 from sprung.modal import StabilisationDiagram, stabilisation_diagram
 from sprung.modal_survey import LoadModes
-from sprung.plot.drawing import chosen, drawn, single
+from sprung.plot.drawing import axes_or_new, check_name, draw
 from sprung.report import (
     BODY_EDGES,
     LIGHT,
@@ -19,7 +19,7 @@ from sprung.report import (
     decays_by_load,
     spectra_picture,
     stability_picture,
-    wire_car,
+    wire_frame,
 )
 from sprung.results import Result
 
@@ -34,12 +34,12 @@ def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | N
     load
         Its name; the first one unless given.
     axes
-        One for the sensors on the body, and one for those at the wheels; a figure of its own unless given.
+        One for the sensors on the body, and one for those at the wheels; a new figure unless given.
 
     Returns
     -------
     tuple of Axes
-        Those that were drawn into; m/s² per √Hz over Hz.
+        Those with the figure; m/s² per √Hz over Hz.
 
     Raises
     ------
@@ -47,7 +47,7 @@ def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | N
         If there is no such load.
     """
     decays = _decays(result, load)
-    return drawn(spectra_picture(decays, result.modes[decays.load]), axes)
+    return draw(spectra_picture(decays, result.modes[decays.load]), axes)
 
 
 def stabilisation(
@@ -56,7 +56,7 @@ def stabilisation(
     *,
     axes: Axes | None = None,
 ) -> Axes:
-    """Draw a stabilisation diagram: natural frequencies of models of growing order, and where they stay.
+    """Draw a stabilisation diagram: natural frequencies of models of increasing order, and the stable ones.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def stabilisation(
     load
         Its name, where there are several; the first one unless given.
     axes
-        Where to; a figure of its own unless given.
+        Into which it is drawn; a new figure unless given.
 
     Returns
     -------
@@ -75,15 +75,15 @@ def stabilisation(
     Raises
     ------
     InputError
-        If there is no such load, or the modes were found without a diagram.
+        If there is no such load, or the modes were computed without a diagram.
     """
     name, diagram = _diagram(of, load)
-    [found] = drawn(stability_picture(name, diagram), None if axes is None else [axes])
-    return found
+    [drawn] = draw(stability_picture(name, diagram), None if axes is None else [axes])
+    return drawn
 
 
 def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0.0, axes: Axes | None = None) -> Axes:
-    """Draw a mode of the identified vehicle as a small car of wire, at rest and moved.
+    """Draw a mode shape of the identified vehicle as a wire frame, at rest and displaced.
 
     Parameters
     ----------
@@ -94,14 +94,14 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     load
         On the vehicle; the first one unless given.
     phase
-        Of the vibration, rad: 0 is where what moves most is furthest up.
+        Of the vibration, rad; at 0 the node with the largest motion is at its top.
     axes
-        Where to; a figure of its own unless given.
+        Into which it is drawn; a new figure unless given.
 
     Returns
     -------
     Axes
-        Without scales: a shape has no size.
+        Without scales: a mode shape has no amplitude.
 
     Raises
     ------
@@ -111,11 +111,11 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     if result.verdict.state == "reject":
         do = "Read result.verdict.reasons; sprung.modes finds modes without a vehicle model."
         raise InputError([Problem(f"mode {name}", "a rejected result, which has no modes", "accept or doubtful", do)])
-    load = chosen(load or next(iter(result.modes)), list(result.modes), "load")
-    modes = {one.name: one for one in result.modes[load]}
-    found = modes[chosen(name, list(modes), "mode")]
-    car, axes = wire_car(result), single(axes)
-    rise = (car.swing(found.motion) * np.exp(1j * phase)).real
+    load = check_name(load or next(iter(result.modes)), list(result.modes), "load")
+    modes = {mode.name: mode for mode in result.modes[load]}
+    shown = modes[check_name(name, list(modes), "mode")]
+    car, axes = wire_frame(result), axes_or_new(axes)
+    rise = (car.swing(shown.motion) * np.exp(1j * phase)).real
     moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)
     for i, j in BODY_EDGES:
         axes.plot(*car.places[[i, j]].T, color=LIGHT["measured"], lw=0.8, ls="--")
@@ -125,20 +125,20 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     around = np.linspace(0, 2 * np.pi, 60)
     for node, radius in car.circles:
         x, y = moved[node]
-        axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), color=LIGHT["left"], lw=1.4)
+        axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), color=LIGHT["residual"], lw=1.4)
     axes.set_aspect("equal")
     axes.set(xlim=(0, car.width), ylim=(car.height, 0))
     axes.set_axis_off()
-    sure = "not determined" if found.frequency_std is None else f"{found.frequency:.4g} Hz"
-    axes.set_title(f"{name}, {load}: {sure}", fontsize=9, parse_math=False)
+    frequency = "not determined" if shown.frequency_std is None else f"{shown.frequency:.4g} Hz"
+    axes.set_title(f"{name}, {load}: {frequency}", fontsize=9, parse_math=False)
     return axes
 
 
 def _decays(result: Result, load: str | None) -> LoadDecays:
-    by_load = {one.load: one for one in decays_by_load(result)}
+    by_load = {decays.load: decays for decays in decays_by_load(result)}
     if not by_load:
         raise InputError([Problem("result", "no series", "a result with its series", "Load it from its folder.")])
-    return by_load[chosen(load or next(iter(by_load)), list(by_load), "load")]
+    return by_load[check_name(load or next(iter(by_load)), list(by_load), "load")]
 
 
 def _diagram(
@@ -153,9 +153,9 @@ def _diagram(
             return decays.load, stabilisation_diagram(records, decays.rate)
         case LoadModes():
             if of.diagram is None:
-                do = "Find the modes with diagram=True."
+                do = "Call sprung.modes with diagram=True."
                 raise InputError([Problem("modes", "no diagram", "modes with a stabilisation diagram", do)])
             return load or ", ".join(of.drops), of.diagram
         case _:
-            name = chosen(load or next(iter(of)), list(of), "load")
+            name = check_name(load or next(iter(of)), list(of), "load")
             return _diagram(of[name], name)

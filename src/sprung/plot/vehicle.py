@@ -1,4 +1,4 @@
-"""Pictures of the identified vehicle."""
+"""Figures of the identified vehicle."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
-from sprung.plot.drawing import chosen, drawn, matrix, single
+from sprung.plot.drawing import axes_or_new, check_name, draw, draw_matrix
 from sprung.report import amplitude_pictures, parameters_picture
 from sprung.results import Result, other_quantities
 from sprung.study import Validation
@@ -21,26 +21,26 @@ def parameters(result: Result, *, axes: Axes | None = None) -> Axes:
     result
         From `sprung.identify` or `sprung.load`.
     axes
-        Where to; a figure of its own unless given.
+        Into which it is drawn; a new figure unless given.
 
     Returns
     -------
     Axes
     """
     picture = parameters_picture({**result.parameters, **other_quantities(result.derived)})
-    [found] = drawn(picture, None if axes is None else [axes])
-    return found
+    [drawn] = draw(picture, None if axes is None else [axes])
+    return drawn
 
 
 def correlation(result: Result, *, axes: Axes | None = None) -> Axes:
-    """Draw which parameters are uncertain together.
+    """Draw the correlation matrix of the estimated parameters.
 
     Parameters
     ----------
     result
         From `sprung.identify` or `sprung.load`.
     axes
-        Where to; a figure of its own unless given.
+        Into which it is drawn; a new figure unless given.
 
     Returns
     -------
@@ -54,8 +54,8 @@ def correlation(result: Result, *, axes: Axes | None = None) -> Axes:
     if not result.correlation.names:
         do = "Read the reasons of the verdict."
         raise InputError([Problem("result", "no estimated parameters", "two or more", do)])
-    axes = single(axes)
-    matrix(result.correlation.names, result.correlation.matrix, axes)
+    axes = axes_or_new(axes)
+    draw_matrix(result.correlation.names, result.correlation.matrix, axes)
     return axes
 
 
@@ -71,21 +71,21 @@ def amplitude(
     mode
         ``body bounce``, ``body pitch`` or ``body roll``.
     axes
-        One for the frequency, Hz, and one for the damping ratio, %, over the amplitude in mm; a figure of its own unless given.
+        One for the frequency, Hz, and one for the damping ratio, %, over the amplitude in mm; a new figure unless given.
 
     Returns
     -------
     tuple of Axes
-        Those that were drawn into.
+        Those with the figure.
 
     Raises
     ------
     InputError
-        If the modes were not followed, or not this one.
+        If the result has no amplitude curves, or none of this mode.
     """
     amplitudes = of.amplitude if isinstance(of, Result) else of.amplitudes
     if not amplitudes:
         do = "Identify with amplitude=True."
-        raise InputError([Problem("result", "no amplitudes", "modes that were followed through the decays", do)])
+        raise InputError([Problem("result", "no amplitude curves", "a result with amplitude curves", do)])
     pictures = {picture.title: picture for picture in amplitude_pictures(amplitudes)}
-    return drawn(pictures[chosen(mode, list(pictures), "mode")], axes)
+    return draw(pictures[check_name(mode, list(pictures), "mode")], axes)

@@ -2,34 +2,22 @@
 
 from sprung.preprocess.alignment import align_loggers
 from sprung.preprocess.decay import FlightLikelihood, FreeDecay, quantisation_variance
-from sprung.preprocess.drop_features import (
-    BLOW,
-    IMPACT,
-    RING,
-    RING_TO,
-    SPEED,
-    DropFeatures,
-    detect_dropped_channels,
-    look_at,
-)
 from sprung.preprocess.dropped_wheels import merge_dropped_wheels
 from sprung.preprocess.events import DropObservation, Events, MarkedSamples
-from sprung.preprocess.exclusion import exclude_drops
+from sprung.preprocess.fall import BLOW, IMPACT, WHEEL_SPEED, detect_dropped_channels, measure_fall
 from sprung.preprocess.first_motion import FirstMotion, is_first_motion_consistent
 from sprung.preprocess.flight import Flight, find_flights
 from sprung.preprocess.high_pass import differentiate_by_cutoff, is_ac_coupled
-from sprung.preprocess.prepare import Prepared, prepare
+from sprung.preprocess.landing import find_steepest_rise
+from sprung.preprocess.prepare import Prepared, exclude_drops, prepare
 from sprung.preprocess.release import Release, StaticBaseline, detect_release, unknown_baseline
 from sprung.preprocess.sensor_noise import estimate_sensor_noise, pool_moments
-from sprung.preprocess.slow_motion import SlowMotion, find_slower_drops
+from sprung.preprocess.slow_motion import extract_slow_motion, find_slower_drops
 
 __all__ = [
     "BLOW",
     "IMPACT",
-    "RING",
-    "RING_TO",
-    "SPEED",
-    "DropFeatures",
+    "WHEEL_SPEED",
     "DropObservation",
     "Events",
     "FirstMotion",
@@ -39,7 +27,6 @@ __all__ = [
     "MarkedSamples",
     "Prepared",
     "Release",
-    "SlowMotion",
     "StaticBaseline",
     "align_loggers",
     "detect_dropped_channels",
@@ -47,11 +34,13 @@ __all__ = [
     "differentiate_by_cutoff",
     "estimate_sensor_noise",
     "exclude_drops",
+    "extract_slow_motion",
     "find_flights",
     "find_slower_drops",
+    "find_steepest_rise",
     "is_ac_coupled",
     "is_first_motion_consistent",
-    "look_at",
+    "measure_fall",
     "merge_dropped_wheels",
     "pool_moments",
     "prepare",

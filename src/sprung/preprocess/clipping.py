@@ -1,4 +1,4 @@
-"""Clipping: samples at which a sensor could show no more."""
+"""Clipping: samples at which a sensor, its amplifier or the logger was at its full scale."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from sprung.units import acceleration_factor
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 _FULL = 0.999
 """Part of the full scale from which a reading is at it."""
 
 _BEYOND = 1.02
-"""Full scales from which a reading is beyond it: then it is another one than stated."""
+"""Full scales from which a reading is beyond it: then the full scale is another one than stated."""
 
 _PLATEAU = 3
 """Samples in a row at a channel's extreme which are no chance, once its shoulders are steep."""
@@ -34,7 +35,7 @@ may stay on one step for some samples, and a finer signal never does."""
 
 
 def check_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recording:
-    """Give a recording that no file was read for the full scale of its channels, and take back one that cannot be.
+    """Take the full scale of each channel from its sensor where no file states it, and drop one that is exceeded.
 
     Parameters
     ----------
@@ -46,36 +47,38 @@ def check_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recordi
     Returns
     -------
     Recording
-        With a fault for each channel that reads more than its range.
+        With a fault for each channel that exceeds its range.
     """
     stated = recording.full_scale or tuple(
         None if sensor.range is None else sensor.range * acceleration_factor(sensor.unit or "m/s^2")
         for sensor in sensors
     )
-    peaks = np.abs(recording.values).max(axis=1, initial=0.0).tolist()
-    kept = tuple(
-        None if scale is None or peak > _BEYOND * scale else scale for peak, scale in zip(peaks, stated, strict=True)
-    )
-    faults = [
-        Fault(
-            "unit",
-            f"{recording.name}: {channel}",
-            f"it reads up to {peak:.4g} m/s², beyond its range of {scale:.4g} m/s²; the range was not used",
-            "Correct the range or the unit of the sensor in the campaign file.",
+    if not any(stated):
+        return replace(recording, full_scale=stated)
+    kept, faults = list(stated), []
+    for channel, peak in enumerate(np.abs(recording.values).max(axis=1, initial=0.0).tolist()):
+        scale = stated[channel]
+        if scale is None or not peak > _BEYOND * scale:
+            continue
+        kept[channel] = None
+        faults.append(
+            Fault(
+                "unit",
+                f"{recording.name}: {recording.channels[channel]}",
+                f"readings reach {peak:.4g} m/s², beyond the range of {scale:.4g} m/s²; the range was not used",
+                "Correct the range or the unit of the sensor in the campaign file.",
+            )
         )
-        for channel, peak, scale, now in zip(recording.channels, peaks, stated, kept, strict=True)
-        if scale is not None and now is None
-    ]
-    return replace(recording, full_scale=kept, faults=(*recording.faults, *faults))
+    return replace(recording, full_scale=tuple(kept), faults=(*recording.faults, *faults))
 
 
-def detect_clipping(recording: Recording) -> NDArray[np.bool_]:
-    """Find the clipped samples.
+def detect_clipping(recording: Recording) -> Flags:
+    """Detect the clipped samples.
 
     Parameters
     ----------
     recording
-        With its full scale, where it is known; a channel's own extremes tell as well.
+        With its full scale, where it is known; a plateau at a channel's own extreme shows clipping as well.
 
     Returns
     -------
@@ -84,24 +87,27 @@ def detect_clipping(recording: Recording) -> NDArray[np.bool_]:
     """
     values = recording.values
     found = np.zeros(values.shape, dtype=bool)
-    steps = resolution(np.nan_to_num(values))
-    for channel, full_scale in enumerate(recording.full_scale or [None] * len(values)):
-        signal = values[channel]
-        if np.isnan(signal).any() or not signal.size:
-            continue
-        if full_scale is not None:
-            found[channel] = np.abs(signal) >= _FULL * full_scale
-        # Whatever the sensor can show, its amplifier or the logger may be able to show less.
-        step, usual = float(steps[channel]), float(np.median(np.abs(np.diff(signal))))
-        coarse = step > _COARSE * usual
-        jump = max(_STEEP * step, _NOISY * usual if coarse else 0.0)
-        for way in (1.0, -1.0):
-            found[channel] |= _plateaus(way * signal, jump, coarse)
+    if not values.shape[1]:
+        return found
+    for channel, full_scale in enumerate(recording.full_scale):
+        if full_scale is not None and not np.isnan(values[channel]).any():
+            found[channel] = np.abs(values[channel]) >= _FULL * full_scale
+    # Whatever the sensor can show, its amplifier or the logger may be able to show less.
+    for sign, extreme in ((1.0, values.max(axis=1)), (-1.0, values.min(axis=1))):
+        at_extreme = values == extreme[:, None]
+        for channel in np.flatnonzero(np.count_nonzero(at_extreme, axis=1) >= _PLATEAU).tolist():
+            found[channel] |= _detect_plateaus(sign * values[channel])
     return found
 
 
-def _plateaus(signal: Real, jump: float, coarse: bool) -> NDArray[np.bool_]:
-    """Find plateaus at the top; what is coarse may stay there unclipped, but then it does not come on to go beyond."""
+def _detect_plateaus(signal: Real) -> Flags:
+    """Detect plateaus at the maximum of one channel, shape (time,).
+
+    A coarse signal may stay at its maximum unclipped, but then it does not come on to go beyond.
+    """
+    step, usual = float(resolution(signal[None])[0]), float(np.median(np.abs(np.diff(signal))))
+    coarse = step > _COARSE * usual
+    jump = max(_STEEP * step, _NOISY * usual if coarse else 0.0)
     extreme = float(signal.max())
     at = np.concatenate([[0], (signal == extreme).astype(int), [0]])
     begins, ends = np.flatnonzero(np.diff(at) == 1), np.flatnonzero(np.diff(at) == -1)
@@ -110,12 +116,12 @@ def _plateaus(signal: Real, jump: float, coarse: bool) -> NDArray[np.bool_]:
         last = signal.size - 1
         outside = signal[[begin - 1 if begin else 0, end if end < last else last]]
         if end - begin >= _PLATEAU and np.all(extreme - outside > jump):
-            found[begin:end] = not coarse or _beyond(signal, begin, end) > extreme + jump
+            found[begin:end] = not coarse or _extrapolate_peak(signal, begin, end) > extreme + jump
     return found
 
 
-def _beyond(signal: Real, begin: int, end: int) -> float:
-    """Give where a plateau's middle would be had the signal gone on as it came and as it left (a cubic of Hermite)."""
+def _extrapolate_peak(signal: Real, begin: int, end: int) -> float:
+    """Return what a plateau's middle would read had the signal gone on as it came and as it left (a cubic of Hermite)."""
     if begin < 2 or end > signal.size - 2:
         return np.inf
     came, left = signal[begin - 1] - signal[begin - 2], signal[end] - signal[end + 1]

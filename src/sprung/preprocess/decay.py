@@ -20,20 +20,20 @@ FITTED = "in the fitted vehicle every tyre is down for good"
 
 @dataclass(frozen=True, eq=False)
 class FlightLikelihood:
-    """What the samples between the release and the landing tell of the vehicle, whatever the clocks that they were taken by.
+    """Log-likelihood of the samples between release and landing near a vehicle, to second order; independent of the clocks.
 
     Attributes
     ----------
     names
-        Of the vehicle's parameters, half-distances of springs and dampers apart.
+        Of the vehicle's parameters, half-distances of springs and dampers separate.
     at
-        Their values for which the rest holds, SI, shape (parameter,).
+        Their values at the point of expansion, SI, shape (parameter,).
     gradient, information
         Of the log-likelihood of these samples by the parameters, there; shapes (parameter,), (parameter, parameter).
     chi_square
         Sum of squared residuals there over the variance of the noise.
     samples
-        How many there are.
+        Number of samples.
     """
 
     names: tuple[str, ...]
@@ -51,7 +51,7 @@ class FlightLikelihood:
 
 @dataclass(frozen=True, eq=False)
 class FreeDecay:
-    """The usable part of one drop.
+    """The free decay of one drop: the part of its recording in which the free-vibration model holds.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class FreeDecay:
         Shape (channel, time), m/s², positive up; NaN throughout in a channel that is left out.
     earlier
         The samples before them, back to the first landing: they belong to the decay if no tyre lifts off again, which
-        the accelerometers alone do not tell for certain. Shape (channel, time); none where the user gave the start.
+        the accelerometers alone do not show for certain. Shape (channel, time); none where the campaign states the start.
     rate
         Samples per second.
     start
@@ -73,20 +73,20 @@ class FreeDecay:
     rest
         What the sensors read while the vehicle stood on the blocks.
     faults
-        What is wrong with the drop.
+        Of the drop.
     clocks
-        For several loggers how their clocks stand to this one; without any, all channels have one clock.
+        Of several loggers, relative to the recording's clock; empty where all channels have one clock.
     rate_ratios
-        Samples that were taken of each channel for each one that is here; empty where it is 1 for all of them.
+        Sampling rate of each channel over that of the decay; empty where it is 1 for all of them.
     high_pass
-        Corner of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
+        Cut-off of the high-pass that was undone in each channel, Hz, 0 where none was; empty for none at all.
     initial_velocity
-        What each sensor read above its rest level, integrated from rest to the first of the `earlier` samples, m/s,
-        as far as the high-pass that was undone remembers it; shape (channel,).
+        Reading of each sensor above its level at rest, integrated from rest to the first of the `earlier` samples with the
+        memory of the high-pass that was undone, m/s, shape (channel,).
     events
-        When what happened, and why the decay has its limits.
+        Times of release and landing, and the reasons for the limits of the decay.
     flight
-        What the flight before it tells of the vehicle; None where that is not used.
+        Log-likelihood of the flight before it; None where that is not used.
     """
 
     name: str
@@ -113,9 +113,9 @@ class FreeDecay:
 
     @cached_property
     def resolution(self) -> NDArray[np.float64]:
-        """Step of each channel as it was recorded, m/s², whatever was undone or taken off since; shape (channel,)."""
-        seen = resolution(np.nan_to_num(self.values))
-        return np.where(np.isnan(self.rest.step), seen, self.rest.step)
+        """Resolution of each channel as it was recorded, m/s², shape (channel,); 0 in channels that are left out."""
+        unknown = np.isnan(self.rest.step)
+        return np.where(unknown, resolution(self.values), self.rest.step) if unknown.any() else self.rest.step
 
     @property
     def samples(self) -> int:
@@ -123,12 +123,12 @@ class FreeDecay:
         return int(self.values.shape[1])
 
     def shifted(self, samples: int) -> FreeDecay:
-        """Give the decay with its start moved.
+        """Return the decay with another start.
 
         Parameters
         ----------
         samples
-            Later, or where negative earlier, at most as far as `earlier` reaches.
+            By which it starts later, or where negative earlier, at most as far as `earlier` reaches.
         """
         whole = np.concatenate([self.earlier, self.values], axis=1)
         first = self.earlier.shape[1] + samples
@@ -143,14 +143,14 @@ class FreeDecay:
 
 
 def quantisation_variance(decays: Sequence[FreeDecay]) -> NDArray[np.float64]:
-    """Give the mean square of rounding to each channel's resolution at its worst.
+    """Variance of quantisation of each channel, at most.
 
-    Where a slow signal stays between two steps, the error is not spread evenly over a step but nearer to its ends.
+    Where a slow signal stays between two steps, the error is not uniform over a step but nearer to its ends.
 
     Parameters
     ----------
     decays
-        All decays; those in which a channel is left out say nothing of it.
+        All decays; a channel counts where it is not left out.
 
     Returns
     -------

@@ -93,8 +93,8 @@ class DropObservation:
     wheels: tuple[Wheel, ...] = ()
 
 
-def marked(code: str, samples: NDArray[np.bool_]) -> tuple[MarkedSamples, ...]:
-    """Give a mark for each channel that has any.
+def mark_samples(code: str, samples: NDArray[np.bool_]) -> tuple[MarkedSamples, ...]:
+    """Return a mark for each channel that has any.
 
     Parameters
     ----------
@@ -105,21 +105,3 @@ def marked(code: str, samples: NDArray[np.bool_]) -> tuple[MarkedSamples, ...]:
     """
     some = np.flatnonzero(np.asarray(samples.any(axis=1))).tolist()
     return tuple(MarkedSamples(code, channel, np.flatnonzero(samples[channel])) for channel in some)
-
-
-def filled_in(before: Recording, after: Recording) -> NDArray[np.bool_]:
-    """Say which samples were replaced by others.
-
-    Parameters
-    ----------
-    before, after
-        One recording.
-
-    Returns
-    -------
-    ndarray
-        Shape (channel, time).
-    """
-    there = np.isfinite(before.values) & np.isfinite(after.values)
-    replaced: NDArray[np.bool_] = there & (before.values != after.values)
-    return replaced

@@ -1,17 +1,16 @@
-"""Gravity at rest: what a sensor reads while nothing moves tells its sign, its unit, its offset and how it is coupled."""
+"""Gravity at rest: what a sensor reads while nothing moves shows its sign, unit, offset and coupling."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Recording
 from sprung.errors import Fault
-from sprung.preprocess.high_pass import SILENT
+from sprung.preprocess.high_pass import AC_LEVEL
 from sprung.preprocess.release import Release, StaticBaseline
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
 from sprung.vehicle import Sensor
@@ -22,45 +21,27 @@ Flags = NDArray[np.bool_]
 _NEAR = 0.1
 """Part of gravity by which tilt and offset may change what a sensor reads at rest."""
 
-_UNTOLD = 0.05
-"""Part of gravity up to which that is not worth a word: a tilt of 18 degrees."""
+_NEGLIGIBLE = 0.05
+"""Part of gravity up to which an offset is not reported: a tilt of 18 degrees."""
 
 _SEVERAL = 3
-"""Sensors from which the same mistake with all of them is told once."""
+"""Sensors with the same fault from which it is reported once for all of them."""
 
 _FARTHEST = 3.0
 """g at rest from which it is no offset any more, but numbers in an unknown unit."""
 
-_SCALES = (
+_UNITS = (
     (1.0, "", ""),
     *((acceleration_factor(unit), f"in {unit}", unit) for unit in ("g", "mg", "mm/s^2", "cm/s^2", "ft/s^2", "in/s^2")),
     (1 / STANDARD_GRAVITY, "in m/s^2, not in g", "m/s^2"),
 )
-"""Factor that puts a channel's unit right, what the numbers are then, and the unit to give the sensor."""
-
-
-class SignAndUnitCorrection(NamedTuple):
-    """A campaign's recordings with what gravity tells put right.
-
-    Attributes
-    ----------
-    recordings
-        With a fault for each channel that was changed, or that reads something else than gravity.
-    releases
-        With what those channels read before it, changed likewise.
-    sensors
-        Without the high-pass of those that feel gravity.
-    """
-
-    recordings: list[Recording]
-    releases: list[Release | None]
-    sensors: tuple[Sensor, ...]
+"""Factor that corrects a channel's unit, what the numbers are then, and the unit to write for the sensor."""
 
 
 def check_gravity(
     recordings: Sequence[Recording], releases: Sequence[Release | None], sensors: Sequence[Sensor]
-) -> SignAndUnitCorrection:
-    """Put right the channels whose rest shows beyond doubt that their sign, unit or coupling is another one.
+) -> tuple[list[Recording], list[Release | None], tuple[Sensor, ...]]:
+    """Correct the channels whose reading at rest shows beyond doubt that their sign, unit or coupling is another one.
 
     Parameters
     ----------
@@ -73,192 +54,163 @@ def check_gravity(
 
     Returns
     -------
-    Righted
+    recordings : list of Recording
+        With a fault for each channel that was changed, or that reads something else than gravity.
+    releases : list of Release or None
+        With the baselines changed likewise.
+    sensors : tuple of Sensor
+        Without the high-pass of those that read gravity.
 
     Notes
     -----
-    Only sensors that feel gravity tell, and only what they read in every drop that has a rest. A unit is changed where
-    gravity is about 1 in another one and the channel then moves more like its neighbours, a sign where most of the sensors
-    that feel gravity feel it the other way. Whether an AC-coupled sensor is upside down, its rest does not say.
+    Only sensors that read gravity can be checked, and only where they agree in every drop with a rest. A unit is changed
+    where gravity is about 1 in another one and the channel then moves more like its neighbours, a sign where most of the
+    sensors that read gravity read it the other way. The sign of an AC-coupled sensor does not show at rest.
     """
-    unchanged = SignAndUnitCorrection(list(recordings), list(releases), tuple(sensors))
     rests = [release.rest.level for release in releases if release is not None]
     if not rests:
-        return unchanged
-    told = _read(np.array(rests) / STANDARD_GRAVITY, _peaks(recordings), sensors)
-    faults = _together([fault for reading in told for fault in _faults(reading)])
-    if not faults:
-        return unchanged
-    factors = np.array([np.nan if r.strange else _SCALES[r.scale][0] * (-1.0 if r.turned else 1.0) for r in told])
-    changed = [_times(recording, factors) for recording in recordings]
-    changed[0] = replace(changed[0], faults=(*changed[0].faults, *faults))
-    direct = tuple(replace(r.sensor, high_pass=None) if r.feels else r.sensor for r in told)
-    return SignAndUnitCorrection(changed, [None if one is None else _changed(one, factors) for one in releases], direct)
-
-
-class _Reading(NamedTuple):
-    """What one sensor reads at rest, in every drop."""
-
-    sensor: Sensor
-    usual: float
-    """g, as it is."""
-    at_rest: float
-    """g, upward, its unit and sign put right."""
-    scale: int
-    """Which of the scales puts its unit right."""
-    feels: bool
-    """Whether it reads gravity, in that scale and either way."""
-    turned: bool
-    """Whether it does so the other way than most."""
-    silent: bool
-    """Whether it reads nothing."""
-    strange: bool
-    """Whether it reads what can be no offset."""
-    compared: bool
-    """Whether most sensors that read anything read gravity."""
-    outvoted: bool
-    """Whether more sensors read gravity than nothing."""
-
-
-def _read(levels: Real, peaks: Real, sensors: Sequence[Sensor]) -> list[_Reading]:
-    """Understand levels at rest, g, shape (drop, channel), with how much the channels move, m/s², shape (channel,)."""
+        return list(recordings), list(releases), tuple(sensors)
+    levels = np.array(rests) / STANDARD_GRAVITY
     known: Flags = np.logical_not(np.isnan(levels).all(axis=0))
-    usual = np.array(
-        [np.median(of[~np.isnan(of)]) if some else np.nan for of, some in zip(levels.T, known, strict=True)]
+    usual = np.full(len(sensors), np.nan)
+    usual[known] = [np.median(level[~np.isnan(level)]) for level in levels.T[known]]
+    zero = known & _in_every_drop(np.abs(levels) < AC_LEVEL / STANDARD_GRAVITY, levels)
+    units = _recognise_units(levels, known & ~zero, recordings, sensors)
+    factors = np.array([_UNITS[unit][0] for unit in units])
+    gravity = known & _in_every_drop(np.abs(np.abs(levels * factors) - 1) < _NEAR, levels)
+    signs = np.sign(np.where(gravity, usual, 0.0))
+    majority = -1.0 if signs.sum() < 0 else 1.0
+    inverted = gravity & (signs * signs.sum() < 0)
+    upward = usual * factors * np.where(inverted, -majority, majority)
+
+    stated_ac = np.array([sensor.high_pass is not None for sensor in sensors])
+    other = known & ~stated_ac & ~zero & ~gravity
+    most_read_gravity = bool(gravity.sum() > other.sum())
+    senseless = other & most_read_gravity & (np.abs(usual) > _FARTHEST)
+    uncoupled = zero & ~stated_ac & most_read_gravity & bool(gravity.sum() > zero.sum())
+    offset = known & ~zero & ~stated_ac & ~senseless & most_read_gravity & (np.abs(upward - 1) > _NEGLIGIBLE)
+    faults: list[Fault] = []
+    wrong = (np.array(units) > 0) | inverted | (stated_ac & gravity) | senseless | uncoupled | offset
+    for channel in np.flatnonzero(wrong).tolist():
+        sensor, reading = sensors[channel], float(usual[channel]) * STANDARD_GRAVITY
+        found = {
+            _unit_fault(sensor, reading, units[channel]): units[channel] > 0,
+            _sign_fault(sensor, reading): inverted[channel],
+            _no_high_pass_fault(sensor): stated_ac[channel] and gravity[channel],
+            _unknown_unit_fault(sensor, reading): senseless[channel],
+            _coupling_fault(sensor): uncoupled[channel],
+            _offset_fault(sensor, float(upward[channel])): offset[channel],
+        }
+        faults += [fault for fault, holds in found.items() if holds]
+    if not faults:
+        return list(recordings), list(releases), tuple(sensors)
+    factors = np.where(senseless, np.nan, factors * np.where(inverted, -1.0, 1.0))
+    changed = [_scale_recording(recording, factors) for recording in recordings]
+    changed[0] = replace(changed[0], faults=(*changed[0].faults, *_group_faults(faults)))
+    return (
+        changed,
+        [None if release is None else _scale_release(release, factors) for release in releases],
+        tuple(
+            replace(sensor, high_pass=None) if reads else sensor
+            for sensor, reads in zip(sensors, gravity.tolist(), strict=True)
+        ),
     )
-    silent = known & _in_every_drop(np.abs(levels) < SILENT / STANDARD_GRAVITY, levels)
-    scale = _scales(levels, known & ~silent, peaks, sensors)
-    factors = np.array([_SCALES[i][0] for i in scale])
-    feels = known & _in_every_drop(np.abs(np.abs(levels * factors) - 1) < _NEAR, levels)
-    way = np.sign(np.where(feels, usual, 0.0))
-    most = -1.0 if way.sum() < 0 else 1.0
-    turned = feels & (way * way.sum() < 0)
-    at_rest = usual * factors * np.where(turned, -most, most)
-    through = np.array([sensor.high_pass is not None for sensor in sensors])
-    odd = known & ~through & ~silent & ~feels
-    compared = bool(feels.sum() > odd.sum())
-    strange = odd & compared & (np.abs(usual) > _FARTHEST)
-    outvoted = bool(feels.sum() > silent.sum())
-    return [
-        _Reading(
-            sensor=sensor,
-            usual=float(usual[i]),
-            at_rest=float(at_rest[i]),
-            scale=scale[i],
-            feels=bool(feels[i]),
-            turned=bool(turned[i]),
-            silent=bool(silent[i]),
-            strange=bool(strange[i]),
-            compared=compared,
-            outvoted=outvoted,
-        )
-        for i, sensor in enumerate(sensors)
-    ]
-
-
-def _faults(reading: _Reading) -> list[Fault]:
-    sensor = reading.sensor
-    faults = []
-    _, seen, unit = _SCALES[reading.scale]
-    number = f"{reading.usual * STANDARD_GRAVITY:.4g}"
-    if unit:
-        what = f"at rest it reads {number}, which is gravity {seen}; it was taken to be in {unit}"
-        do = f'Set unit = "{unit}" for it in the campaign file.'
-        faults.append(Fault("unit", sensor.channel, what, do))
-    if reading.turned:
-        way, other = ("downward", "upward") if reading.usual < 0 else ("upward", "downward")
-        what = f"at rest it reads gravity {way}, where most of the others read it {other}; it was turned over"
-        direction = "down" if sensor.direction == "up" else "up"
-        faults.append(
-            Fault("sign", sensor.channel, what, f'Set direction = "{direction}" for it in the campaign file.')
-        )
-    if reading.feels and sensor.high_pass is not None:
-        what = (
-            "at rest it reads gravity, which no AC-coupled sensor does; its high-pass of "
-            f"{sensor.high_pass:g} Hz was not undone"
-        )
-        faults.append(Fault("coupling", sensor.channel, what, "Take high_pass out of the campaign file for it."))
-    elif sensor.high_pass is not None or not reading.compared:
-        return faults
-    elif reading.strange:
-        what = f"at rest it reads {number}, which is gravity in no unit that is known; the channel is left out"
-        faults.append(Fault("unit", sensor.channel, what, "Give the sensor its unit in the campaign file."))
-    elif reading.silent and reading.outvoted:
-        what = (
-            "at rest it reads nothing, where most others read gravity: AC-coupled, or set to zero; nothing was changed"
-        )
-        do = "If it is AC-coupled, say its corner in the campaign file, high_pass = ... in Hz: it distorts the body modes."
-        faults.append(Fault("coupling", sensor.channel, what, do))
-    elif not reading.silent and abs(reading.at_rest - 1) > _UNTOLD:
-        what = f"at rest it reads {reading.at_rest:.2f} g, {reading.at_rest - 1:+.2f} g off gravity; an offset does no harm"
-        if 0 < reading.at_rest < 1:
-            tilt = np.degrees(np.arccos(reading.at_rest))
-            what += (
-                f", but were it a tilt, of {tilt:.0f}°, the sensor would show only {reading.at_rest:.0%} of what moves"
-            )
-        do = "Mount the sensor upright, or have its zero set."
-        faults.append(Fault("offset", sensor.channel, f"{what}; nothing was changed", do))
-    return faults
-
-
-def _together(faults: Sequence[Fault]) -> list[Fault]:
-    """Name one mistake with several sensors once: the same code, and the same thing to do about it."""
-    groups: dict[tuple[str, str], list[Fault]] = {}
-    for fault in faults:
-        alike = fault.code in {"unit", "sign"}
-        groups.setdefault((fault.code, fault.do if alike else fault.where + fault.do), []).append(fault)
-    return [
-        _one(group) if len(group) >= _SEVERAL else fault
-        for group in groups.values()
-        for fault in group[: _shown(group)]
-    ]
-
-
-def _shown(group: Sequence[Fault]) -> int:
-    return 1 if len(group) >= _SEVERAL else len(group)
-
-
-def _one(group: Sequence[Fault]) -> Fault:
-    first = group[0]
-    where = ", ".join(fault.where for fault in group)
-    what = f"{len(group)} sensors alike, such as {first.where}: {first.what}"
-    return Fault(first.code, where, what, first.do.replace(" for it ", " for them "))
 
 
 def _in_every_drop(holds: Flags, levels: Real) -> Flags:
     return np.asarray((holds | np.isnan(levels)).all(axis=0))
 
 
-def _peaks(recordings: Sequence[Recording]) -> Real:
-    """Give by how much each channel moves, m/s², in the mean over the drops; shape (channel,)."""
+def _recognise_units(
+    levels: Real, reads: Flags, recordings: Sequence[Recording], sensors: Sequence[Sensor]
+) -> list[int]:
+    """Return for each channel the unit in which it reads gravity; the stated one where none, or no other, is beyond doubt."""
+    best = []
+    for channel in range(len(sensors)):
+        own = np.abs(levels[~np.isnan(levels[:, channel]), channel])
+        off = [float(np.abs(own * factor - 1).max()) if reads[channel] else np.inf for factor, _, _ in _UNITS]
+        best.append(0 if off[0] < _NEAR or min(off) >= _NEAR else int(np.argmin(off)))
+    if not any(best):
+        return best
+    peaks = _mean_ranges(recordings)
+    on_body = np.array([sensor.on == "body" for sensor in sensors])
+    for channel, chosen in enumerate(best):
+        others = (on_body == on_body[channel]) & (np.array(best) != chosen) & (peaks > 0)
+        if chosen and others.any():
+            ratio = np.log(peaks[channel] / np.median(peaks[others]))
+            if abs(ratio + np.log(_UNITS[chosen][0])) > abs(ratio):
+                best[channel] = 0
+    return best
+
+
+def _mean_ranges(recordings: Sequence[Recording]) -> Real:
+    """Return the range of each channel, m/s², in the mean over the drops; shape (channel,)."""
     ranges = np.array([np.ptp(recording.values, axis=1) for recording in recordings if recording.values.size])
     there = ~np.isnan(ranges)
     mean: Real = np.where(there, ranges, 0.0).sum(axis=0) / np.maximum(there.sum(axis=0), 1)
     return mean
 
 
-def _scales(levels: Real, loud: Flags, peaks: Real, sensors: Sequence[Sensor]) -> list[int]:
-    """Find for each channel the scale in which it reads gravity; that of m/s² where none, or no other, is beyond doubt."""
-    usual = np.array([np.abs(level[~np.isnan(level)]) for level in levels.T], dtype=object)
-    on_body = np.array([sensor.on == "body" for sensor in sensors])
-    best = []
-    for channel, readings in enumerate(usual):
-        fits = {
-            i: float(np.abs(readings * factor - 1).max())
-            for i, (factor, _, _) in enumerate(_SCALES)
-            if loud[channel] and np.all(np.abs(readings * factor - 1) < _NEAR)
-        }
-        best.append(0 if not fits or 0 in fits else min(fits, key=fits.__getitem__))
-    for channel, chosen in enumerate(best):
-        others = (on_body == on_body[channel]) & (np.array(best) != chosen) & (peaks > 0)
-        if chosen and others.any():
-            ratio = np.log(peaks[channel] / np.median(peaks[others]))
-            if abs(ratio + np.log(_SCALES[chosen][0])) > abs(ratio):
-                best[channel] = 0
-    return best
+def _unit_fault(sensor: Sensor, reading: float, unit: int) -> Fault:
+    _, meaning, name = _UNITS[unit]
+    what = f"reads {reading:.4g} at rest, which is gravity {meaning}; converted from {name}"
+    return Fault("unit", sensor.channel, what, f'Set unit = "{name}" for it in the campaign file.')
 
 
-def _times(recording: Recording, factors: Real) -> Recording:
+def _sign_fault(sensor: Sensor, reading: float) -> Fault:
+    own, others = ("downward", "upward") if reading < 0 else ("upward", "downward")
+    what = f"reads gravity {own} at rest, most other sensors {others}; its sign was reversed"
+    direction = "down" if sensor.direction == "up" else "up"
+    return Fault("sign", sensor.channel, what, f'Set direction = "{direction}" for it in the campaign file.')
+
+
+def _no_high_pass_fault(sensor: Sensor) -> Fault:
+    what = (
+        f"reads gravity at rest, so it is not AC-coupled; its high-pass of {sensor.high_pass or 0:g} Hz was not undone"
+    )
+    return Fault("coupling", sensor.channel, what, "Remove high_pass for it from the campaign file.")
+
+
+def _unknown_unit_fault(sensor: Sensor, reading: float) -> Fault:
+    what = f"reads {reading:.4g} at rest, which is gravity in no known unit; the channel is left out"
+    return Fault("unit", sensor.channel, what, "Give the sensor its unit in the campaign file.")
+
+
+def _coupling_fault(sensor: Sensor) -> Fault:
+    what = "reads zero at rest, most other sensors read gravity: AC-coupled, or zeroed; nothing was changed"
+    do = (
+        "If it is AC-coupled, state high_pass = ... (its cut-off, Hz) in the campaign file: it distorts the body modes."
+    )
+    return Fault("coupling", sensor.channel, what, do)
+
+
+def _offset_fault(sensor: Sensor, reading: float) -> Fault:
+    what = f"reads {reading:.2f} g at rest, {reading - 1:+.2f} g off gravity; an offset does no harm"
+    if 0 < reading < 1:
+        tilt = np.degrees(np.arccos(reading))
+        what += f", but a tilt, which would be {tilt:.0f}°, would reduce its sensitivity to {reading:.0%}"
+    return Fault(
+        "offset", sensor.channel, f"{what}; nothing was changed", "Mount the sensor upright, or have its zero set."
+    )
+
+
+def _group_faults(faults: Sequence[Fault]) -> list[Fault]:
+    """Return the faults with one for several sensors that have the same: the same code, and the same remedy."""
+    groups: dict[tuple[str, str], list[Fault]] = {}
+    for fault in faults:
+        alike = fault.code in {"unit", "sign"}
+        groups.setdefault((fault.code, fault.do if alike else fault.where + fault.do), []).append(fault)
+    return [fault for group in groups.values() for fault in ([_joint(group)] if len(group) >= _SEVERAL else group)]
+
+
+def _joint(group: Sequence[Fault]) -> Fault:
+    first = group[0]
+    where = ", ".join(fault.where for fault in group)
+    what = f"{len(group)} sensors, for example {first.where}: {first.what}"
+    return Fault(first.code, where, what, first.do.replace(" for it ", " for them "))
+
+
+def _scale_recording(recording: Recording, factors: Real) -> Recording:
     scales = zip(recording.full_scale, factors.tolist(), strict=True) if recording.full_scale else ()
     return replace(
         recording,
@@ -267,7 +219,7 @@ def _times(recording: Recording, factors: Real) -> Recording:
     )
 
 
-def _changed(release: Release, factors: Real) -> Release:
+def _scale_release(release: Release, factors: Real) -> Release:
     rest = release.rest
     return Release(
         release.sample, StaticBaseline(rest.level * factors, rest.noise * factors[:, None], rest.step * np.abs(factors))

@@ -1,7 +1,7 @@
-"""AC-coupled sensors: what a first-order high-pass took away is put back, and what a corner otherwise would change is told.
+"""AC-coupled sensors: the first-order high-pass is undone, and what another cut-off would change is known.
 
-A first-order high-pass with the corner ω turns x into y with ẏ + ω y = ẋ, so x is y + ω ∫ y dt from a rest on. By ω that
-changes by the integral of y: of what was put back that is an integral too, one that forgets at the rate ω.
+A first-order high-pass with the cut-off ω turns x into y with ẏ + ω y = ẋ, so x is y + ω ∫ y dt from a rest on. The derivative
+of x by ω is the integral of y; that is itself an integral of x, with an exponential memory of 1/ω.
 """
 
 from __future__ import annotations
@@ -20,51 +20,61 @@ from sprung.preprocess.release import Release
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
-SILENT = 0.5
-"""m/s² at rest below which a sensor does not feel gravity, whatever its unit."""
+AC_LEVEL = 0.5
+"""m/s² at rest below which a sensor does not read gravity, whatever its unit."""
 
 
-def undo_high_pass(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> Recording:
-    """Give the recording as sensors without a high-pass would have made it.
+def undo_high_pass(recording: Recording, release: Release | None, sensors: Sequence[Sensor]) -> Recording:
+    """Undo the high-pass of AC-coupled sensors.
 
     Parameters
     ----------
     recording
         As it was read.
     release
-        The release in it: at rest before it, the filter had settled.
+        The release in it: at rest before it, the filter had settled. Without one nothing is changed.
     sensors
         One for each channel; those with a `high_pass` are undone.
 
     Returns
     -------
     Recording
+        As DC-coupled sensors would have made it.
     """
-    values = recording.values
-    history = []
-    for channel, sensor in enumerate(sensors):
-        if sensor.high_pass is not None and recording.usable[channel]:
-            left = values[channel] - release.rest.level[channel]
-            lost = 2 * np.pi * sensor.high_pass * cumulative_trapezoid(left, dx=1 / recording.rate, initial=0)
-            values = np.vstack([values[:channel], values[channel] + lost, values[channel + 1 :]])
-            history.append(f"{sensor.channel}: high-pass of {sensor.high_pass:g} Hz undone")
-    return replace(recording, values=values, history=(*recording.history, *history)) if history else recording
+    filtered = [
+        channel for channel, sensor in enumerate(sensors) if sensor.high_pass is not None and recording.usable[channel]
+    ]
+    if release is None or not filtered:
+        return recording
+    cutoffs = 2 * np.pi * np.array([sensors[channel].high_pass for channel in filtered], dtype=float)
+    moved = recording.values[filtered] - release.rest.level[filtered, None]
+    values = recording.values.copy()
+    values[filtered] += cutoffs[:, None] * cumulative_trapezoid(moved, dx=1 / recording.rate, axis=1, initial=0)
+    history = [
+        f"{sensors[channel].channel}: high-pass of {sensors[channel].high_pass:g} Hz undone" for channel in filtered
+    ]
+    return replace(recording, values=values, history=(*recording.history, *history))
 
 
-def integrate_from_rest(recording: Recording, release: Release | None, high_pass: Sequence[float], sample: int) -> Real:
-    """Integrate what each sensor read from rest up to a sample, forgetting as the high-pass does that was undone.
+def integrate_from_rest(
+    values: Real, rate: float, release: Release | None, high_pass: Sequence[float], sample: int
+) -> Real:
+    """Integrate the reading of each sensor above its rest up to a sample, with the memory of the high-pass that was undone.
 
     Parameters
     ----------
-    recording
-        With every high-pass undone.
+    values
+        With every high-pass undone, m/s², shape (channel, time).
+    rate
+        Samples per second.
     release
-        The release in it; without one nothing is integrated.
+        The release in them; without one the integral is zero.
     high_pass
-        Corner of the high-pass that was undone in each channel, Hz, 0 where none was.
+        Cut-off of the high-pass that was undone in each channel, Hz, 0 where none was.
     sample
-        Up to which.
+        Last sample of the integral.
 
     Returns
     -------
@@ -72,37 +82,47 @@ def integrate_from_rest(recording: Recording, release: Release | None, high_pass
         m/s, shape (channel,).
     """
     if release is None:
-        return np.zeros(len(recording.values))
-    moved = recording.values[:, : sample + 1] - release.rest.level[:, None]
-    return _integrated(moved, recording.rate, high_pass, np.zeros(len(moved)))[:, -1]
+        return np.zeros(len(values))
+    # By the trapezoidal rule: of each sample what is remembered at the last one.
+    weights = np.ones(sample + 1)
+    weights[[0, -1]] /= 2
+    if not sample:
+        weights[:] = 0.0
+    if any(high_pass):
+        age = np.arange(sample, -1, -1) / rate
+        weights = weights * np.exp(-2 * np.pi * np.array(high_pass)[:, None] * age)
+    moved = values[:, : sample + 1] - release.rest.level[:, None]
+    integral: Real = (moved * weights).sum(axis=1) / rate
+    return integral
 
 
 def differentiate_by_cutoff(decay: FreeDecay) -> Real:
-    """Give by how much a decay's samples change with the corner of their high-pass.
+    """Differentiate a decay's samples by the cut-off of their high-pass.
 
     Parameters
     ----------
     decay
-        With the high-pass undone as far as one is known of.
+        With the stated high-pass undone.
 
     Returns
     -------
     ndarray
-        m/s² per rad/s, shape (channel, time); 0 in channels that are left out or feel gravity, which no high-pass lets through.
+        m/s² per rad/s, shape (channel, time); 0 in channels that are left out or read gravity, which no high-pass lets through.
     """
-    through = is_ac_coupled(decay)
-    if not through.any():
-        return np.zeros_like(decay.values)
-    level = np.where(through, decay.rest.level, np.nan)
-    whole = np.concatenate([decay.earlier, decay.values], axis=1) - level[:, None]
-    changes = _integrated(
-        np.nan_to_num(whole), decay.rate, decay.high_pass or np.zeros(len(whole)), decay.initial_velocity
-    )
-    return np.where(np.isnan(whole).any(axis=1)[:, None], 0.0, changes)[:, decay.earlier.shape[1] :]
+    changes = np.zeros_like(decay.values)
+    high_pass = decay.high_pass or (0.0,) * len(changes)
+    for channel in np.flatnonzero(is_ac_coupled(decay)).tolist():
+        moved = np.concatenate([decay.earlier[channel], decay.values[channel]]) - decay.rest.level[channel]
+        if np.isnan(moved).any():
+            continue
+        kept = np.exp(-2 * np.pi * high_pass[channel] / decay.rate)
+        steps = np.concatenate([[decay.initial_velocity[channel]], (kept * moved[:-1] + moved[1:]) / (2 * decay.rate)])
+        changes[channel] = lfilter([1.0], [1.0, -kept], steps)[decay.earlier.shape[1] :]
+    return changes
 
 
-def is_ac_coupled(decay: FreeDecay) -> NDArray[np.bool_]:
-    """Say of which channels the rest admits that they are AC-coupled.
+def is_ac_coupled(decay: FreeDecay) -> Flags:
+    """Return which channels may be AC-coupled: at rest they do not read gravity.
 
     Parameters
     ----------
@@ -112,17 +132,6 @@ def is_ac_coupled(decay: FreeDecay) -> NDArray[np.bool_]:
     Returns
     -------
     ndarray
-        Truth values, shape (channel,).
+        Shape (channel,).
     """
-    return np.asarray(decay.usable & (np.abs(np.nan_to_num(decay.rest.level, nan=np.inf)) < SILENT))
-
-
-def _integrated(values: Real, rate: float, corners: Sequence[float] | Real, before: Real) -> Real:
-    """Integrate by the trapezoidal rule, forgetting at the rates of the corners, Hz, from what there was before."""
-    found = []
-    for one, corner, first in zip(values, corners, before.tolist(), strict=True):
-        kept = np.exp(-2 * np.pi * corner / rate)
-        steps = np.concatenate([[first], (kept * one[:-1] + one[1:]) / (2 * rate)])
-        found.append(lfilter([1.0], [1.0, -kept], steps))
-    integrated: Real = np.array(found)
-    return integrated
+    return np.asarray(decay.usable & (np.abs(np.nan_to_num(decay.rest.level, nan=np.inf)) < AC_LEVEL))

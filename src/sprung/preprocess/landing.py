@@ -1,12 +1,12 @@
 """The landing: when the last tyre to lift off has come down for good, and free vibration begins.
 
 A tyre's force can be read off the accelerometers. Per unit of unsprung mass it is the wheel's reading plus the
-suspension's force; that force carries the body, so it follows the body's reading above the wheel, and its size is
-weighed by the release itself: at that moment the tyre force vanishes while the spring has not yet moved, and the wheel's
-reading jumps to minus the static suspension force over the unsprung mass. No mass or rate needs to be known.
+suspension's force; that force carries the body, so it follows the body's reading above the wheel, and the release itself
+shows its size: at that moment the tyre force vanishes while the spring has not yet moved, and the wheel's reading jumps to
+minus the static suspension force over the unsprung mass. No mass or rate needs to be known.
 
 Above a corner the body's reading stands for the suspension's force only as far as the body's inertia is spread like a
-car's. So the first landing is also taken from what no such assumption touches: a tyre that meets the ground drives the
+car's. So the first landing is also taken from what needs no such assumption: a tyre that meets the ground drives the
 wheel's reading up, at once and far more steeply than any spring.
 """
 
@@ -17,13 +17,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from sprung.preprocess.release import Release
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import WHEELS, Sensor, Wheel
+from sprung.vehicle import Sensor, Wheel
 
 Real = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 _JUMP = 0.015
 """s after the release within which the wheel's reading has jumped, blocks and filters being what they are."""
@@ -35,7 +35,7 @@ _EARLIER = 0.008
 """s by which the landing may have been before the steepest rise of a wheel's reading."""
 
 _SPIKE = 0.02
-"""s: what is shorter is taken for a spike, not for a wheel that has left the ground again."""
+"""s: what is shorter counts as a spike, not as a wheel that has left the ground again."""
 
 _LONGEST = 2.0
 """s after the release for which wheels may hop; what looks like it later is something else."""
@@ -54,12 +54,12 @@ class Landing(NamedTuple):
     certain
         First sample from which no tyre can have left the ground again.
     why
-        What that is known from, in words.
+        The reason, in words.
     landed
-        First sample after the last wheel that fell met the ground; None where no sensor tells.
+        First sample after the last wheel that fell met the ground; None where no sensor shows it.
     lifted
         Last sample, not before that, at which a tyre may have been off the ground once more; None where none can have been, or
-        no sensor tells.
+        no sensor shows it.
     """
 
     possible: int
@@ -69,10 +69,10 @@ class Landing(NamedTuple):
     lifted: int | None = None
 
 
-def weigh_corners(
+def measure_suspension_force(
     values: Real, rate: float, release: Release, sensors: Sequence[Sensor], dropped: Sequence[Wheel]
 ) -> dict[Wheel, float]:
-    """Weigh the corners by the release.
+    """Measure the static suspension force over the unsprung mass by the jump of the wheels' readings at the release.
 
     Parameters
     ----------
@@ -90,15 +90,15 @@ def weigh_corners(
     Returns
     -------
     dict
-        For each dropped wheel with a sensor the static suspension force over the unsprung mass, m/s².
+        m/s², for each dropped wheel with a sensor; NaN where its channel is left out.
     """
     window = slice(release.sample, release.sample + max(int(np.ceil(_JUMP * rate)), 2))
-    jumps: dict[Wheel, float] = {}
+    forces: dict[Wheel, float] = {}
     for channel, sensor in enumerate(sensors):
         if sensor.on is not None and sensor.on != "body" and sensor.on in dropped:
             lowest = float(values[channel, window].min() - release.rest.level[channel])
-            jumps[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
-    return jumps
+            forces[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
+    return forces
 
 
 def detect_landing(
@@ -110,7 +110,7 @@ def detect_landing(
     dropped: Sequence[Wheel],
     wheelbase: float,
 ) -> Landing | None:
-    """Find when every tyre has come down, and from when on it stays there.
+    """Detect when every tyre has come down, and from when on it stays there.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def detect_landing(
     sensors
         One for each channel.
     suspension
-        Static suspension force over unsprung mass, m/s², by wheel, as `weigh_corners` weighs it.
+        Static suspension force over unsprung mass, m/s², by wheel, from `measure_suspension_force`.
     dropped
         The wheels that fell.
     wheelbase
@@ -132,34 +132,43 @@ def detect_landing(
     Returns
     -------
     Landing or None
-        None where no wheel that can be judged ever left the ground and came back.
+        None where no wheel with a sensor left the ground and came back, or fewer than three body sensors have a position.
     """
-    reading = values - release.rest.level[:, None] + STANDARD_GRAVITY
-    body = [i for i, s in enumerate(sensors) if s.position is not None and not np.isnan(values[i]).any()]
+    whole = np.logical_not(np.isnan(values).any(axis=1))
+    body = [i for i, sensor in enumerate(sensors) if sensor.position is not None and whole[i]]
+    wheels: list[tuple[int, Wheel]] = [
+        (i, sensor.on)
+        for i, sensor in enumerate(sensors)
+        if sensor.on is not None and sensor.on != "body" and sensor.on in suspension and whole[i]
+    ]
     if len(body) < 3:
         return None
+    reading = values[:, release.sample : release.sample + int(_LONGEST * rate)] - release.rest.level[:, None]
     places = np.array([sensors[i].position for i in body], dtype=float)
     plane = np.column_stack([np.ones(len(body)), places[:, :2]])
     half_track = float(np.abs(places[:, 1]).mean())
-    first = last = 0
-    longest, impact, spike = int(_LONGEST * rate), int(_IMPACT * rate), 2 * int(_SPIKE * rate / 2) + 1
-    for channel, sensor in enumerate(sensors):
-        if sensor.on is None or sensor.on == "body" or sensor.on not in suspension or np.isnan(values[channel]).any():
-            continue
-        x = 0.0 if sensor.on in WHEELS[:2] else -wheelbase
-        y = half_track if sensor.on in ("fl", "rl") else -half_track
-        above = np.array([1.0, x, y]) @ np.linalg.pinv(plane) @ reading[body]
-        force = reading[channel] + suspension[sensor.on] * above / STANDARD_GRAVITY
-        static = STANDARD_GRAVITY + suspension[sensor.on]
-        force = median_filter(force[release.sample : release.sample + longest], size=spike)
-        low = np.flatnonzero(force < _ON_THE_GROUND * static)
-        if low.size:
-            last = max(last, release.sample + int(low[-1]) + 1)
-        if sensor.on in dropped:
-            first = max(first, steepest_rise(reading[channel, : release.sample + impact], release.sample))
+    corners = np.array(
+        [
+            [1.0, 0.0 if station[0] == "f" else -wheelbase, half_track if station[1] == "l" else -half_track]
+            for _, station in wheels
+        ]
+    ).reshape(-1, 3)
+    static = np.array([suspension[station] for _, station in wheels])[:, None]
+    above = corners @ np.linalg.pinv(plane) @ (reading[body] + STANDARD_GRAVITY)
+    own = reading[[channel for channel, _ in wheels]]
+    tyre_force = own + STANDARD_GRAVITY + static * above / STANDARD_GRAVITY
+    airborne = _without_short_runs(tyre_force < _ON_THE_GROUND * (STANDARD_GRAVITY + static), int(_SPIKE * rate / 2))
+    low = np.flatnonzero(airborne.any(axis=0))
+    last = release.sample + int(low[-1]) + 1 if low.size else 0
+    falls = [
+        release.sample + find_steepest_rise(signal[: int(_IMPACT * rate)])
+        for signal, (_, station) in zip(own, wheels, strict=True)
+        if station in dropped
+    ]
+    first = max(falls, default=0)
     if not (first or last):
         return None
-    # The rise tells the landing to a few samples; what lies before it costs nothing, for the fit will say where it was.
+    # The rise shows the landing to a few samples; what lies before it costs nothing, for the fit estimates where it was.
     possible = max((first or last) - int(np.ceil(_EARLIER * rate)), release.sample)
     why = (
         "no tyre can be off the ground any more" if last > first else "every wheel that fell has landed and stays down"
@@ -167,15 +176,22 @@ def detect_landing(
     return Landing(possible, max(first, last), why, first or None, last - 1 if last > first else None)
 
 
-def steepest_rise(reading: Real, release: int) -> int:
-    """Give the sample after the steepest rise between the release and the wheel's hardest impact.
+def _without_short_runs(flags: Flags, half: int) -> Flags:
+    """Return the running median of flags, shape (channel, time), over twice so many samples and one, reflected at the ends."""
+    if not flags.size:
+        return flags
+    padded = np.pad(flags, ((0, 0), (half + 1, half)), mode="symmetric")
+    count = np.cumsum(padded, axis=1)
+    return np.asarray(count[:, 2 * half + 1 :] - count[:, : -2 * half - 1] > half)
+
+
+def find_steepest_rise(reading: Real) -> int:
+    """Return the sample after the steepest rise before the hardest impact.
 
     Parameters
     ----------
     reading
-        Of one sensor on a wheel, positive up, shape (time,).
-    release
-        Sample of the release.
+        Of one sensor on a wheel from the release on, positive up, shape (time,).
     """
-    impact = release + int(np.argmax(reading[release:]))
-    return impact if impact - release < 2 else release + int(np.argmax(np.diff(reading[release : impact + 1]))) + 1
+    impact = int(np.argmax(reading))
+    return impact if impact < 2 else int(np.argmax(np.diff(reading[: impact + 1]))) + 1

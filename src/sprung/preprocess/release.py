@@ -8,24 +8,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 Real = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 _QUIET = 0.04
 """s: no channel stays within its noise for so long once the vehicle has begun to move."""
 
 _SMALL = 0.03
-"""Part of a channel's peak that is taken as rest however quiet the sensor: wind, somebody at the lever."""
+"""Part of a channel's peak that counts as rest however quiet the sensor: wind, somebody at the lever."""
 
-STANDS_OUT = 30.0
-"""Peak over the spread of the first samples in the clearest channel, below which the recording does not begin at rest."""
+PEAK_OVER_NOISE = 30.0
+"""Peak over the standard deviation of the first samples in the clearest channel, below which a recording shows no release."""
 
 _FEW = 20
-"""Samples that a first look at the noise needs at least."""
+"""Samples from which the noise is first estimated, at the least."""
 
 _FILLED_IN = 0.01
 """Part of the steps of a channel that may be smaller than its resolution."""
 
 _REST = 0.3
-"""s before the release from which rest level and noise are taken."""
+"""s before the release from which rest level and noise are estimated."""
+
+_FEWEST = 4
+"""Samples of a rest at the least."""
 
 
 class StaticBaseline(NamedTuple):
@@ -36,9 +40,9 @@ class StaticBaseline(NamedTuple):
     level
         Mean reading of each channel, m/s², shape (channel,); NaN where the recording shows no rest.
     noise
-        Readings less level and creep, m/s², shape (channel, time); no samples where the recording shows no rest.
+        Readings less level and linear creep, m/s², shape (channel, time); no samples where the recording shows no rest.
     step
-        The smallest step each channel ever takes as recorded, m/s², shape (channel,); NaN where the recording shows no rest.
+        Resolution of each channel as recorded, m/s², shape (channel,); NaN where the recording shows no rest.
     """
 
     level: Real
@@ -62,47 +66,62 @@ class Release(NamedTuple):
 
 
 def unknown_baseline(channels: int) -> StaticBaseline:
-    """Give the rest of a recording that shows none.
+    """Return the baseline of a recording that shows no rest.
 
     Parameters
     ----------
     channels
-        How many there are.
+        Number of channels.
 
     Returns
     -------
-    Rest
-        NaN everywhere.
+    StaticBaseline
+        NaN everywhere, without samples of noise.
     """
     return StaticBaseline(np.full(channels, np.nan), np.empty((channels, 0)), np.full(channels, np.nan))
 
 
 def detect_release(
-    values: Real, rate: float, stands_out: float = STANDS_OUT, watched: NDArray[np.bool_] | None = None
+    values: Real, rate: float, peak_over_noise: float = PEAK_OVER_NOISE, active: Flags | None = None
 ) -> Release | None:
-    """Find the release.
+    """Detect the release.
 
     Parameters
     ----------
     values
-        Usable channels, shape (channel, time), m/s².
+        Shape (channel, time), m/s²; a channel with any NaN is left out.
     rate
         Samples per second.
-    stands_out
-        Peak over the spread of the first samples in the clearest channel, below which there is no release.
-    watched
-        Which channels tell the moment, shape (channel,); all where it is left out.
+    peak_over_noise
+        Peak over the standard deviation of the first samples in the clearest channel, below which there is no release.
+    active
+        Channels that show the moment of the release, shape (channel,); all of them by default.
 
     Returns
     -------
     Release or None
-        None where the recording shows no rest before the motion.
+        Baseline NaN in channels that are left out. None where the recording shows no rest before the motion.
 
     Notes
     -----
     The landing is the largest event of a recording, all channels taken together. Going back from it, the release is where
     the last stretch ends in which every channel stays within its own noise.
     """
+    usable = np.logical_not(np.isnan(values).any(axis=1))
+    if not usable.any():
+        return None
+    if usable.all():
+        return _detect(values, rate, peak_over_noise, active)
+    found = _detect(values[usable], rate, peak_over_noise, None if active is None else active[usable])
+    if found is None:
+        return None
+    level, step = np.full((2, len(values)), np.nan)
+    noise = np.full((len(values), found.rest.noise.shape[1]), np.nan)
+    level[usable], noise[usable], step[usable] = found.rest
+    return Release(found.sample, StaticBaseline(level, noise, step))
+
+
+def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | None) -> Release | None:
     width = max(round(_QUIET * rate), 3)
     if values.shape[1] < 4 * width:
         return None
@@ -111,27 +130,28 @@ def detect_release(
     # A coarse sensor at rest may show one step, or none at all: its noise is then no less than its resolution's.
     step = resolution(values)
     spread = np.max(
-        [1.4826 * np.median(np.abs(first - level), axis=1), 0.6 * first.std(axis=1), step / np.sqrt(12)],
-        axis=0,
+        [1.4826 * np.median(np.abs(first - level), axis=1), 0.6 * first.std(axis=1), step / np.sqrt(12)], axis=0
     )[:, None]
     deviation = np.abs(values - level)
     peak = np.maximum(deviation.max(axis=1, keepdims=True), 1e-300)
-    told = np.ones(len(values), dtype=bool) if watched is None else watched
-    moving = (deviation > np.maximum(8 * spread, _SMALL * peak))[told].any(axis=0)
-    clear = (peak > stands_out * spread) & told[:, None]
+    clear = peak > peak_over_noise * spread
+    if active is not None:
+        clear &= active[:, None]
     if not clear.any():
         return None
     # A landing shows in every channel that shows anything, a spike in one.
-    landing = int(np.argmax((deviation / peak * clear).sum(axis=0)))
+    landing = int(np.argmax((clear / peak).T @ deviation))
     if landing < width:
         return None
-    run = np.convolve(moving[:landing], np.ones(width), mode="valid")
-    quiet = np.flatnonzero(run == 0)
+    watched = slice(None) if active is None else active
+    moving = (deviation[watched, :landing] > np.maximum(8 * spread, _SMALL * peak)[watched]).any(axis=0)
+    events = np.concatenate([[-1], np.flatnonzero(moving), [landing]])
+    quiet = np.flatnonzero(np.diff(events) > width)
     if quiet.size == 0:
         return None
-    sample = int(quiet[-1]) + width
+    sample = int(events[quiet[-1] + 1])
     rest = values[:, max(0, sample - int(_REST * rate)) : sample - 1]
-    if rest.shape[1] < 4:
+    if rest.shape[1] < _FEWEST:
         return None
     # A vehicle on blocks may still creep a little: a straight line is taken off before the noise is read.
     centred = np.arange(rest.shape[1]) - (rest.shape[1] - 1) / 2
@@ -141,14 +161,26 @@ def detect_release(
 
 
 def resolution(values: Real) -> Real:
-    """Give the smallest step that each channel usually takes, m/s²: its resolution, if that is coarse; shape (channel,).
+    """Return the resolution of each channel: the smallest step that it usually takes.
 
-    Steps below it are those of a few samples that were filled in.
+    Parameters
+    ----------
+    values
+        Shape (channel, time), any unit; NaN in channels that are left out.
+
+    Returns
+    -------
+    ndarray
+        Unit of the values, shape (channel,); 0 for a channel that never changes. Steps below it are those of a few samples
+        that were filled in.
     """
+    steps = np.abs(np.diff(values, axis=1))
+    taken = np.count_nonzero(steps > 0, axis=1)
+    # In the order of size the steps of zero come first, NaN last.
+    rank = np.count_nonzero(steps == 0, axis=1) + (_FILLED_IN * taken).astype(int)
     smallest = np.zeros(len(values))
-    for channel, steps in enumerate(np.abs(np.diff(values, axis=1))):
-        taken = steps[steps > 0]
-        if taken.size:
-            few = int(_FILLED_IN * taken.size)
-            smallest[channel] = np.partition(taken, few)[few]
+    for place in set(rank[taken > 0].tolist()):
+        rows = np.flatnonzero((taken > 0) & (rank == place))
+        # NumPy selects two places of an order ten times as fast as one.
+        smallest[rows] = np.partition(steps[rows], (place, -1), axis=1)[:, place]
     return smallest

@@ -1,4 +1,4 @@
-"""Periods of the body compared between drops of the same wheels: a vehicle with another mass swings at another rate.
+"""Slow motion: periods of the body compared between drops of the same wheels; another mass swings at another rate.
 
 Two drops of the same wheels from about the same height begin alike, so that the slow motion of one is that of the other with
 its time stretched by the ratio of their periods. That ratio needs no model, no place of a sensor and no fit.
@@ -7,7 +7,6 @@ its time stretched by the ratio of their periods. That ratio needs no model, no 
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -47,106 +46,95 @@ _LEAST = 0.015
 little, and a heavier body still moves less."""
 
 
-@dataclass(frozen=True, eq=False)
-class SlowMotion:
-    """What is slow of a drop.
+def extract_slow_motion(values: Real, rate: float, release: int, level: Real) -> Real:
+    """Extract the slow motion of the body from a drop.
 
-    Attributes
+    Parameters
     ----------
     values
-        Off the rest, m/s², `_RATE` samples per second from the release on, shape (channel, time).
+        m/s², shape (channel, time); NaN in channels that are left out.
+    rate
+        Samples per second.
+    release
+        Sample of the release.
+    level
+        What the channels read at rest, m/s², shape (channel,).
+
+    Returns
+    -------
+    ndarray
+        Off the rest, m/s², shape (channel, time), 50 samples per second from the release on; 0 in channels that are left out.
     """
-
-    values: Real
-
-    @classmethod
-    def of(cls, values: Real, rate: float, release: int, level: Real) -> SlowMotion:
-        """Take it from a recording.
-
-        Parameters
-        ----------
-        values
-            m/s², shape (channel, time); NaN in channels that are left out.
-        rate
-            Samples per second.
-        release
-            Sample of the release.
-        level
-            What the channels read at rest, m/s², shape (channel,).
-        """
-        last = release + int((_END + 0.5) * _STRETCHES[-1] * rate)
-        moved = np.nan_to_num(values[:, release:last] - level[:, None])
-        if moved.shape[1] < 2:
-            return cls(np.zeros((len(values), 0)))
-        smooth = gaussian_filter1d(moved, rate / (2 * np.pi * _HIGHEST), axis=1, mode="nearest")
-        time = np.arange(moved.shape[1]) / rate
-        return cls(np.array([np.interp(np.arange(0, time[-1], 1 / _RATE), time, one) for one in smooth]))
-
-    def at(self, channels: Sequence[int | None]) -> SlowMotion:
-        """Return the same of other channels, by their index here; one that it does not have rests."""
-        padded = np.vstack([self.values, np.zeros((1, self.values.shape[1]))])
-        return SlowMotion(padded[[-1 if channel is None else channel for channel in channels]])
-
-    def beside(self, other: SlowMotion) -> tuple[float, float]:
-        """Return the logarithms of this drop's periods and size over those of another; NaN where the two are not alike.
-
-        Parameters
-        ----------
-        other
-            Of a drop of the same wheels, with the same channels.
-
-        Returns
-        -------
-        tuple of float
-            Logarithms of the ratio of the periods and of the ratio of the amplitudes.
-        """
-        end = min(
-            _END, (other.values.shape[1] - 1) / _RATE / _STRETCHES[-1] - 0.05, self.values.shape[1] / _RATE - 0.05
-        )
-        time = np.arange(_BEGIN, end, 1 / _RATE)
-        if time.size < _RATE / 2:
-            return float("nan"), float("nan")
-        own = self.values[:, round(_BEGIN * _RATE) :][:, : time.size]
-        clock = np.arange(other.values.shape[1]) / _RATE
-        energy = float((own * own).sum())
-        best, stretch, size = np.inf, np.nan, np.nan
-        for ratio in _STRETCHES.tolist():
-            for shift in _SHIFTS.tolist():
-                warped = np.array(
-                    [np.interp(_BEGIN + shift + ratio * (time - _BEGIN), clock, one) for one in other.values]
-                )
-                scale = float((own * warped).sum() / max(float((warped * warped).sum()), np.finfo(float).tiny))
-                left = float(((own - scale * warped) ** 2).sum())
-                if left < best:
-                    best, stretch, size = left, ratio, scale
-        if not best < _ALIKE * energy or size <= 0:
-            return float("nan"), float("nan")
-        period, growth = -float(np.log(stretch)), float(np.log(size))
-        of_slower = growth * float(np.sign(period))
-        by_mass = -_PER_PERIOD * abs(period) - _SMALLER < of_slower < _LARGER
-        return (period, growth) if by_mass else (float("nan"), float("nan"))
+    last = release + int((_END + 0.5) * _STRETCHES[-1] * rate)
+    moved = np.nan_to_num(values[:, release:last] - level[:, None])
+    if moved.shape[1] < 2:
+        return np.zeros((len(values), 0))
+    smooth = gaussian_filter1d(moved, rate / (2 * np.pi * _HIGHEST), axis=1, mode="nearest")
+    time = np.arange(moved.shape[1]) / rate
+    return np.array([np.interp(np.arange(0, time[-1], 1 / _RATE), time, channel) for channel in smooth])
 
 
-def find_slower_drops(kinds: Sequence[Hashable], motions: Sequence[SlowMotion]) -> tuple[bool | None, ...]:
-    """Tell two groups of drops that swing at different rates.
+def compare_periods(own: Real, other: Real) -> tuple[float, float]:
+    """Compare the periods and the size of the slow motion of two drops of the same wheels.
+
+    Parameters
+    ----------
+    own, other
+        From `extract_slow_motion`, the same channels, shape (channel, time).
+
+    Returns
+    -------
+    tuple of float
+        Logarithms of the ratio of the periods and of the ratio of the amplitudes, own over other; NaN where the two are not
+        alike but for time and size, or another mass is not the reason for the difference.
+    """
+    nothing = float("nan"), float("nan")
+    end = min(_END, (other.shape[1] - 1) / _RATE / _STRETCHES[-1] - 0.05, own.shape[1] / _RATE - 0.05)
+    time = np.arange(_BEGIN, end, 1 / _RATE)
+    if time.size < _RATE / 2:
+        return nothing
+    own = own[:, round(_BEGIN * _RATE) :][:, : time.size]
+    # The other drop at all stretches and shifts of time: linear interpolation, shape (channel, stretch, shift, time).
+    at = (_BEGIN + _SHIFTS[:, None] + _STRETCHES[:, None, None] * (time - _BEGIN)) * _RATE
+    before = np.clip(at.astype(int), 0, other.shape[1] - 2)
+    part = np.clip(at - before, 0.0, 1.0)
+    warped = other[:, before] * (1 - part) + other[:, before + 1] * part
+    energy = float((own * own).sum())
+    size = np.einsum("crst,crst->rs", warped, warped)
+    scale = np.einsum("ct,crst->rs", own, warped) / np.maximum(size, np.finfo(float).tiny)
+    residual = energy - scale**2 * size
+    best = np.unravel_index(int(np.argmin(residual)), residual.shape)
+    if not residual[best] < _ALIKE * energy or scale[best] <= 0:
+        return nothing
+    period, growth = -float(np.log(_STRETCHES[best[0]])), float(np.log(scale[best]))
+    of_slower = growth * float(np.sign(period))
+    by_mass = -_PER_PERIOD * abs(period) - _SMALLER < of_slower < _LARGER
+    return (period, growth) if by_mass else nothing
+
+
+def find_slower_drops(kinds: Sequence[Hashable], motions: Sequence[Real]) -> tuple[bool | None, ...]:
+    """Find the drops that swing more slowly than others, as with another mass.
 
     Parameters
     ----------
     kinds
-        Of each drop what has to be alike for two of them to be compared, such as the wheels that fell.
+        Of each drop what has to be the same for two of them to be compared, such as the wheels that fell.
     motions
-        Of each drop, the same channels.
+        Of each drop from `extract_slow_motion`, the same channels.
 
     Returns
     -------
     tuple of bool or None
-        For each drop whether it is of the slower group, None where it was compared and nothing tells; a drop that no other is
-        like is of the quicker one. Empty where all swing at one rate, or only one drop or a minority of the kinds does not.
+        For each drop whether it is of the slower group, None where it was compared without a clear result; a drop that has no
+        other of its kind is of the quicker one. Empty where all swing at one rate, or only one drop or a minority of the kinds
+        does not.
     """
-    several = [kind for kind in dict.fromkeys(kinds) if sum(one == kind for one in kinds) > 1]
-    compared = {kind: _beside_first([i for i, one in enumerate(kinds) if one == kind], motions) for kind in several}
+    several = [kind for kind in dict.fromkeys(kinds) if list(kinds).count(kind) > 1]
+    compared = {
+        kind: _compare_with_first([i for i, own in enumerate(kinds) if own == kind], motions) for kind in several
+    }
     periods = {kind: {drop: period for drop, (period, _) in own.items()} for kind, own in compared.items()}
-    clear = {kind: found for kind, own in periods.items() if (found := _split(own, _ANOTHER))}
+    clear = {kind: split for kind, own in periods.items() if (split := _split(own, _ANOTHER))}
     slow = sum(len(slower) for _, slower in clear.values())
     if slow < 2 or 2 * len(clear) < len(periods):
         return ()
@@ -161,13 +149,13 @@ def find_slower_drops(kinds: Sequence[Hashable], motions: Sequence[SlowMotion]) 
     return tuple(groups)
 
 
-def _beside_first(drops: Sequence[int], motions: Sequence[SlowMotion]) -> dict[int, tuple[float, float]]:
+def _compare_with_first(drops: Sequence[int], motions: Sequence[Real]) -> dict[int, tuple[float, float]]:
     first, *others = drops
-    return {first: (0.0, 0.0), **{drop: motions[drop].beside(motions[first]) for drop in others}}
+    return {first: (0.0, 0.0), **{drop: compare_periods(motions[drop], motions[first]) for drop in others}}
 
 
 def _split(periods: dict[int, float], least: float) -> tuple[tuple[int, ...], tuple[int, ...]] | None:
-    """Part drops of one kind at the largest step of their periods; None where no step is clear."""
+    """Split drops of one kind at the largest step of their periods; None where no step is clear."""
     ordered = sorted((drop for drop in periods if np.isfinite(periods[drop])), key=periods.__getitem__)
     steps = [periods[later] - periods[earlier] for earlier, later in pairwise(ordered)]
     if not steps or max(steps) < least:

@@ -2,34 +2,34 @@
 
 from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
-from sprung.report.drawing.svg import svg_of
+from sprung.report.drawing.svg import picture_svg
 from sprung.report.drawings import draw_check, draw_validation
 from sprung.report.folder import (
     REPORT_FILES,
     RESULT_FILES,
-    Saved,
+    SavedResult,
     add_report,
     save_result,
     write_check,
     write_report,
     write_validation,
 )
-from sprung.report.page.check_page import CHECK_FILE, check_page
+from sprung.report.page.check import CHECK_FILE, check_html
 from sprung.report.page.pdf import pdf_of
-from sprung.report.page.result_page import drawn_page, page_of
+from sprung.report.page.report import render_report, report_html
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.decays import LoadDecays, decays_by_load
 from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.parameters import parameters_picture
-from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.pictures.spectra import spectra_picture
 from sprung.report.pictures.stability import stability_picture
-from sprung.report.pictures.wire_car import BODY_EDGES, STRUTS, wire_car
-from sprung.report.sketch.shapes import Disc, Drawing, Stroke, Words
+from sprung.report.pictures.wire_frame import BODY_EDGES, STRUTS, wire_frame
+from sprung.report.sketch.shapes import Disc, Drawing, Stroke, TextShape
 from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
 from sprung.report.sketch.sketch import VehicleSketch, vehicle_sketch
-from sprung.report.sketch.svg import drawing_svg
+from sprung.report.sketch.svg import sketch_svg
 from sprung.report.terminal.check import check_view
 from sprung.report.terminal.comparison import comparison_view
 from sprung.report.terminal.draft import draft_view
@@ -58,43 +58,43 @@ __all__ = [
     "Picture",
     "Points",
     "Rule",
-    "Saved",
+    "SavedResult",
     "Stroke",
+    "TextShape",
     "VehicleSketch",
-    "Words",
     "add_report",
     "amplitude_pictures",
     "blank_sketch",
     "channels_picture",
-    "check_page",
+    "check_html",
     "check_view",
     "comparison_view",
     "decays_by_load",
     "draft_view",
     "draw_check",
     "draw_validation",
-    "drawing_svg",
-    "drawn_page",
+    "landing_picture",
     "modes_view",
     "motion_picture",
-    "near_picture",
-    "page_of",
     "paper_view",
     "parameters_picture",
     "pdf_of",
+    "picture_svg",
     "plan_view",
+    "recording_picture",
+    "render_report",
+    "report_html",
     "result_view",
     "save_result",
     "sketch_sheet",
+    "sketch_svg",
     "spectra_picture",
     "stability_picture",
-    "svg_of",
     "text_of",
     "truth_view",
     "validation_view",
     "vehicle_sketch",
-    "whole_picture",
-    "wire_car",
+    "wire_frame",
     "write_check",
     "write_report",
     "write_validation",

@@ -8,16 +8,16 @@ from pathlib import PurePath
 
 from sprung.assessment import DropValidation
 from sprung.checking import Check, DropReport
-from sprung.report.drawing.sheet import sheet
+from sprung.report.drawing.sheet import draw_sheet
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.motions import motion_picture
-from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.terminal.validation import AMPLITUDES
 from sprung.study import Validation
 
 
 def draw_check(check: Check) -> dict[str, str]:
-    """Draw every drop: its channels one above the other, when what happened, which part is used, what is wrong where.
+    """Return a drawing of every drop of a check: its recording with events, free decay and faulty samples.
 
     Parameters
     ----------
@@ -27,31 +27,33 @@ def draw_check(check: Check) -> dict[str, str]:
     Returns
     -------
     dict
-        SVG text by file name, in the campaign's order, of the recordings that could be read; the same for the same recordings.
+        SVG text by file name, in the order of the campaign, of the readable recordings; identical for identical recordings.
     """
     drawn = {}
     for name, drop, recorded in zip(_names(check), check.drops, check.recorded, strict=False):
-        pictures = [picture for picture in (whole_picture(drop, recorded), near_picture(drop, recorded)) if picture]
-        drawn[name] = sheet(drop.label, list(_drop_lines(drop)), pictures)
+        pictures = [
+            picture for picture in (recording_picture(drop, recorded), landing_picture(drop, recorded)) if picture
+        ]
+        drawn[name] = draw_sheet(drop.label, list(_drop_lines(drop)), pictures)
     return drawn
 
 
 def _drop_lines(drop: DropReport) -> Iterator[tuple[str, bool]]:
-    """Say what a drop is, which part of it is used and why, each line with whether it tells of something wrong."""
+    """Yield the description of a drop in lines, each with whether it is a warning."""
     wheels = "" if drop.kind == " ".join(drop.wheels) else f" ({', '.join(drop.wheels)})"
-    rate = "" if drop.rate is None else f", {drop.rate:.6g} samples per second"
+    rate = "" if drop.rate is None else f", {drop.rate:.6g} Hz"
     yield f"{drop.kind or 'wheels not known'}{wheels}, load {drop.load or 'not stated'}{rate}", False
     if drop.start is None or drop.end is None:
         yield f"left out: {', '.join(drop.faults)}", True
     else:
-        yield f"decay from {drop.start:.3f} s: {drop.why_start}", False
-        yield f"to {drop.end:.3f} s: {drop.why_end}", False
+        yield f"free decay from {drop.start:.3f} s ({drop.why_start})", False
+        yield f"to {drop.end:.3f} s ({drop.why_end})", False
     if drop.contradicted:
-        yield f"the release shows {', '.join(drop.wheels_seen or ()) or 'no wheel'} to have fallen", True
+        yield f"wheels detected at the release: {', '.join(drop.wheels_seen or ()) or 'none'}", True
 
 
 def draw_validation(validation: Validation) -> dict[str, str]:
-    """Draw a validation: each drop in coordinates of the body, and the modes of the body against amplitude.
+    """Return the drawings of a cross-validation: the body's motion in each drop, and its modes against amplitude.
 
     Parameters
     ----------
@@ -61,18 +63,18 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     Returns
     -------
     dict
-        SVG text by file name; the same for the same recordings.
+        SVG text by file name; identical for identical recordings.
     """
     result = validation.result
     drawn = {}
     if pictures := amplitude_pictures(validation.amplitudes):
         title = f"{result.name}, {validation.load}: modes of the body against amplitude"
-        drawn["amplitude.svg"] = sheet(title, [(AMPLITUDES, False)], pictures)
+        drawn["amplitude.svg"] = draw_sheet(title, [(AMPLITUDES, False)], pictures)
     names = file_names(["amplitude", *result.series])
     next(names)  # taken by the drawing above
     for name, (drop, series) in zip(names, result.series.items(), strict=True):
         picture = motion_picture(drop, series, result.validation[drop])
-        drawn[name] = sheet(drop, [(_error_text(result.validation[drop]), False)], [picture])
+        drawn[name] = draw_sheet(drop, [(_error_text(result.validation[drop]), False)], [picture])
     return drawn
 
 

@@ -1,4 +1,4 @@
-"""The results folder: results.json and series.npz first, then the report beside them."""
+"""Files in folders: results and report, check, cross-validation; all files of a call or none."""
 
 from __future__ import annotations
 
@@ -11,44 +11,44 @@ from sprung.checking import Check
 from sprung.errors import InputError, Omissions
 from sprung.files import atomic_write
 from sprung.report.drawings import draw_check
-from sprung.report.page.check_page import CHECK_FILE, check_page
+from sprung.report.page.check import CHECK_FILE, check_html
 from sprung.report.page.pdf import PDF_FILE, pdf_of
-from sprung.report.page.result_page import FILE, drawn_page
+from sprung.report.page.report import FILE, render_report
 from sprung.results import Result, load
 from sprung.study import Validation
 
 RESULT_FILES = ("results.json", "series.npz")
-"""What programs read; the report can be made from it."""
+"""Files for programs, from which the report is made."""
 
 REPORT_FILES = (*RESULT_FILES, FILE)
-"""What an identification writes with its report."""
+"""All files of an identification."""
 
 
-class Saved(NamedTuple):
-    """What was written.
+class SavedResult(NamedTuple):
+    """A result and its files.
 
     Attributes
     ----------
     result
-        With everything that is missing named in its ``omissions``.
+        With every part that could not be written in its ``omissions``.
     files
-        Every file, results.json first.
+        Paths, results.json first.
     """
 
     result: Result
     files: tuple[Path, ...]
 
 
-def save_result(result: Result, folder: Path, *, overwrite: bool = False) -> Saved:
-    """Write results.json and series.npz, before anything is drawn.
+def save_result(result: Result, folder: Path, *, overwrite: bool = False) -> SavedResult:
+    """Write results.json and series.npz.
 
     Parameters
     ----------
     result
         From `sprung.identify`.
     folder
-        Made if it does not exist. An earlier result of sprung's is replaced; a report of it goes, for it would be read as
-        this one's.
+        Made if it does not exist. An earlier result of sprung is replaced, and its report deleted, because it would not belong
+        to this result.
     overwrite
         Whether files that sprung did not write, or that were changed since, are replaced too.
 
@@ -63,11 +63,11 @@ def save_result(result: Result, folder: Path, *, overwrite: bool = False) -> Sav
     """
     files = result.files()
     atomic_write(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
-    return Saved(result, tuple(folder / name for name in reversed(files)))
+    return SavedResult(result, tuple(folder / name for name in reversed(files)))
 
 
-def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Saved:
-    """Write the report beside a result that is saved; what of it cannot be drawn is named in results.json too.
+def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> SavedResult:
+    """Write the report beside a saved result; parts that cannot be drawn are listed in results.json too.
 
     Parameters
     ----------
@@ -84,54 +84,54 @@ def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Save
         As `save_result`.
     """
     omissions, page = Omissions(result.omissions), ""
-    with omissions.noting("The report", "written"):
-        page, missing = drawn_page(result)
+    with omissions.record_failure("The report", "written"):
+        page, missing = render_report(result)
         omissions.add(missing)
     result = replace(result, omissions=omissions.sentences)
     files = ({FILE: page.encode()} if page else {}) | result.files()
     atomic_write(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
-    return Saved(result, tuple(folder / name for name in reversed(files)))
+    return SavedResult(result, tuple(folder / name for name in reversed(files)))
 
 
-def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) -> Saved:
-    """Write the report of a result again, from its folder alone.
+def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) -> SavedResult:
+    """Write the report of a saved result.
 
     Parameters
     ----------
     folder
         With results.json and series.npz, as `Result.save` writes it.
     pdf
-        Whether to write it for paper too.
+        Whether to write it as PDF too.
     overwrite
         Whether a report that sprung did not write, or that was changed since, is replaced too.
 
     Returns
     -------
     Saved
-        report.html, and report.pdf where it was asked for and could be written.
+        report.html, and report.pdf where requested and possible.
 
     Raises
     ------
     InputError
-        If the result cannot be read, other files would be overwritten, the folder cannot be written, or there is no library
-        that writes PDF.
+        If the result cannot be read, other files would be overwritten, the folder cannot be written, or the library for PDF
+        is not installed.
     """
     result = load(folder)
-    page, missing = drawn_page(result)
+    page, missing = render_report(result)
     omissions = Omissions(missing)
     files = {FILE: page.encode()}
     if pdf:
-        with omissions.noting("The report for paper", "written", unless=(InputError,)):
+        with omissions.record_failure("The report as PDF", "written", unless=(InputError,)):
             files[PDF_FILE] = pdf_of(result)
     atomic_write(folder, files, overwrite=overwrite)
     written = tuple(folder / name for name in files)
-    return Saved(replace(result, omissions=omissions.sentences), written)
+    return SavedResult(replace(result, omissions=omissions.sentences), written)
 
 
 def write_check(
     check: Check, folder: Path, *, page: bool = True, drawings: bool = False, overwrite: bool = False
 ) -> tuple[Path, ...]:
-    """Write the page of a check, and drawings of its drops, into a folder: all files or none.
+    """Write the page of a check, and drawings of its drops, into a folder.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def write_check(
     InputError
         If such files would be overwritten, or the folder cannot be written.
     """
-    files = ({CHECK_FILE: check_page(check)} if page else {}) | (draw_check(check) if drawings else {})
+    files = ({CHECK_FILE: check_html(check)} if page else {}) | (draw_check(check) if drawings else {})
     atomic_write(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
     return tuple(folder / name for name in files)
 
@@ -164,7 +164,7 @@ def write_check(
 def write_validation(
     validation: Validation, folder: Path, drawings: Mapping[str, str], *, overwrite: bool = False
 ) -> tuple[Path, ...]:
-    """Write numbers, series and drawings into a folder, all of them or none.
+    """Write numbers, series and drawings of a cross-validation into a folder.
 
     Parameters
     ----------

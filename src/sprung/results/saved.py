@@ -71,7 +71,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
         found = "a file that was changed after it was written (its checksum differs)"
         problems.add(str(path), found, "a result as sprung wrote it", _REMEDY)
     if series:
-        with problems.collecting():
+        with problems.collect():
             arrays = _read_arrays(path.with_name("series.npz"), checksums.get("series"))
             if result is not None:
                 result = _with_series(result, arrays, path.with_name("series.npz"))

@@ -22,7 +22,7 @@ FIVE_DROPS: tuple[tuple[Wheel, ...], ...] = (WHEELS, ("fl", "fr"), ("rl", "rr"),
 
 
 def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
-    """Give eight accelerometers as in the paper: one at each corner of the body, one on each wheel.
+    """Return eight accelerometers as in the paper: one at each corner of the body, one on each wheel.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
 
 
 def default_drops(loads: Iterable[Load]) -> tuple[Drop, ...]:
-    """Give the paper's drops of all, front, rear, left and right wheels with each load.
+    """Return the paper's drops of all, front, rear, left and right wheels with each load.
 
     Parameters
     ----------
@@ -60,13 +60,13 @@ def default_drops(loads: Iterable[Load]) -> tuple[Drop, ...]:
 def records(
     model: type[Record], kind: str, given: Sequence[Record | Mapping[str, Any]], problems: Problems
 ) -> tuple[Record, ...]:
-    """Make records of one kind; the faulty ones are left out and added to the problems."""
+    """Return records of one kind; invalid ones are left out and added to the problems."""
     made = [record(model, f"{kind}[{i}]", one, problems) for i, one in enumerate(given)]
     return tuple(one for one in made if one is not None)
 
 
 def record(model: type[Record], where: str, given: Record | Mapping[str, Any], problems: Problems) -> Record | None:
-    """Make a record from a mapping; None, and what is wrong added to the problems, if that cannot be."""
+    """Return the record of a mapping; None, with the problems noted, where it is invalid."""
     try:
         return given if isinstance(given, model) else parse_record(model, cast("Mapping[str, Any]", given))
     except ValidationError as error:
@@ -76,7 +76,7 @@ def record(model: type[Record], where: str, given: Record | Mapping[str, Any], p
 
 
 def name_files(drops: Sequence[Drop], what: str | None = None) -> tuple[Drop, ...]:
-    """Give every drop without one a file name of its own, numbered where it repeats.
+    """Return the drops with a unique file name each, numbered where it repeats.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from sprung.campaign import Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
+from sprung.campaign import DEFAULT_HEIGHT, Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
 from sprung.simulation.linear_drop import drop_from_blocks
@@ -18,9 +18,6 @@ from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle, nonlinear_elements
-
-DEFAULT_HEIGHT = 0.05
-"""Height of the blocks where a drop does not say, m."""
 
 
 def simulate(
@@ -124,7 +121,7 @@ def simulate(
     for drop in counted(progress, "simulating the drops", setup.drops):
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         released.append(replace(drop, height=height))
-        with problems.collecting():
+        with problems.collect():
             fall = drop_from_blocks(
                 vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity
             )

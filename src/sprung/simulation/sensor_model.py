@@ -111,7 +111,7 @@ class Sensing:
 
 
 def _levels(channels: list[str], noise: float | Mapping[str, float], problems: Problems) -> Array:
-    """Give each channel's noise, shape (channel,)."""
+    """Return the standard deviation of each channel's noise, m/s², shape (channel,)."""
     if not isinstance(noise, Mapping):
         if not (math.isfinite(noise) and noise >= 0):
             problems.add("simulate: noise", repr(noise), "a number that is not negative, m/s^2 rms", "Correct it.")

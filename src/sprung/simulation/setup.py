@@ -73,7 +73,7 @@ class SimulationSetup:
         model: ModelChoice | Mapping[str, Any] | None,
         problems: Problems,
     ) -> SimulationSetup:
-        """Put a test together from the arguments of `simulate`; what does not fit is added to the problems.
+        """Return the setup of a test from the arguments of `simulate`; every mistake in them is added to the problems.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class SimulationSetup:
     def campaign(
         self, drops: Sequence[Drop], accelerations: Iterable[Array], what: str, random: np.random.Generator
     ) -> Campaign:
-        """Measure what happened.
+        """Return the campaign that the sensors would have recorded.
 
         Parameters
         ----------
@@ -185,7 +185,7 @@ def _check_plausible(
     known: Mapping[str, KnownValue],
     problems: Problems,
 ) -> None:
-    """Add a problem for everything that a vehicle file may not state either."""
+    """Add a problem for every statement that a vehicle file may not make either."""
     check_statements(
         "simulate",
         sensors=sensors,

@@ -11,8 +11,8 @@ from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Problems
 from sprung.results import Result, load
-from sprung.study.scatter import Scatter, scatters, told_by
-from sprung.study.significance import Joint, holm, joint, two_sided
+from sprung.study.scatter import ScatterEstimate, complete_rows, estimate_scatter
+from sprung.study.significance import JointTest, holm, joint_test, two_sided
 from sprung.uncertainty import NORMAL_95
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, WHEEL_LOADS
 
@@ -31,7 +31,7 @@ _ABOUT_AXES = ("I_xx", "I_yy")
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Told:
+class ResultValue:
     """What one result says of a quantity.
 
     Attributes
@@ -85,7 +85,7 @@ class Difference:
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class QuantityComparison:
     """One row of the comparison.
 
     Attributes
@@ -99,13 +99,13 @@ class Quantity:
     """
 
     unit: str
-    told: tuple[Told, ...]
+    told: tuple[ResultValue, ...]
     differences: tuple[Difference, ...]
 
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Compared:
+class ComparedResult:
     """One of the results that are compared.
 
     Attributes
@@ -145,12 +145,12 @@ class Comparison:
         What must be known to read it, in sentences.
     """
 
-    results: tuple[Compared, ...]
+    results: tuple[ComparedResult, ...]
     per_total_mass: bool
-    parameters: dict[str, Quantity]
-    modes: dict[str, Quantity]
-    joint: tuple[Joint | None, ...]
-    scatter: dict[str, Scatter]
+    parameters: dict[str, QuantityComparison]
+    modes: dict[str, QuantityComparison]
+    joint: tuple[JointTest | None, ...]
+    scatter: dict[str, ScatterEstimate]
     notes: tuple[str, ...]
 
     @property
@@ -240,7 +240,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     problems = Problems()
     read: list[Result] = []
     for one in results:
-        with problems.collecting():
+        with problems.collect():
             read.append(one if isinstance(one, Result) else load(one, series=False))
     problems.raise_if_any()
     labels = tuple(names) if names is not None else _labels(results, read)
@@ -249,16 +249,16 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
     modes = _tested(_modes(read, labels))
     return Comparison(
         results=tuple(
-            Compared(label, one.name, one.verdict.state, one.verdict.reasons)
+            ComparedResult(label, one.name, one.verdict.state, one.verdict.reasons)
             for label, one in zip(labels, read, strict=True)
         ),
         per_total_mass=ratios,
         parameters=parameters,
         modes=modes,
         joint=tuple(_jointly(read[0], other, parameters, i) for i, other in enumerate(read[1:])),
-        scatter=scatters(
+        scatter=estimate_scatter(
             {
-                name: told_by((label, told.value, told.std) for label, told in zip(labels, row.told, strict=True))
+                name: complete_rows((label, told.value, told.std) for label, told in zip(labels, row.told, strict=True))
                 for name, row in {**parameters, **modes}.items()
             }
         ),
@@ -295,7 +295,7 @@ def _labels(given: Sequence[Result | str | Path], read: Sequence[Result]) -> tup
     )
 
 
-def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> dict[str, Quantity]:
+def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> dict[str, QuantityComparison]:
     names = [name for name in PARAMETERS if any(name in one.parameters for one in read)]
     # What only follows from the parameters would be asked twice; a profile is an interval of its own.
     names += [
@@ -313,7 +313,7 @@ def _parameters(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> 
             _difference(told[0], other, labels, i, _contradiction(read[0], read[i], name))
             for i, other in enumerate(told[1:], start=1)
         )
-        rows[name + _PER_MASS * per_mass] = Quantity(unit, told, differences)
+        rows[name + _PER_MASS * per_mass] = QuantityComparison(unit, told, differences)
     return rows
 
 
@@ -321,16 +321,20 @@ def _is_profiled(result: Result, name: str) -> bool:
     return name in result.derived and result.derived[name].interval_from == "profile"
 
 
-def _told(result: Result, name: str, per_mass: bool) -> Told:
+def _told(result: Result, name: str, per_mass: bool) -> ResultValue:
     if result.verdict.state == "reject":
-        return Told(None, None, "was rejected")
+        return ResultValue(None, None, "was rejected")
     found = result.parameters.get(name) or result.derived.get(name)
     if found is None:
-        return Told(None, None, _ABSENT)
+        return ResultValue(None, None, _ABSENT)
     if per_mass:
         ratio = result.scale.per_total_mass.get(name)
-        return Told(ratio.value, ratio.std) if ratio is not None else Told(None, None, "does not determine it")
-    return Told(found.value, found.std, "" if found.value is not None else "does not determine it")
+        return (
+            ResultValue(ratio.value, ratio.std)
+            if ratio is not None
+            else ResultValue(None, None, "does not determine it")
+        )
+    return ResultValue(found.value, found.std, "" if found.value is not None else "does not determine it")
 
 
 def _unit(result: Result, name: str, per_mass: bool) -> str | None:
@@ -353,7 +357,9 @@ def _contradiction(first: Result, second: Result, name: str) -> str:
     return ""
 
 
-def _difference(first: Told, second: Told, labels: Sequence[str], i: int, contradiction: str) -> Difference:
+def _difference(
+    first: ResultValue, second: ResultValue, labels: Sequence[str], i: int, contradiction: str
+) -> Difference:
     if first.why_not == second.why_not == _ABSENT:
         return Difference()
     silent = [f"{label} {one.why_not}" for label, one in ((labels[0], first), (labels[i], second)) if one.why_not]
@@ -369,7 +375,7 @@ def _difference(first: Told, second: Told, labels: Sequence[str], i: int, contra
     return Difference(value, std, (value - half, value + half), percent, value / std, two_sided(value / std))
 
 
-def _modes(read: Sequence[Result], labels: Sequence[str]) -> dict[str, Quantity]:
+def _modes(read: Sequence[Result], labels: Sequence[str]) -> dict[str, QuantityComparison]:
     rows = {}
     for load_name in [name for name in read[0].modes if all(name in one.modes for one in read)]:
         by_name = [{mode.name: mode for mode in one.modes[load_name]} for one in read]
@@ -379,18 +385,18 @@ def _modes(read: Sequence[Result], labels: Sequence[str]) -> dict[str, Quantity]
                 differences = tuple(
                     _difference(told[0], other, labels, i, "") for i, other in enumerate(told[1:], start=1)
                 )
-                rows[f"{load_name}, {mode}, {of.replace('_', ' ')}"] = Quantity(unit, told, differences)
+                rows[f"{load_name}, {mode}, {of.replace('_', ' ')}"] = QuantityComparison(unit, told, differences)
     return rows
 
 
-def _told_of_mode(result: Result, mode: object, of: str) -> Told:
+def _told_of_mode(result: Result, mode: object, of: str) -> ResultValue:
     if result.verdict.state == "reject":
-        return Told(None, None, "was rejected")
+        return ResultValue(None, None, "was rejected")
     std = getattr(mode, f"{of}_std", None)
-    return Told(None, None, "does not determine it") if std is None else Told(getattr(mode, of), std)
+    return ResultValue(None, None, "does not determine it") if std is None else ResultValue(getattr(mode, of), std)
 
 
-def _tested(rows: Mapping[str, Quantity]) -> dict[str, Quantity]:
+def _tested(rows: Mapping[str, QuantityComparison]) -> dict[str, QuantityComparison]:
     """Correct the chances of each result's differences for their number, and say what they mean."""
     changed = {name: list(row.differences) for name, row in rows.items()}
     for i in range(max((len(row.differences) for row in rows.values()), default=0)):
@@ -401,10 +407,10 @@ def _tested(rows: Mapping[str, Quantity]) -> dict[str, Quantity]:
     return {name: replace(row, differences=tuple(changed[name])) for name, row in rows.items()}
 
 
-def _jointly(first: Result, second: Result, parameters: Mapping[str, Quantity], i: int) -> Joint | None:
+def _jointly(first: Result, second: Result, parameters: Mapping[str, QuantityComparison], i: int) -> JointTest | None:
     if "reject" in (first.verdict.state, second.verdict.state):
         return None
-    return joint(first, second, [name for name, row in parameters.items() if row.differences[i].p is not None])
+    return joint_test(first, second, [name for name, row in parameters.items() if row.differences[i].p is not None])
 
 
 def _notes(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> Iterator[str]:

@@ -14,12 +14,21 @@ from typing import Any
 import numpy as np
 
 from sprung.analysis import AnalysisOptions, analyse, result_of, to_design
-from sprung.campaign import Campaign, CampaignSource, Drop, KnownValueLike, ModelChoice, read_vehicle, resolve_campaign
+from sprung.campaign import (
+    DEFAULT_HEIGHT,
+    Campaign,
+    CampaignSource,
+    Drop,
+    KnownValueLike,
+    ModelChoice,
+    read_vehicle,
+    resolve_campaign,
+)
 from sprung.errors import InputError, Problems
 from sprung.planning import MeasurementSetup, Plan, PlannedDrop, PlannedTest, tabulate_alternatives, tabulate_rejected
 from sprung.progress import Progress, Step, silent
 from sprung.selection import choose_structure
-from sprung.simulation import DEFAULT_HEIGHT, SimulationSetup
+from sprung.simulation import SimulationSetup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
 

@@ -22,7 +22,7 @@ _STANDS_OUT = 0.05
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Scatter:
+class ScatterEstimate:
     """One quantity over several results.
 
     Attributes
@@ -60,7 +60,7 @@ class Scatter:
         return self.p_holm <= _STANDS_OUT
 
 
-def scatters(quantities: Mapping[str, Sequence[tuple[str, float, float]]]) -> dict[str, Scatter]:
+def estimate_scatter(quantities: Mapping[str, Sequence[tuple[str, float, float]]]) -> dict[str, ScatterEstimate]:
     """Describe the scatter of several quantities.
 
     Parameters
@@ -83,7 +83,7 @@ def scatters(quantities: Mapping[str, Sequence[tuple[str, float, float]]]) -> di
     return {name: replace(one, p_holm=chance) for (name, one), chance in zip(described.items(), corrected, strict=True)}
 
 
-def _described(rows: Sequence[tuple[str, float, float]]) -> Scatter:
+def _described(rows: Sequence[tuple[str, float, float]]) -> ScatterEstimate:
     values, stds = np.array([row[1] for row in rows]), np.array([row[2] for row in rows])
     mean, mean_std, spread, size = _pooled(values, stds)
     apart = []
@@ -93,7 +93,7 @@ def _described(rows: Sequence[tuple[str, float, float]]) -> Scatter:
         apart.append((values[i] - middle) / np.sqrt(stds[i] ** 2 + of_middle**2 + among**2))
     furthest = int(np.argmax(np.abs(apart)))
     alone = float(2 * t.sf(abs(apart[furthest]), len(rows) - 2))
-    return Scatter(
+    return ScatterEstimate(
         names=tuple(row[0] for row in rows),
         mean=mean,
         mean_std=mean_std,
@@ -115,7 +115,7 @@ def _pooled(values: Real, stds: Real) -> tuple[float, float, float, float]:
     return float(np.average(values, weights=wide)), float(wide.sum() ** -0.5), float(np.sqrt(between)), size
 
 
-def told_by(rows: Iterable[tuple[str, float | None, float | None]]) -> list[tuple[str, float, float]]:
+def complete_rows(rows: Iterable[tuple[str, float | None, float | None]]) -> list[tuple[str, float, float]]:
     """Keep what has a value and an uncertainty of its own.
 
     Parameters

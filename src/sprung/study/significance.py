@@ -20,7 +20,7 @@ _RANK = 1e-6
 
 @shown
 @dataclass(frozen=True, slots=True)
-class Joint:
+class JointTest:
     """All quantities that two results have estimated, compared at once.
 
     Attributes
@@ -83,7 +83,7 @@ def holm(chances: Sequence[float]) -> list[float]:
     return [float(one) for one in corrected]
 
 
-def joint(first: Result, second: Result, among: Sequence[str]) -> Joint | None:
+def joint_test(first: Result, second: Result, among: Sequence[str]) -> JointTest | None:
     """Compare what two results both estimated, with the correlations that they tell.
 
     Parameters
@@ -109,7 +109,7 @@ def joint(first: Result, second: Result, among: Sequence[str]) -> Joint | None:
     free = sizes > _RANK
     size = float(np.sum((directions[:, free].T @ apart) ** 2 / sizes[free]))
     freedom = int(free.sum())
-    return Joint(names, size, freedom, float(chi2.sf(size, freedom)))
+    return JointTest(names, size, freedom, float(chi2.sf(size, freedom)))
 
 
 def _value(result: Result, name: str) -> float:

@@ -1,4 +1,4 @@
-"""Tables of results: how numbers are written by their uncertainty, and the way of a table to HTML."""
+"""Tables of results: numbers rounded by their uncertainty, and tables as HTML."""
 
 from sprung.tables.cells import percent_text, unit_text, value_cells, with_std
 from sprung.tables.table import Table, escaped

@@ -1,17 +1,17 @@
-"""Numbers as tables write them: rounded by their uncertainty, units as people write them."""
+"""Cells of tables: numbers rounded by their uncertainty, and units."""
 
 from __future__ import annotations
 
 from sprung.uncertainty import Estimate, round_by_uncertainty
 
 _FINEST = 6
-"""Decimal places of a frequency in Hz or a damping ratio: no test tells more, and what stands further right is rounding."""
+"""Largest number of decimal places of a frequency in Hz or a damping ratio: further ones are rounding errors."""
 
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²"})
 
 
 def value_cells(estimate: Estimate) -> list[str]:
-    """Write an estimate: value, standard uncertainty, percent, unit, status.
+    """Return the cells of an estimate: value, standard uncertainty, percent, unit, status.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ def value_cells(estimate: Estimate) -> list[str]:
     Returns
     -------
     list of str
-        "-" for what there is not.
+        "-" for a missing number.
     """
     unit = unit_text(estimate.unit)
     if estimate.value is None or estimate.std is None:
@@ -32,7 +32,7 @@ def value_cells(estimate: Estimate) -> list[str]:
 
 
 def percent_text(percent: float) -> str:
-    """Write a percentage, to no more digits than an uncertainty has.
+    """Return a percentage as text, with the digits of an uncertainty.
 
     Parameters
     ----------
@@ -50,12 +50,12 @@ def percent_text(percent: float) -> str:
 
 
 def unit_text(unit: str) -> str:
-    """Write a unit as people do: ``kg m²``; nothing for a plain number.
+    """Return a unit as text, ``kg m²``; empty for a dimensionless number.
 
     Parameters
     ----------
     unit
-        As results have it: ``kg m^2``, or ``1`` for a plain number.
+        As in results: ``kg m^2``, or ``1`` for a dimensionless number.
 
     Returns
     -------
@@ -65,18 +65,18 @@ def unit_text(unit: str) -> str:
 
 
 def with_std(value: float, std: float | None) -> tuple[str, str]:
-    """Round a frequency or damping ratio by its uncertainty; without one there is no number.
+    """Return a frequency or damping ratio and its uncertainty as text, rounded by the uncertainty.
 
     Parameters
     ----------
     value, std
-        In one unit; a std of None stands for what is not determined.
+        In one unit; a std of None is an undetermined number.
 
     Returns
     -------
     value, std
-        As text; "-" for both where there is no number. An uncertainty below 1e-6, which only records without noise give, is
-        "-" too: the rounding of the processor would decide its digits.
+        "-" for both where the number is undetermined. An uncertainty below 1e-6, which only noise-free records give, is "-":
+        its digits are rounding errors.
     """
     if std is None:
         return "-", "-"

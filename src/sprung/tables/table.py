@@ -1,4 +1,4 @@
-"""A table as text cells, which a terminal, a notebook and a page each lay out in their own way."""
+"""A table of text cells, for terminals, notebooks and pages."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 def escaped(text: str) -> str:
-    """Write text so that HTML shows it as it is, with what no page can hold replaced.
+    """Return text escaped for HTML, unprintable characters replaced.
 
     Parameters
     ----------
@@ -33,11 +33,11 @@ class Table:
     headers, rows
         Of its columns; cells as text.
     numbers
-        Headers of the columns set flush right.
+        Headers of right-aligned columns.
     spare
-        Headers of the columns that a narrow place sets below the others, the first to go first.
+        Headers of the columns that a narrow display moves below the others, in this order.
     heads
-        How many columns at the left name the rows.
+        Number of columns at the left that name the rows.
     """
 
     title: str
@@ -48,12 +48,12 @@ class Table:
     heads: int = 1
 
     def html(self, caption: bool = True) -> str:
-        """Write it as an HTML table, the first cell of each row as its heading.
+        """Return the table as HTML, the first cell of each row as its heading.
 
         Parameters
         ----------
         caption
-            Whether the title is written above it.
+            Whether the title is the caption.
 
         Returns
         -------

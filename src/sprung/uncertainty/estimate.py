@@ -1,4 +1,4 @@
-"""One estimated quantity: value, uncertainty, unit, and where it comes from."""
+"""An estimated quantity: value, uncertainty, unit and origin."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from sprung.display import shown
 from sprung.uncertainty.rounding import round_by_uncertainty
 
 Status = Literal["estimated", "known", "unidentifiable"]
-"""Where a value comes from: see `Estimate`."""
+"""Origin of a value: see `Estimate`."""
 
 IntervalFrom = Literal["curvature", "profile"]
-"""What an interval follows from: see `Estimate`."""
+"""Origin of an interval: see `Estimate`."""
 
 NORMAL_95 = 1.959963984540054
 """Half-width of the central 95 % of a normal distribution, in standard deviations."""
@@ -72,7 +72,7 @@ class Estimate:
 @shown
 @dataclass(frozen=True, slots=True)
 class Ratio:
-    """A quantity per total mass: what is left to say when the absolute scale is not determined.
+    """A quantity per total mass, which is determined even where the absolute scale is not.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Round a value by its uncertainty: two figures of the uncertainty, and the value to the same place."""
+"""Rounding of a value by its uncertainty: two figures of the uncertainty, and the value to the same place."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def place_of(std: float) -> int:
 
 
 def round_by_uncertainty(value: float, std: float) -> tuple[str, str]:
-    """Write a value and its uncertainty to the place that the uncertainty justifies.
+    """Return a value and its uncertainty as text, rounded to the second figure of the uncertainty.
 
     Parameters
     ----------

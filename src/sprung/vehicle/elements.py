@@ -18,6 +18,8 @@ from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Row, Wheel
 
 LinearLaw = Literal["mass", "damper", "spring"]
+"""Law of a linear element: the matrix M, C or K that it adds to."""
+
 Tracks = Literal["shared", "separate"]
 """Whether springs and dampers of an axle share their half-distance."""
 

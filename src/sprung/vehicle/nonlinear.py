@@ -67,14 +67,30 @@ class NonlinearForces(NamedTuple):
         return len(self.rows.affine)
 
     def evaluate(self, values: Array, given: ElementInput) -> ElementForce:
-        """Return all forces at parameter values; the last axis of the input is that of the elements."""
+        """Return all forces.
+
+        Parameters
+        ----------
+        values
+            Parameters, SI, shape (parameter,).
+        given
+            Input, of shape (..., element).
+        """
         parts = [law.evaluate(values[positions], _part(given, chosen)) for law, chosen, positions in self.laws]
         if len(parts) == 1:
             return parts[0]
         return ElementForce(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
 
     def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
-        """Return the derivatives of forces and of memories by the parameters, each of shape (..., element, parameter)."""
+        """Return the derivatives of forces and of memories by the parameters, each of shape (..., element, parameter).
+
+        Parameters
+        ----------
+        values
+            Parameters, SI, shape (parameter,).
+        given
+            Input, of shape (..., element).
+        """
         force = np.zeros((*given.travel.shape, len(values)))
         memory = np.zeros_like(force)
         for law, chosen, positions in self.laws:
@@ -121,7 +137,7 @@ class NonlinearModel:
         heights: Heights = LEVEL,
         gravity: float = STANDARD_GRAVITY,
     ) -> NonlinearModel:
-        """Compile the linear and nonlinear elements of a vehicle, and its load, over a list of parameter names."""
+        """Compile the linear and nonlinear elements of a vehicle with its heights and load, over a list of parameter names."""
         added = load.elements(heights, names)
         linear = LinearModel.of([*elements, *added], names)
         return cls(linear, LinearModel.of(added, names), NonlinearForces.of(nonlinear, names), gravity)

@@ -59,7 +59,8 @@ class Stepper:
     offsets, offset_slopes
         Travel of each element where the empty vehicle rests, m, shape (element,), and its derivatives, (element, parameter).
     steps, slopes
-        `NonlinearModel.step` of each load and length, and its derivatives by each parameter, stacked along a leading axis.
+        `NonlinearModel.step` of each load and length, SI, shape (kind, 2n, 2n + 2 element + 1) with n coordinates, and its
+        derivatives by each parameter, shape (kind, parameter, 2n, 2n + 2 element + 1).
     kind
         Which of them each drop uses, shape (drop,).
     """

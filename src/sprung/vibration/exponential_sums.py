@@ -1,6 +1,6 @@
 """Sums over samples of decaying exponentials, without any array of the size of the records.
 
-Whatever the fit needs from the samples are inner products of e^{λk} and k e^{λk} with each other and with the records; k counts
+All that a fit needs from the samples are inner products of e^{λk} and k e^{λk} with each other and with the records; k counts
 the samples and λ is per sample. The first have closed forms (geometric sums). The second factorise: the sample
 k = bL + l has e^{λk} = e^{λbL} e^{λl}, so one product of the records, cut into blocks of L samples, with a table of L rows, and
 one with a table over the blocks, give them all.
@@ -32,11 +32,11 @@ def exponential_moments(
     exponent
         Logarithm of z, shape (group, ...).
     group
-        Which group each record belongs to, shape (record,).
+        Group of each record, shape (record,).
     last
         z^N, shape (record, ...).
     samples
-        N; broadcasts with that.
+        N of each record; broadcasts with `last`, shape (record, ...).
     powers
         How many sums are wanted.
 
@@ -69,9 +69,9 @@ def exponential_moments(
 
 
 def exponential_gram(exponent: Complex, samples: Index, group: Index | None = None, secular: bool = True) -> Complex:
-    """Give the inner products of e^{λk} and k e^{λk} with each other, all of them centred over the record.
+    """Return the Gram matrices of e^{λk} and k e^{λk}, centred over each record.
 
-    Centred, because every channel of every record has an offset of its own.
+    They are centred because every channel of every record has its own offset.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def exponential_gram(exponent: Complex, samples: Index, group: Index | None = No
     samples
         N of each record, shape (record,).
     group
-        Which group each record belongs to, shape (record,); to one of its own where left out.
+        Group of each record, shape (record,); a group for each record unless given.
     secular
         Whether those with k e^{λk} are wanted.
 
@@ -144,7 +144,7 @@ def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> 
 def correlate_with_exponentials(
     blocked: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
 ) -> Complex:
-    """Give the inner products of records with exponentials.
+    """Return the inner products of records with exponentials.
 
     Parameters
     ----------
@@ -152,11 +152,11 @@ def correlate_with_exponentials(
         Records cut by `split_into_blocks`, one after the other, those of one group beside each other, of any one
         unit, shape (block, channel, BLOCK).
     counts
-        How many blocks each record has, shape (record,).
+        Number of blocks of each record, shape (record,).
     exponent
         λ of each group per sample, dimensionless, shape (group, mode).
     group
-        Which group each record belongs to, ascending, shape (record,).
+        Group of each record, ascending, shape (record,).
     secular
         Whether those with k e^{λk} are wanted.
 
@@ -185,7 +185,7 @@ def correlate_with_exponentials(
 
 
 def exponentials(exponent: Complex, samples: int = BLOCK_LENGTH) -> Complex:
-    """Give e^{λk}, as products of a few exponentials.
+    """Return e^{λk}, as products of a few exponentials.
 
     Parameters
     ----------

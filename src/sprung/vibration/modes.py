@@ -25,7 +25,7 @@ UNRESOLVED_FROM = 0.1
 @shown
 @dataclass(frozen=True, eq=False)
 class ModeUncertainty:
-    """How sure a mode is.
+    """Uncertainty of a mode.
 
     Attributes
     ----------
@@ -55,9 +55,9 @@ class Mode:
     shape
         How far each channel or coordinate moves, dimensionless, its largest entry 1; shape (channel,).
     name
-        One of `sprung.modal.MODE_NAMES`; None where nothing was said about what moves.
+        One of `MODE_NAMES`; None where the shape has no name.
     uncertainty
-        How sure it is; None where the method does not tell.
+        Its uncertainty; None where the method gives none.
     """
 
     pole: complex
@@ -81,8 +81,8 @@ class Mode:
         return -self.pole.real / abs(self.pole)
 
     @property
-    def resolved(self) -> bool:
-        """Whether the records determine the pole, as far as anybody asked."""
+    def is_resolved(self) -> bool:
+        """Whether the records determine the pole; true where no uncertainty is given."""
         return self.uncertainty is None or bool(
             np.trace(self.uncertainty.pole) < (UNRESOLVED_FROM * abs(self.pole)) ** 2
         )
@@ -110,7 +110,7 @@ class Mode:
 
 
 def modal_assurance_criterion(one: ArrayLike, other: ArrayLike) -> Real:
-    """Compare shapes: the modal assurance criterion |u·v|²/(|u|²|v|²), blind to their lengths and phases.
+    """Return the modal assurance criterion of shapes, |u·v|²/(|u|²|v|²), independent of their lengths and phases.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def modal_assurance_criterion(one: ArrayLike, other: ArrayLike) -> Real:
 
 
 def group_real_pairs(modes: Sequence[Mode]) -> list[tuple[Mode, ...]]:
-    """Put the two real poles of each overdamped motion together, in the order of undamped natural frequency.
+    """Group the two real poles of each overdamped motion, in the order of undamped natural frequency.
 
     Two real poles λ₁ λ₂ belong together where their shapes are most alike; their undamped natural frequency is √(λ₁λ₂).
 
@@ -177,7 +177,7 @@ def largest_entry(shape: ArrayLike) -> int:
 
 
 def make_modes(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
-    """Make modes of all poles of a real system.
+    """Return the modes of all poles of a real system.
 
     Parameters
     ----------
@@ -201,12 +201,16 @@ def make_modes(poles: ArrayLike, shapes: ArrayLike) -> tuple[Mode, ...]:
 
 
 def sort_modes(modes: Sequence[Mode]) -> tuple[Mode, ...]:
-    """Bring modes into the order of `make_modes`, spreads and all.
+    """Sort modes in the order of `make_modes`, with their uncertainties.
 
     Parameters
     ----------
     modes
         In any order.
+
+    Returns
+    -------
+    tuple of Mode
     """
     if not modes:
         return ()
@@ -220,7 +224,7 @@ def sort_modes(modes: Sequence[Mode]) -> tuple[Mode, ...]:
 
 
 def eigenmodes(matrices: Matrices) -> tuple[Mode, ...]:
-    """Give the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), without names.
+    """Return the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), without names.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ _TIE = 1e-9
 """Part of the similarity by which a set of names has to be better than one before it: more than rounding."""
 
 _HALF_WHEELBASE, _HALF_TRACK = 1.35, 0.7
-"""Levers, m, where no sensor tells better ones: those of a car. They only weigh angles against displacements."""
+"""Levers, m, of a car, where the sensors do not determine them. They only weigh angles against displacements."""
 
 
 def paper_name(name: str | None) -> str | None:
@@ -75,7 +75,7 @@ def paper_name(name: str | None) -> str | None:
 def name_modes(
     modes: Sequence[Mode], half_wheelbase: float = _HALF_WHEELBASE, half_track: float = _HALF_TRACK
 ) -> tuple[Mode, ...]:
-    """Name each mode after the template that its shape is most like, no name twice but for pairs of real poles.
+    """Return modes with the names of the templates most like their shapes, each name once but for pairs of real poles.
 
     Names are assigned to all modes of a vehicle at once, so that the sum of their similarities is largest.
 
@@ -138,7 +138,7 @@ def _alone(scale: Real) -> Real:
 
 
 def compute_modes(matrices: Matrices) -> tuple[Mode, ...]:
-    """Give the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), with their names.
+    """Return the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), with their names.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def compute_modes(matrices: Matrices) -> tuple[Mode, ...]:
 
 
 def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
-    """Turn shapes at the sensors into shapes in the seven coordinates, by least squares.
+    """Return modes with shapes in the seven coordinates from shapes at the sensors, by least squares.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: f
     Returns
     -------
     tuple of Mode
-        Without names and spreads; a coordinate no sensor tells of stays at rest.
+        Without names and uncertainties; a coordinate that no sensor determines is zero.
     """
     places = _body_places(sensors)
     if a is None:
@@ -188,7 +188,7 @@ def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: f
 
 
 def name_modes_at_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
-    """Name modes identified from records: `expand_to_coordinates`, then `name_modes`, with the sensors' spread as levers.
+    """Return identified modes with names: `expand_to_coordinates`, then `name_modes`, with the sensors' distances as levers.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
-from sprung.preprocess import Prepared, SlowMotion, find_slower_drops
+from sprung.preprocess import Prepared, extract_slow_motion, find_slower_drops
 
 
 def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]:
@@ -36,7 +36,9 @@ def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]
         if len(own) == len({kind for kind, *_ in own}):
             continue  # no two drops to compare
         motions = [
-            SlowMotion.of(seen.recording.values[body], seen.recording.rate, seen.release or 0, seen.rest.level[body])
+            extract_slow_motion(
+                seen.recording.values[body], seen.recording.rate, seen.release or 0, seen.rest.level[body]
+            )
             for _, _, seen in own
         ]
         slower = find_slower_drops([kind for kind, *_ in own], motions)

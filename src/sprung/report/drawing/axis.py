@@ -1,4 +1,4 @@
-"""Axes: where values stand on them, round ticks, and room for everything."""
+"""Axes: position of values, round ticks, and limits that enclose the data."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Axis:
     Attributes
     ----------
     label
-        What it shows, with the unit.
+        Quantity and unit.
     low, high
         Its ends.
     log
@@ -26,40 +26,40 @@ class Axis:
     falling
         Whether it runs from high to low.
     ticks
-        Values and how they are written; empty for round ones.
+        Values and their labels; empty for round ones.
     """
 
     label: str
     low: float
     high: float
     log: bool = False
-    falling: bool = False
+    descending: bool = False
     ticks: tuple[tuple[float, str], ...] = ()
 
     def at(self, values: Real) -> Real:
-        """Place values along the axis, 0 at its beginning and 1 at its end."""
+        """Return the position of values along the axis, 0 at its beginning and 1 at its end."""
         low, high = np.log([self.low, self.high]) if self.log else (self.low, self.high)
         with np.errstate(divide="ignore", invalid="ignore"):
-            part = ((np.log(values) if self.log else np.asarray(values, dtype=float)) - low) / (high - low)
-        return 1 - part if self.falling else part
+            position = ((np.log(values) if self.log else np.asarray(values, dtype=float)) - low) / (high - low)
+        return 1 - position if self.descending else position
 
     @property
-    def marked(self) -> tuple[tuple[float, str], ...]:
-        """Its ticks, round ones where none were given."""
+    def all_ticks(self) -> tuple[tuple[float, str], ...]:
+        """Its ticks; round ones where none were given."""
         return self.ticks or tuple(round_ticks(self.low, self.high, self.log))
 
 
 def round_ticks(low: float, high: float, log: bool = False, most: int = 6) -> Iterator[tuple[float, str]]:
-    """Give round values between two, and how they are written.
+    """Return round values between two limits, with their labels.
 
     Parameters
     ----------
     low, high
-        The values.
+        The limits, in the unit of the axis.
     log
         Whether the axis is logarithmic.
     most
-        How many at the most.
+        Largest number of ticks.
 
     Examples
     --------
@@ -69,30 +69,30 @@ def round_ticks(low: float, high: float, log: bool = False, most: int = 6) -> It
     if log:
         decades = np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
         for digits in ((1, 2, 5), (1, 3), (1,)):
-            found = [digit * 10.0**decade for decade in decades for digit in digits]
-            found = [value for value in found if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
-            if len(found) <= most + 1:
+            ticks = [digit * 10.0**decade for decade in decades for digit in digits]
+            ticks = [value for value in ticks if low * (1 - 1e-9) <= value <= high * (1 + 1e-9)]
+            if len(ticks) <= most + 1:
                 break
     else:
         power = 10.0 ** np.floor(np.log10((high - low) / most))
         step = next(size * power for size in (1, 2, 5, 10) if (high - low) / (size * power) <= most)
-        found = (step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1) + 0.0).tolist()
-    yield from ((value, f"{value:.6g}".replace("-", "\N{MINUS SIGN}")) for value in found)
+        ticks = (step * np.arange(np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9) + 1) + 0.0).tolist()
+    yield from ((value, f"{value:.6g}".replace("-", "\N{MINUS SIGN}")) for value in ticks)
 
 
-def room(*values: Real, least: float = 0.0, margin: float = 0.06) -> tuple[float, float]:
-    """Give ends of an axis on which values fit.
+def axis_limits(*values: Real, least: float = 0.0, margin: float = 0.06) -> tuple[float, float]:
+    """Return limits of an axis that enclose the values.
 
     Parameters
     ----------
     values
-        Any shape; NaN counts nothing.
+        Any shape; NaN is ignored.
     least
-        Length of the axis at the least.
+        Smallest length of the axis, in its unit.
     margin
-        Part of their span beyond them on either side.
+        Margin on either side, as a part of the span.
     """
-    finite = np.concatenate([np.ravel(one)[np.isfinite(np.ravel(one))] for one in values])
+    finite = np.concatenate([np.ravel(array)[np.isfinite(np.ravel(array))] for array in values])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (-1.0, 1.0)
     span = max(high - low, least, 1e-12 * max(abs(low), abs(high)), np.finfo(float).tiny ** 0.5)
     middle = (low + high) / 2

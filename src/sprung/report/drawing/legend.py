@@ -1,4 +1,4 @@
-"""The legend of a picture, and the labels of its lines, above the first panel."""
+"""Legend of a picture and labels of its vertical lines, above the first panel."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from sprung.report.drawing.picture import Curve, Picture, Points, Rule
 from sprung.tables import escaped
 
 WIDTH = 440
-"""Units across a picture: so few that it can be read on a telephone, and two stand beside each other on a desk."""
+"""Width of a picture, units: small enough for a telephone, and for two beside each other on a wide screen."""
 
 RIGHT = 8.0
-"""Units right of the panels."""
+"""Margin right of the panels, units."""
 
 LINE = 13.0
-"""Units from line to line of words."""
+"""Line spacing of labels, units."""
 
 LETTER = 5.6
-"""Width of a letter, on average, at the size of labels."""
+"""Mean width of a letter of a label, units."""
 
 
 def legend_rows(picture: Picture, left: float) -> Iterator[list[tuple[float, Curve | Points]]]:
-    """Part the legend into rows that fit, each entry with its place from the left, units."""
+    """Yield the rows of the legend, each entry with its distance from the left, units."""
     row: list[tuple[float, Curve | Points]] = []
     x = left
     for mark in picture.legend:
@@ -39,7 +39,7 @@ def legend_rows(picture: Picture, left: float) -> Iterator[list[tuple[float, Cur
         yield row
 
 
-def legend(rows: list[list[tuple[float, Curve | Points]]]) -> Iterator[str]:
+def draw_legend(rows: list[list[tuple[float, Curve | Points]]]) -> Iterator[str]:
     """Draw the rows of a legend."""
     for line, row in enumerate(rows):
         y = 10 + LINE * line
@@ -56,36 +56,36 @@ def legend(rows: list[list[tuple[float, Curve | Points]]]) -> Iterator[str]:
 
 
 def label_levels(labels: list[Rule], axis: Axis, width: float) -> list[int]:
-    """Say on which line above the panels each label stands, so that none lies on another: 0 for the lowest."""
+    """Return the line above the panels for each label, 0 for the lowest, such that no labels overlap."""
     order = sorted(range(len(labels)), key=lambda i: float(axis.at(np.array(labels[i].at))))
     ends: list[float] = []
     levels = [0] * len(labels)
     for i in order:
         half = LETTER * len(labels[i].label) / 2 + 2
-        middle = _held(float(axis.at(np.array(labels[i].at))) * width, half, width)
+        middle = _kept_inside(float(axis.at(np.array(labels[i].at))) * width, half, width)
         level = next((level for level, end in enumerate(ends) if middle - half > end), len(ends))
         ends[level : level + 1] = [middle + half]
         levels[i] = level
     return levels
 
 
-def _held(middle: float, half: float, width: float) -> float:
-    """Move a label so that it does not stand out of the picture."""
+def _kept_inside(middle: float, half: float, width: float) -> float:
+    """Return the middle of a label, moved so far that the label is within the picture."""
     return min(max(middle, half), width + RIGHT - half)
 
 
-def rule_labels(labels: list[Rule], levels: list[int], box: Box, again: bool = False) -> Iterator[str]:
-    """Write the labels above the first panel; lines from the higher ones go behind the lower ones."""
-    words = []
+def draw_rule_labels(labels: list[Rule], levels: list[int], box: Box, zoomable: bool = False) -> Iterator[str]:
+    """Draw the labels above the first panel; the lines of the upper ones are behind the lower ones."""
+    texts = []
     for mark, level in zip(labels, levels, strict=True):
         place = float(box.x.at(np.array(mark.at))) * box.width
         if not 0 <= place <= box.width:
             continue
-        half, key = LETTER * len(mark.label) / 2, f' data-x="{mark.at:.9g}"' if again else ""
-        x, y = box.left + _held(place, half, box.width), box.top - 5 - LINE * level
+        half, key = LETTER * len(mark.label) / 2, f' data-x="{mark.at:.9g}"' if zoomable else ""
+        x, y = box.left + _kept_inside(place, half, box.width), box.top - 5 - LINE * level
         if level:
             yield f'<path class="rule {mark.role}"{key} d="M{box.left + place:.1f} {box.top:.1f}V{y + 3:.1f}"/>'
-        words.append(
+        texts.append(
             f'<text class="tick {mark.role}"{key} x="{x:.1f}" y="{y:.1f}" text-anchor="middle">{escaped(mark.label)}</text>'
         )
-    yield from words
+    yield from texts

@@ -1,4 +1,4 @@
-"""Curves, points, lines and shades of one panel as SVG elements."""
+"""Curves, points, lines and bands of one panel as SVG elements."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from numpy.typing import NDArray
 
 from sprung.report.drawing.axis import Axis
 from sprung.report.drawing.picture import Band, Curve, Mark, Points, Rule
-from sprung.report.pictures.lanes import thinned
+from sprung.report.pictures.lanes import thin_out
 
 Real = NDArray[np.float64]
 
 BINS = 400
-"""Stretches into which a curve is parted across a panel: nobody sees more."""
+"""Intervals of a curve across a panel, of which the lowest and the highest sample are drawn."""
 
 FINE = 10
-"""Steps of a unit in which curves are drawn."""
+"""Resolution of curves, steps per unit."""
 
 
 @dataclass(frozen=True)
 class Box:
-    """Where a panel is.
+    """Position and axes of a panel.
 
     Attributes
     ----------
     left, top, width, height
-        Units of the picture.
+        In units of the picture.
     x, y
         Its axes.
     """
@@ -41,11 +41,11 @@ class Box:
     y: Axis
 
     def across(self, values: Real) -> Real:
-        """Place values of the horizontal axis, units."""
+        """Return the horizontal position of values, units."""
         return self.left + self.width * self.x.at(values)
 
     def down(self, values: Real) -> Real:
-        """Place values of the vertical axis, units."""
+        """Return the vertical position of values, units."""
         return self.top + self.height * (1 - self.y.at(values))
 
     @property
@@ -60,58 +60,58 @@ def mark_elements(mark: Mark, box: Box, number: int | None = None) -> Iterator[s
     Parameters
     ----------
     mark
-        What is drawn.
+        Curve, points, line or band.
     box
         The panel.
     number
-        Place of the curve or points among those of its panel, where a script may draw them again; None where none does.
+        Index among the curves and points of its panel, where a script may draw them again; None otherwise.
 
     Yields
     ------
     str
         SVG elements.
     """
-    again = number is not None
+    zoomable = number is not None
     match mark:
         case Curve():
-            steps = "".join(_path(part, box) for part in _stretches(mark))
+            steps = "".join(_path(part, box) for part in _segments(mark))
             if steps:
                 look = f'stroke-width="{FINE * mark.width:g}"'
                 if mark.dashed:
                     look += f' stroke-dasharray="{4 * FINE} {2.5 * FINE:g}"'
-                key = f' data-curve="{number}"' if again else ""
+                key = f' data-curve="{number}"' if zoomable else ""
                 yield f'<path class="curve {mark.role}"{key} {look} transform="scale({1 / FINE})" d="{steps}"/>'
         case Points():
-            yield from _points(mark, box, f' data-curve="{number}"' if again else "")
-        case Rule(lying=True):
+            yield from _points(mark, box, f' data-curve="{number}"' if zoomable else "")
+        case Rule(horizontal=True):
             y = float(box.down(np.array(mark.at)))
             if box.top - 1 <= y <= box.bottom + 1:
                 dashes = " dashed" if mark.dashed else ""
                 yield f'<path class="rule {mark.role}{dashes}" d="M{box.left:.1f} {y:.1f}h{box.width:.1f}"/>'
         case Rule():
             if 0 <= (part := float(box.x.at(np.array(mark.at)))) <= 1:
-                dashes, key = " dashed" if mark.dashed else "", f' data-x="{mark.at:.9g}"' if again else ""
+                dashes, key = " dashed" if mark.dashed else "", f' data-x="{mark.at:.9g}"' if zoomable else ""
                 x = box.left + box.width * part
                 yield f'<path class="rule {mark.role}{dashes}"{key} d="M{x:.1f} {box.top:.1f}v{box.height:.1f}"/>'
         case Band():
             ends = np.sort(np.clip(box.x.at(np.array([mark.low, mark.high])), 0, 1))
             low, high = (box.left + box.width * ends).tolist()
-            key = f' data-low="{mark.low:.9g}" data-high="{mark.high:.9g}"' if again else ""
+            key = f' data-low="{mark.low:.9g}" data-high="{mark.high:.9g}"' if zoomable else ""
             place = f'x="{low:.1f}" y="{box.top:.1f}" width="{high - low:.1f}" height="{box.height:.1f}"'
             yield f'<rect class="band"{key} {place}/>'
 
 
-def _stretches(curve: Curve) -> Iterator[tuple[Real, Real]]:
-    """Give the parts of a curve between its gaps, each thinned to what can be seen."""
-    there = np.isfinite(curve.x) & np.isfinite(curve.y)
-    for part in np.split(np.arange(there.size), np.flatnonzero(np.diff(there)) + 1):
-        if part.size > 1 and there[part[0]]:
-            shown = part[thinned(curve.y[part], BINS)]
-            yield curve.x[shown], curve.y[shown]
+def _segments(curve: Curve) -> Iterator[tuple[Real, Real]]:
+    """Yield the parts of a curve between its gaps, thinned to the resolution of the drawing."""
+    finite = np.isfinite(curve.x) & np.isfinite(curve.y)
+    for part in np.split(np.arange(finite.size), np.flatnonzero(np.diff(finite)) + 1):
+        if part.size > 1 and finite[part[0]]:
+            kept = part[thin_out(curve.y[part], BINS)]
+            yield curve.x[kept], curve.y[kept]
 
 
 def _path(part: tuple[Real, Real], box: Box) -> str:
-    """Write a polyline in steps of a fraction of a unit, each from the one before."""
+    """Return a polyline as relative steps in fractions of a unit."""
     across, down = (FINE * box.across(part[0])).round(), (FINE * np.clip(box.down(part[1]), -1e4, 1e4)).round()
     places = np.stack([across, down]).astype(int)
     steps = np.diff(places, axis=1)
@@ -124,13 +124,13 @@ def _points(points: Points, box: Box, key: str) -> Iterator[str]:
     across, down = box.across(points.x), box.down(points.y)
     inside = np.isfinite(across) & np.isfinite(down) & (down > box.top - 1) & (down < box.bottom + 1)
     if points.bars is not None:
-        ends = [np.clip(box.down(points.y + way * points.bars), box.top, box.bottom) for way in (1, -1)]
+        ends = [np.clip(box.down(points.y + sign * points.bars), box.top, box.bottom) for sign in (1, -1)]
         bars = "".join(
             f"M{x:.1f} {low:.1f}V{high:.1f}"
             for x, low, high in zip(across[inside], *(end[inside] for end in ends), strict=True)
         )
         yield f'<path class="bars {points.role}" d="{bars}"/>'
-    # A line of no length with round ends is a point, and a tenth of what a circle takes.
+    # A line of length zero with round ends is a dot, in a tenth of the characters of a circle.
     dots = "".join(f"M{x:.1f} {y:.1f}h0" for x, y in zip(across[inside], down[inside], strict=True))
     if dots:
         yield f'<path class="points {points.role}"{key} stroke-width="{4.4 * points.size:.2g}" d="{dots}"/>'

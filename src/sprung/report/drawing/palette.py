@@ -1,4 +1,4 @@
-"""Colours by what they stand for, on light and on dark ground; told apart without colour vision too."""
+"""Colours by their meaning, on light and on dark ground; distinguishable with colour-vision deficiencies too."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LIGHT: Mapping[str, str] = {
     "reject": "#b3380b",
     "measured": "#aeb9c0",
     "simulated": "#0072b2",
-    "left": "#c8501e",
+    "residual": "#c8501e",
     "signal": "#33424d",
     "unused": "#b3bcc2",
     "release": "#8a5f00",
@@ -27,9 +27,9 @@ LIGHT: Mapping[str, str] = {
     "mode": "#8d4a9b",
     "first": "#c8501e",
     "second": "#8a5f00",
-    "quiet": "#97a3aa",
+    "reference": "#97a3aa",
 }
-"""On light ground, and on paper: red, green and blue in hexadecimal digits, by what is drawn."""
+"""On light ground and on paper: hexadecimal red, green and blue by meaning."""
 
 DARK: Mapping[str, str] = {
     "paper": "#11181c",
@@ -45,7 +45,7 @@ DARK: Mapping[str, str] = {
     "reject": "#f58b64",
     "measured": "#66757e",
     "simulated": "#58b2ee",
-    "left": "#f08a5d",
+    "residual": "#f08a5d",
     "signal": "#c5d0d6",
     "unused": "#55626a",
     "release": "#d9a94a",
@@ -54,6 +54,6 @@ DARK: Mapping[str, str] = {
     "mode": "#cf96dd",
     "first": "#f08a5d",
     "second": "#d9a94a",
-    "quiet": "#74828a",
+    "reference": "#74828a",
 }
-"""The same on dark ground."""
+"""On dark ground: hexadecimal red, green and blue by meaning."""

@@ -1,6 +1,6 @@
-"""What a picture shows, apart from how it is drawn: panels one above the other, with curves, points and lines in them.
+"""Pictures as data: panels one above the other, with curves, points, lines and bands.
 
-A page draws it as SVG (`sprung.report.drawing.svg`), a notebook with matplotlib (`sprung.plot`).
+A page draws them as SVG (`sprung.report.drawing.svg`), a notebook with matplotlib (`sprung.plot`).
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from sprung.report.drawing.axis import Axis
 
 Real = NDArray[np.float64]
 
-_LIKE_ONE = 0.015
-"""Part of an axis by which two lines may be apart and look like one."""
+_COINCIDENT = 0.015
+"""Distance of two lines, as a part of the axis, below which their labels are merged."""
 
 Role = Literal[
     "measured",
     "simulated",
-    "left",
+    "residual",
     "signal",
     "unused",
     "release",
@@ -31,27 +31,27 @@ Role = Literal[
     "mode",
     "first",
     "second",
-    "quiet",
+    "reference",
 ]
-"""What something drawn stands for; its colour follows."""
+"""Meaning of a mark, which determines its colour."""
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A line through points; it parts where a value is NaN.
+    """A line through points, interrupted where a value is NaN.
 
     Attributes
     ----------
     x, y
         In the units of the axes, shape (point,).
     role
-        What it stands for.
+        Its meaning.
     label
         For the legend; empty for none.
     width
-        Of the line, 1 for the usual.
+        Line width, dimensionless; 1 is the default.
     dashed
-        Whether it is.
+        Whether it is dashed.
     """
 
     x: Real
@@ -64,22 +64,22 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Single points, with bars where there are uncertainties.
+    """Single points, with error bars where there are uncertainties.
 
     Attributes
     ----------
     x, y
         In the units of the axes, shape (point,).
     role
-        What they stand for.
+        Their meaning.
     label
         For the legend; empty for none.
     hollow
         Whether they are rings.
     bars
-        Half-lengths of bars along y, in the unit of that axis, shape (point,); none without.
+        Half-lengths of error bars along y, in the unit of that axis, shape (point,); None without.
     size
-        Radius, dimensionless: 1 for the usual.
+        Radius, dimensionless; 1 is the default.
     """
 
     x: Real
@@ -93,32 +93,32 @@ class Points:
 
 @dataclass(frozen=True)
 class Rule:
-    """A line across a panel, at some x, or at some y where it lies.
+    """A vertical or horizontal line across a panel.
 
     Attributes
     ----------
     at
-        Where, in the unit of the axis.
+        Position, in the unit of the axis.
     role
-        What it stands for.
+        Its meaning.
     label
-        Written at it in the first panel, or in the legend where it lies; empty for none.
+        Above a vertical line in the first panel, in the legend for a horizontal one; empty for none.
     lying
-        Whether it is at some y.
+        Whether it is horizontal.
     dashed
-        Whether it is.
+        Whether it is dashed.
     """
 
     at: float
     role: Role
     label: str = ""
-    lying: bool = False
+    horizontal: bool = False
     dashed: bool = False
 
 
 @dataclass(frozen=True)
 class Band:
-    """A stretch of x that is shaded: the decay.
+    """A shaded range of x, such as the free decay.
 
     Attributes
     ----------
@@ -131,7 +131,7 @@ class Band:
 
 
 Mark: TypeAlias = Curve | Points | Rule | Band
-"""Anything that is drawn into a panel."""
+"""Any mark of a panel."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,24 +143,24 @@ class Panel:
     y
         Its vertical axis.
     marks
-        What is drawn, the hindmost first.
+        Drawn in this order.
     height
-        Beside the other panels of the picture, dimensionless.
+        Relative to the other panels of the picture, dimensionless.
     note
-        What is written into it, upper right.
-    wrong
-        What is written below the note, as a fault.
+        Text in its upper right corner.
+    warning
+        Text below the note, in the colour of faults.
     name
-        Written on its left, above the axis' label, as channels have.
+        Left of it, above the label of the axis, for channels.
     channel
-        What it belongs to, where a reader may switch it off with others of the same; empty where not.
+        Channel that it belongs to, where a reader may hide the panels of a channel; empty otherwise.
     """
 
     y: Axis
     marks: tuple[Mark, ...]
     height: float = 1.0
     note: str = ""
-    wrong: str = ""
+    warning: str = ""
     name: str = ""
     channel: str = ""
 
@@ -172,51 +172,51 @@ class Picture:
     Attributes
     ----------
     title
-        What it shows, for its head.
+        Above it.
     x
         The horizontal axis.
     panels
         The first on top.
     told
-        What there is to see, in a sentence, for who cannot.
+        Content in a sentence, for screen readers.
     zoomable
-        Whether a page's script may zoom it, read it out and switch its channels off.
+        Whether the script of the page offers zoom, cursor and channel selection.
     """
 
     title: str
     x: Axis
     panels: tuple[Panel, ...]
-    told: str = ""
+    description: str = ""
     zoomable: bool = False
 
     @property
     def legend(self) -> Iterator[Curve | Points]:
-        """What has a label, each once."""
-        said: set[str] = set()
+        """Curves and points with a label, each label once."""
+        labels: set[str] = set()
         for panel in self.panels:
             for mark in panel.marks:
-                if isinstance(mark, Curve | Points) and mark.label and mark.label not in said:
-                    said.add(mark.label)
+                if isinstance(mark, Curve | Points) and mark.label and mark.label not in labels:
+                    labels.add(mark.label)
                     yield mark
 
 
-def labelled_together(rules: Sequence[Rule], axis: Axis) -> tuple[Rule, ...]:
-    """Write the labels of lines that look like one at the first of them.
+def merge_labels(rules: Sequence[Rule], axis: Axis) -> tuple[Rule, ...]:
+    """Return lines with the labels of coincident ones merged at the first of them.
 
     Parameters
     ----------
     rules
-        Lines at some x, each with a label.
+        Vertical lines, each with a label.
     axis
-        The horizontal one.
+        The horizontal axis.
     """
-    found: list[Rule] = []
+    merged: list[Rule] = []
     lead = 0
-    for rule in sorted(rules, key=lambda one: one.at):
-        if found and abs(float(axis.at(np.array(rule.at)) - axis.at(np.array(found[lead].at)))) < _LIKE_ONE:
-            found[lead] = replace(found[lead], label=f"{found[lead].label}, {rule.label}")
-            found.append(replace(rule, label=""))
+    for rule in sorted(rules, key=lambda line: line.at):
+        if merged and abs(float(axis.at(np.array(rule.at)) - axis.at(np.array(merged[lead].at)))) < _COINCIDENT:
+            merged[lead] = replace(merged[lead], label=f"{merged[lead].label}, {rule.label}")
+            merged.append(replace(rule, label=""))
         else:
-            lead = len(found)
-            found.append(rule)
-    return tuple(found)
+            lead = len(merged)
+            merged.append(rule)
+    return tuple(merged)

@@ -1,4 +1,4 @@
-"""How pictures look: rules of style whose colours a page sets, or which stand alone in a file of their own."""
+"""Style sheets of pictures and sketches: with the colours of a page, or standalone."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Role
 
 
-def role_rules() -> Iterator[str]:
-    """Give the rules by which what is drawn has the colour of what it stands for."""
+def role_styles() -> Iterator[str]:
+    """Yield the style rules that give marks the colour of their role."""
     for role in get_args(Role):
         kinds = ", ".join(f".picture .{kind}.{role}" for kind in ("curve", "points", "rule", "bars"))
         yield f"{kinds} {{ stroke: var(--{role}); }}"
 
 
-def alone_style(halo: bool = True) -> str:
-    """Give the style of a picture that stands alone, or where that of its page does not reach: the light one.
+def standalone_style(halo: bool = True) -> str:
+    """Return the light style of a picture in a file of its own, or where the style of the page does not apply.
 
     Parameters
     ----------
     halo
-        Whether words have a rim of the ground's colour. Where nothing knows how to paint that below them, it would hide them.
+        Whether text has a rim in the colour of the ground; programs that cannot paint it below the text would hide the text.
     """
     styles = files("sprung.report.drawing").joinpath("styles")
-    own = [styles.joinpath(name).read_text(encoding="utf-8") for name in ("picture.css", "sketch.css")]
-    rules = "\n".join([*role_rules(), *own])
+    sheets = [styles.joinpath(name).read_text(encoding="utf-8") for name in ("picture.css", "sketch.css")]
+    rules = "\n".join([*role_styles(), *sheets])
     if not halo:
         rules = re.sub(r"paint-order: stroke;[^}]*(?=})", "", rules)
-    light = re.sub(r"var\(--(\w+)\)", lambda found: LIGHT[found[1]], rules)
+    light = re.sub(r"var\(--(\w+)\)", lambda match: LIGHT[match[1]], rules)
     return f"<style>{light}</style>"

@@ -1,4 +1,4 @@
-"""The modes as the page's script moves them: still pictures, and how far each node of them swings."""
+"""Mode shapes for the animation of the page: wire frames, and the complex displacement of each node."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 
 from sprung.estimation import ModeEstimate
 from sprung.report.drawing.picture import Real
-from sprung.report.pictures.wire_car import BODY_EDGES, STRUTS, WireCar
+from sprung.report.pictures.wire_frame import BODY_EDGES, STRUTS, WireFrame
 
 
-def cars_of(car: WireCar, modes: Sequence[ModeEstimate]) -> Iterator[dict[str, Any]]:
-    """Give what a template needs to draw each mode.
+def mode_drawings(car: WireFrame, modes: Sequence[ModeEstimate]) -> Iterator[dict[str, Any]]:
+    """Yield what a template needs to draw each mode.
 
     Parameters
     ----------
     car
-        The wire car.
+        The wire frame.
     modes
-        With their motions.
+        With their shapes.
     """
     for mode in modes:
         swing = car.swing(mode.motion)
@@ -38,13 +38,13 @@ def cars_of(car: WireCar, modes: Sequence[ModeEstimate]) -> Iterator[dict[str, A
             "circles": [
                 (*(f"{part:.1f}" for part in moved[node].tolist()), f"{radius:.1f}") for node, radius in car.circles
             ],
-            "said": _said(mode),
-            "told": f"{mode.name}: a small car of wire in the shape of this mode",
+            "caption": _caption(mode),
+            "description": f"{mode.name}: wire frame in the shape of this mode",
         }
 
 
-def wire_json(car: WireCar) -> str:
-    """Give the wire car at rest for the page's script."""
+def wire_json(car: WireFrame) -> str:
+    """Return the wire frame at rest as JSON for the script of the page."""
     places = [[round(x, 1), round(y, 1)] for x, y in car.places.tolist()]
     return json.dumps(
         {"places": places, "edges": BODY_EDGES, "struts": STRUTS, "circles": [node for node, _ in car.circles]},
@@ -56,12 +56,12 @@ def _lines(pairs: Sequence[tuple[int, int]], places: Real) -> str:
     return "".join(f"M{places[i, 0]:.1f} {places[i, 1]:.1f}L{places[j, 0]:.1f} {places[j, 1]:.1f}" for i, j in pairs)
 
 
-def _said(mode: ModeEstimate) -> str:
+def _caption(mode: ModeEstimate) -> str:
     if mode.pole[1] == 0:
-        return "overdamped: it creeps back"
-    told = (
+        return "overdamped"
+    description = (
         "damping not determined"
         if mode.damping_ratio_std is None
         else f"damping ratio {100 * mode.damping_ratio:.1f} %"
     )
-    return f"{mode.frequency:.4g} Hz, {told}"
+    return f"{mode.frequency:.4g} Hz, {description}"

@@ -1,4 +1,4 @@
-"""The literature of the methods that a result rests on: what was not used is not named."""
+"""References of the methods that were used for a result."""
 
 from __future__ import annotations
 
@@ -9,109 +9,111 @@ from sprung.results import Result
 
 
 @dataclass(frozen=True)
-class Work:
-    """Something to read.
+class Reference:
+    """A reference.
 
     Attributes
     ----------
     text
-        Authors, title, where and when.
-    used
-        What for.
-    when
-        Says of which results that is true.
+        Authors, title, journal or publisher, year.
+    purpose
+        What it was used for.
+    is_used
+        Whether it was used for a result.
     """
 
     text: str
-    used: str
-    when: Callable[[Result], bool] = lambda _: True
+    purpose: str
+    is_used: Callable[[Result], bool] = lambda _: True
 
 
 def _profiled(result: Result) -> bool:
-    return any(found.interval_from == "profile" for found in (*result.parameters.values(), *result.derived.values()))
+    return any(
+        estimate.interval_from == "profile" for estimate in (*result.parameters.values(), *result.derived.values())
+    )
 
 
-_WORKS = (
-    Work(
+_REFERENCES = (
+    Reference(
         "A New Physical Parameter Identification Method for Two-Axis On-Road Vehicles: Simulation and Experiment. "
         "Shock and Vibration 2015, article 191050, doi:10.1155/2015/191050.",
         "the vehicle of seven degrees of freedom, drop tests with and without a known added mass, figures 7 to 9",
     ),
-    Work(
+    Reference(
         "Maine, R. E. and Iliff, K. W.: Application of Parameter Estimation to Aircraft Stability and Control: The "
         "Output-Error Approach. NASA RP-1168, 1986.",
         "maximum likelihood by output error",
     ),
-    Work(
+    Reference(
         "Golub, G. H. and Pereyra, V.: The Differentiation of Pseudo-Inverses and Nonlinear Least Squares Problems Whose "
         "Variables Separate. SIAM J. Numer. Anal. 10 (1973) 413.",
-        "initial states and offsets of every drop, solved for in closed form",
+        "variable projection: initial states and offsets of every drop in closed form",
     ),
-    Work(
+    Reference(
         "Shinbrot, M.: On the Analysis of Linear and Nonlinear Systems. Trans. ASME 79 (1957) 1319.",
-        "the start of the fit without a guess, by modulating functions",
+        "start values by modulating functions",
     ),
-    Work(
+    Reference(
         "Rao, C. R.: Large Sample Tests of Statistical Hypotheses Concerning Several Parameters with Applications to Problems "
         "of Estimation. Proc. Camb. Phil. Soc. 44 (1948) 50.",
-        "score tests: whether a fault, or a further force, would explain what is left",
+        "score tests of faults and model terms",
     ),
-    Work(
+    Reference(
         "Schwarz, G.: Estimating the Dimension of a Model. Ann. Stat. 6 (1978) 461.",
-        "the choice of the model",
+        "selection of model terms",
         lambda result: bool(result.fit.path) or "gains" in result.fit.why,
     ),
-    Work(
+    Reference(
         "Dahl, P. R.: Solid Friction Damping of Mechanical Vibrations. AIAA J. 14 (1976) 1675.",
-        "dry friction that gives way before it slides",
+        "dry friction with presliding",
         lambda result: "friction" in result.fit.model,
     ),
-    Work(
+    Reference(
         "Birge, R. T.: The Calculation of Errors by the Method of Least Squares. Phys. Rev. 40 (1932) 207.",
-        "wider uncertainties, as the drops disagree by more than their noise",
+        "Birge ratio: larger uncertainties, because the drops disagree by more than their noise",
         lambda result: result.fit.inflated_by == "drops that disagree",
     ),
-    Work(
+    Reference(
         "Flyvbjerg, H. and Petersen, H. G.: Error Estimates on Averages of Correlated Data. J. Chem. Phys. 91 (1989) 461.",
-        "wider uncertainties, as what is left of the records is not white",
+        "larger uncertainties, because the residuals are autocorrelated",
         lambda result: result.fit.inflated_by == "coloured residuals",
     ),
-    Work(
+    Reference(
         "Venzon, D. J. and Moolgavkar, S. H.: A Method for Computing Profile-Likelihood-Based Confidence Intervals. Applied "
         "Statistics 37 (1988) 87.",
-        "intervals from profiles of the likelihood",
+        "intervals from likelihood profiles",
         _profiled,
     ),
-    Work(
+    Reference(
         "Ljung, G. M. and Box, G. E. P.: On a Measure of Lack of Fit in Time Series Models. Biometrika 65 (1978) 297.",
-        "whether what is left is white",
+        "whiteness test of the residuals",
         lambda result: any(drop.whiteness for drop in result.validation.values()),
     ),
-    Work(
+    Reference(
         "Juang, J.-N. and Pappa, R. S.: An Eigensystem Realization Algorithm for Modal Parameter Identification and Model "
         "Reduction. J. Guid. Control Dyn. 8 (1985) 620.",
         "the stabilisation diagram",
         lambda result: bool(result.series),
     ),
-    Work(
+    Reference(
         "Pappa, R. S., Elliott, K. B. and Schenk, A.: Consistent-Mode Indicator for the Eigensystem Realization Algorithm. "
         "J. Guid. Control Dyn. 16 (1993) 852.",
-        "which poles of the stabilisation diagram are vibrations",
+        "selection of the poles of the stabilisation diagram",
         lambda result: bool(result.series),
     ),
-    Work(
+    Reference(
         "ISO 8855: Road vehicles - Vehicle dynamics and road-holding ability - Vocabulary.",
         "axes and signs",
     ),
 )
 
 
-def literature_of(result: Result) -> Iterator[Work]:
-    """Give the works of the methods that were used.
+def references_of(result: Result) -> Iterator[Reference]:
+    """Yield the references of the methods that were used.
 
     Parameters
     ----------
     result
-        What they led to.
+        Of an identification.
     """
-    return (work for work in _WORKS if work.when(result))
+    return (reference for reference in _REFERENCES if reference.is_used(result))

@@ -1,4 +1,4 @@
-"""What a result comes to, in words and in few numbers."""
+"""Summary of a result in words and a few numbers."""
 
 from __future__ import annotations
 
@@ -10,42 +10,42 @@ from sprung.results import Result
 from sprung.tables import percent_text
 
 
-class VerdictWords(NamedTuple):
-    """A verdict for who has to act on it."""
+class VerdictText(NamedTuple):
+    """Meaning of a verdict: symbol, statement, explanation."""
 
-    sign: str
-    head: str
-    meaning: str
+    symbol: str
+    statement: str
+    explanation: str
 
 
-_WORDS = {
-    "accept": VerdictWords("✓", "The numbers may be used.", "No reason against their use was found."),
-    "doubtful": VerdictWords(
+_VERDICTS = {
+    "accept": VerdictText("✓", "The estimates may be used.", "Reasons:"),
+    "doubtful": VerdictText(
         "!",
-        "The numbers may be used once these reasons are read.",
-        "Not all of them can be relied on without that.",
+        "The estimates may be used with reservations.",
+        "Read every reason before use:",
     ),
-    "reject": VerdictWords(
+    "reject": VerdictText(
         "✕",
-        "The numbers must not be used.",
-        "The recordings do not support what was fitted to them, for these reasons.",
+        "The estimates must not be used; none are reported.",
+        "Reasons:",
     ),
 }
 
 
-def verdict_words(result: Result) -> VerdictWords:
-    """Say what a verdict means.
+def verdict_text(result: Result) -> VerdictText:
+    """Return the meaning of a verdict.
 
     Parameters
     ----------
     result
-        With its verdict.
+        Of an identification.
     """
-    return _WORDS[result.verdict.state]
+    return _VERDICTS[result.verdict.state]
 
 
-def record_of(result: Result) -> Iterator[tuple[str, str]]:
-    """Return what the campaign file says of the test and the vehicle, for the record: names and texts.
+def test_record_of(result: Result) -> Iterator[tuple[str, str]]:
+    """Yield the test record of the campaign file: names and texts.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ def record_of(result: Result) -> Iterator[tuple[str, str]]:
             yield name, str(text)
 
 
-def facts_of(result: Result) -> Iterator[tuple[str, str]]:
-    """Give what one wants to know first, each with its name.
+def summary_of(result: Result) -> Iterator[tuple[str, str]]:
+    """Yield the summary of a result: names and texts.
 
     Parameters
     ----------
@@ -78,26 +78,26 @@ def facts_of(result: Result) -> Iterator[tuple[str, str]]:
     left = len(result.drops) - len(used)
     yield "Drops", f"{len(used)} fitted together ({loads})" + (f", {left} left out" if left else "")
     yield "Model", _model(result)
-    states = Counter(found.status for found in result.parameters.values())
-    told = [f"{states[name]} {name}" for name in ("estimated", "known", "unidentifiable") if states[name]]
-    yield "Parameters", ", ".join(told)
+    states = Counter(estimate.status for estimate in result.parameters.values())
+    counts = [f"{states[name]} {name}" for name in ("estimated", "known", "unidentifiable") if states[name]]
+    yield "Parameters", ", ".join(counts)
     least = max(
         (
-            (found.percent, name)
-            for name, found in result.parameters.items()
-            if found.status == "estimated" and found.percent
+            (estimate.percent, name)
+            for name, estimate in result.parameters.items()
+            if estimate.status == "estimated" and estimate.percent
         ),
         default=None,
     )
     if least is not None:
-        yield "Least certain", f"{least[1]}, to {percent_text(least[0])} %"
+        yield "Largest uncertainty", f"{percent_text(least[0])} % ({least[1]})"
     if result.validation:
-        left_over = [drop.residual for drop in result.validation.values()]
-        yield "Residual", f"{min(left_over):.2f} to {max(left_over):.2f} times the noise"
+        residuals = [drop.residual for drop in result.validation.values()]
+        yield "Residual", f"{min(residuals):.2f} to {max(residuals):.2f} times the noise"
     predicted = [drop.predicted_residual for drop in result.validation.values() if drop.predicted_residual is not None]
     if predicted:
         yield (
-            "Residual as predicted by the other drops",
+            "Residual of the prediction from the other drops",
             f"{min(predicted):.2f} to {max(predicted):.2f} times the noise",
         )
 
@@ -107,7 +107,7 @@ def _model(result: Result) -> str:
     return "seven degrees of freedom" + (f", with {', '.join(extras)}" if extras else "")
 
 
-def symbol(name: str) -> tuple[str, str]:
-    """Part a parameter's name into its letter and what stands below it: ``k_sf`` into ``k`` and ``sf``."""
-    letter, _, below = name.partition("_")
-    return letter, below.replace("_", " ")
+def symbol_parts(name: str) -> tuple[str, str]:
+    """Return the letter and the index of a parameter's name: ``k`` and ``sf`` of ``k_sf``."""
+    letter, _, index = name.partition("_")
+    return letter, index.replace("_", " ")

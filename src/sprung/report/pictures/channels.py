@@ -1,4 +1,4 @@
-"""Channels of one drop as they were fitted: measured against fitted, the residual below."""
+"""Channels of one drop: measured and fitted, the residual below."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 
 from sprung.report.drawing.axis import Axis
 from sprung.report.drawing.picture import Panel, Picture
-from sprung.report.pictures.motions import compared
+from sprung.report.pictures.motions import comparison_panels
 from sprung.results import Series
 
 
 def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Picture:
-    """Show some channels of one drop.
+    """Return the picture of some channels of one drop.
 
     Parameters
     ----------
@@ -33,6 +33,6 @@ def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Pict
     for channel in channels:
         i = series.channels.index(channel)
         note = "left out" if np.isnan(series.measured[i]).all() else ""
-        panels += compared(channel, "m/s²", series.time, series.measured[i], series.fitted[i], note)
+        panels += comparison_panels(channel, "m/s²", series.time, series.measured[i], series.fitted[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
     return Picture(f"{name}: measured and fitted", x, tuple(panels))

@@ -1,4 +1,4 @@
-"""The decays of one load, as a result holds them: what spectra and stabilisation diagrams are made of."""
+"""Free decays of one load, from which spectra and stabilisation diagrams are computed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Real = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class LoadDecays:
-    """Decays of one load that go together: of one rate, with the channels that all of them have.
+    """Decays of one load with a common rate and common channels.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class LoadDecays:
     measured, fitted
         m/s², shape (channel, time) each.
     on_body
-        Which channels are of sensors on the body, shape (channel,).
+        Whether each channel is of a sensor on the body, shape (channel,).
     """
 
     load: str
@@ -38,7 +38,7 @@ class LoadDecays:
 
 
 def decays_by_load(result: Result) -> Iterator[LoadDecays]:
-    """Give the decays of every load of a result.
+    """Yield the decays of every load of a result.
 
     Parameters
     ----------
@@ -48,34 +48,29 @@ def decays_by_load(result: Result) -> Iterator[LoadDecays]:
     Returns
     -------
     iterator of LoadDecays
-        In the order of the result's modes; not for a load of which no decay is held.
+        In the order of the result's modes; loads without decays are left out.
     """
     for load in result.modes:
-        drops = [drop for drop in result.drops if drop.load == load and _name(drop.name, drop.file) in result.series]
-        found = [(drop, result.series[_name(drop.name, drop.file)]) for drop in drops]
-        if not found:
+        fitted = [drop for drop in result.drops if drop.load == load and drop.name in result.series]
+        if not fitted:
             continue
-        rates = [round(rate_of(series), 6) for _, series in found]
+        rates = [round(rate_of(result.series[drop.name]), 6) for drop in fitted]
         rate = Counter(rates).most_common(1)[0][0]
-        same = [pair for pair, own in zip(found, rates, strict=True) if own == rate]
-        usable = np.logical_and.reduce([~np.isnan(series.measured).any(axis=1) for _, series in same])
+        series = [result.series[drop.name] for drop, own_rate in zip(fitted, rates, strict=True) if own_rate == rate]
+        usable = np.logical_and.reduce([~np.isnan(decay.measured).any(axis=1) for decay in series])
         if not usable.any():
             continue
-        places = {channel.name: channel.on for channel in same[0][0].channels}
-        names = [name for name, use in zip(same[0][1].channels, usable, strict=True) if use]
+        locations = {channel.name: channel.on for channel in fitted[0].channels}
+        names = [name for name, use in zip(series[0].channels, usable, strict=True) if use]
         yield LoadDecays(
             load,
             rate,
-            tuple(series.measured[usable] for _, series in same),
-            tuple(series.fitted[usable] for _, series in same),
-            np.array([places.get(name) == "body" for name in names]),
+            tuple(decay.measured[usable] for decay in series),
+            tuple(decay.fitted[usable] for decay in series),
+            np.array([locations.get(name) == "body" for name in names]),
         )
 
 
 def rate_of(series: Series) -> float:
-    """Give the samples per second of a drop."""
+    """Return the samples per second of a drop."""
     return (len(series.time) - 1) / float(series.time[-1] - series.time[0])
-
-
-def _name(name: str, file: str) -> str:
-    return name or file.rpartition(".")[0]

@@ -1,4 +1,4 @@
-"""What of a drop is drawn: one lane per channel, with its scale, as few samples as show everything, and what is the matter."""
+"""Lanes of a recording: one per channel, with its scale, notes and faulty samples."""
 
 from __future__ import annotations
 
@@ -9,38 +9,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.checking import DropReport, PlottedRecording
-from sprung.report.terminal.layout import figures
+from sprung.report.terminal.layout import significant_figures
 
 Real = NDArray[np.float64]
 
 _FILLED = 0.86
-"""Part of a lane that its signal takes at most."""
+"""Largest part of a lane that its signal fills."""
 
 _LONGEST = 30
-"""Letters of the longest name that is written out."""
+"""Letters of a name that are shown at most."""
 
 
 @dataclass(frozen=True, eq=False)
 class Lane:
-    """One channel to draw.
+    """One channel of a recording, as it is drawn.
 
     Attributes
     ----------
-    name, notes, wrong
-        What stands on its left, and on its right: the usual, and below it what is the matter.
+    name, notes, warnings
+        Text on its left, and on its right: noise and peak, and below them the faults.
     values
-        Shape (time,), m/s²; NaN throughout where nothing can be shown.
+        Shape (time,), m/s²; all NaN where the channel cannot be drawn.
     used
-        Whether it is in the decay.
+        Whether it is used in the free decay.
     marked
-        Positions of samples with which something is the matter.
+        Indices of faulty samples.
     middle, span
-        What the lane's middle and height stand for, m/s².
+        Values at the middle of the lane, and over its height, m/s².
     """
 
     name: str
     notes: tuple[str, ...]
-    wrong: tuple[str, ...]
+    warnings: tuple[str, ...]
     values: Real
     used: bool
     marked: NDArray[np.int64]
@@ -48,15 +48,15 @@ class Lane:
     span: float
 
     def height(self, values: Real | float) -> Real:
-        """Place values in a lane of height 1 around 0."""
+        """Return positions of values in a lane of height 1 around 0."""
         return np.asarray(_FILLED * (values - self.middle) / self.span)
 
     @property
     def ticks(self) -> Iterator[tuple[float, str]]:
-        """Round values within the lane, and how to write them."""
+        """Round values within the lane, with their labels."""
         if not np.isfinite(self.values).any():
             return
-        # From the span alone, so that lanes of one scale have the same steps.
+        # The step depends on the span alone, so that lanes of one scale have equal steps.
         power = 10.0 ** np.floor(np.log10(self.span / 2))
         step = power * max(size for size in (1, 2, 5) if size * power <= self.span / 2 or size == 1)
         first, last = np.ceil((self.middle - self.span / 2) / step), np.floor((self.middle + self.span / 2) / step)
@@ -65,17 +65,17 @@ class Lane:
 
 
 def lanes_of(drop: DropReport, recorded: PlottedRecording) -> list[Lane]:
-    """Choose what to draw of each channel.
+    """Return the lane of each channel.
 
     Parameters
     ----------
     drop
-        What is said of it.
+        Report of the drop.
     recorded
         Its whole recording.
     """
     lanes = [_lane(drop, channel, recorded) for channel in range(len(drop.channels))]
-    # The channels of the body have one scale, and so have those of the wheels; what is left out has its own.
+    # Channels of the body share one scale, those of the wheels another; channels left out have their own.
     groups = [
         report.on == "body" if lane.used or drop.start is None else None
         for report, lane in zip(drop.channels, lanes, strict=True)
@@ -90,21 +90,21 @@ def lanes_of(drop: DropReport, recorded: PlottedRecording) -> list[Lane]:
 
 
 def _lane(drop: DropReport, channel: int, recorded: PlottedRecording) -> Lane:
-    """Draw one channel, at a scale of its own."""
+    """Return the lane of one channel, with a scale of its own."""
     report, values = drop.channels[channel], recorded.values[channel].astype(float)
     marks = [mark for mark in recorded.marks if mark.channel == channel]
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
     counts = {mark.code: f"{mark.code}: {len(mark.samples)}" for mark in marks}
-    wrong = [counts.get(code, code) for code in dict.fromkeys(report.faults)]
-    notes = [] if report.noise is None else [f"noise {figures(report.noise, 2)}"]
-    notes += [] if report.peak is None else [f"peak {figures(report.peak, 3)}"]
+    warnings = [counts.get(code, code) for code in dict.fromkeys(report.faults)]
+    notes = [] if report.noise is None else [f"noise {significant_figures(report.noise, 2)}"]
+    notes += [] if report.peak is None else [f"peak {significant_figures(report.peak, 3)}"]
     if drop.start is not None and not report.used:
-        notes, wrong = [], ["left out:", *wrong] if len(wrong) > 1 else [f"left out: {''.join(wrong)}"]
+        notes, warnings = [], ["left out:", *warnings] if len(warnings) > 1 else [f"left out: {''.join(warnings)}"]
     return Lane(
-        name=plain(report.name if len(report.name) <= _LONGEST else f"{report.name[: _LONGEST - 1]}…"),
+        name=printable(report.name if len(report.name) <= _LONGEST else f"{report.name[: _LONGEST - 1]}…"),
         notes=tuple(notes),
-        wrong=tuple(wrong),
+        warnings=tuple(warnings),
         values=values,
         used=report.used,
         marked=np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(mark.samples for mark in marks)])),
@@ -113,20 +113,20 @@ def _lane(drop: DropReport, channel: int, recorded: PlottedRecording) -> Lane:
     )
 
 
-def thinned(values: Real, bins: int) -> NDArray[np.int64]:
-    """Choose the samples that show as much of a signal as all of them do: the lowest and highest of each stretch.
+def thin_out(values: Real, bins: int) -> NDArray[np.int64]:
+    """Return indices of the lowest and the highest sample of each of many intervals, which look like all samples.
 
     Parameters
     ----------
     values
         Shape (time,).
     bins
-        Into how many stretches to part them.
+        Number of intervals.
 
     Returns
     -------
     ndarray
-        Positions in increasing order; all of them where there are few, none where the signal has none.
+        Indices in increasing order; all where there are few, none where all values are NaN.
     """
     if np.isnan(values).all():
         return np.empty(0, dtype=np.int64)
@@ -142,8 +142,8 @@ def thinned(values: Real, bins: int) -> NDArray[np.int64]:
     return np.unique(np.concatenate(chosen))
 
 
-def plain(text: str) -> str:
-    """Replace what XML cannot hold.
+def printable(text: str) -> str:
+    """Return a text with the characters replaced that XML cannot hold.
 
     Parameters
     ----------

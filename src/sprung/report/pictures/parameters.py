@@ -1,4 +1,4 @@
-"""How sure every parameter is, all on one scale."""
+"""95 % intervals of all parameters on one scale."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from sprung.uncertainty import NORMAL_95, Estimate
 _SCALES = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 
 _FAR = 8.0
-"""Times the median that the widest interval may be, to be seen wholly beside the others."""
+"""Ratio of the widest interval that is shown whole to the median one."""
 
 
 def half_width(parameters: Mapping[str, Estimate]) -> float:
-    """Choose the percent to either side at which a scale for all intervals ends.
+    """Return the half-width of a common scale for all intervals, %.
 
     Parameters
     ----------
@@ -28,24 +28,24 @@ def half_width(parameters: Mapping[str, Estimate]) -> float:
     if not wide:
         return 1.0
     usual = wide[len(wide) // 2]
-    enough = max(one for one in wide if one <= _FAR * usual)
+    enough = max(width for width in wide if width <= _FAR * usual)
     return next((scale for scale in _SCALES if scale >= enough), _SCALES[-1])
 
 
 def limits_percent(found: Estimate) -> tuple[float, float] | None:
-    """Give the ends of a 95 % interval in percent of the value, infinite where it is open; None without a value."""
+    """Return the limits of a 95 % interval in percent of the value, infinite where it is open; None without a value."""
     if found.value is None or not found.value or found.interval95 is None or found.status != "estimated":
         return None
     low, high = found.interval95
     ends = sorted(
-        100 * (limit - found.value) / abs(found.value) if limit is not None else way * np.inf
-        for limit, way in ((low, -1), (high, 1))
+        100 * (limit - found.value) / abs(found.value) if limit is not None else sign * np.inf
+        for limit, sign in ((low, -1), (high, 1))
     )
     return float(ends[0]), float(ends[1])
 
 
 def parameters_picture(parameters: Mapping[str, Estimate]) -> Picture:
-    """Show the 95 % interval of every estimated parameter in percent of its value.
+    """Return the picture of the 95 % interval of every estimated parameter.
 
     Parameters
     ----------
@@ -58,14 +58,14 @@ def parameters_picture(parameters: Mapping[str, Estimate]) -> Picture:
         One panel, percent to the right.
     """
     half = half_width(parameters)
-    told = {name: limits for name, found in parameters.items() if (limits := limits_percent(found)) is not None}
-    places = {name: float(len(told) - i) for i, name in enumerate(told)}
-    marks: list[Mark] = [Rule(0.0, "quiet")]
-    for name, ends in told.items():
+    intervals = {name: limits for name, found in parameters.items() if (limits := limits_percent(found)) is not None}
+    places = {name: float(len(intervals) - i) for i, name in enumerate(intervals)}
+    marks: list[Mark] = [Rule(0.0, "reference")]
+    for name, ends in intervals.items():
         inside = np.clip(np.array(ends), -half, half)
         marks.append(Curve(inside, np.full(2, places[name]), "simulated", width=1.6))
-    marks.append(Points(np.zeros(len(told)), np.array(list(places.values())), "simulated"))
-    y = Axis("", 0.3, len(told) + 0.7, ticks=tuple((place, name) for name, place in places.items()))
-    panel = Panel(y, tuple(marks), height=0.17 * max(len(told), 2))
+    marks.append(Points(np.zeros(len(intervals)), np.array(list(places.values())), "simulated"))
+    y = Axis("", 0.3, len(intervals) + 0.7, ticks=tuple((place, name) for name, place in places.items()))
+    panel = Panel(y, tuple(marks), height=0.17 * max(len(intervals), 2))
     x = Axis("95 % interval, percent of the value", -half, half)
     return Picture("Parameters", x, (panel,), "The 95 % interval of every parameter in percent of its value.")

@@ -1,4 +1,4 @@
-"""A whole recording: its channels in lanes one above the other, when what happened, which part is used, what is wrong where."""
+"""A recording: its channels one above the other, with release, landing, free decay and faulty samples."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Poi
 from sprung.report.pictures.lanes import Lane, lanes_of
 
 _LANE = 0.42
-"""Height of a lane."""
+"""Relative height of a lane."""
 
 
-def whole_picture(drop: DropReport, recorded: PlottedRecording) -> Picture:
-    """Show a recording from its first sample to its last.
+def recording_picture(drop: DropReport, recorded: PlottedRecording) -> Picture:
+    """Return the picture of a whole recording.
 
     Parameters
     ----------
     drop
-        What is said of it.
+        Report of the drop.
     recorded
-        What was recorded.
+        Its recording.
 
     Returns
     -------
@@ -34,20 +34,20 @@ def whole_picture(drop: DropReport, recorded: PlottedRecording) -> Picture:
     return _picture("The whole recording", drop, recorded, (float(time[0]), float(time[-1])), False)
 
 
-def near_picture(drop: DropReport, recorded: PlottedRecording) -> Picture | None:
-    """Show what happened around release and landing.
+def landing_picture(drop: DropReport, recorded: PlottedRecording) -> Picture | None:
+    """Return the picture of release and landing.
 
     Parameters
     ----------
     drop
-        What is said of it.
+        Report of the drop.
     recorded
-        What was recorded.
+        Its recording.
 
     Returns
     -------
     Picture or None
-        None where the release is not known.
+        None where no release was detected.
     """
     moments = [moment for moment in (drop.landing, drop.last_lift_off, drop.start) if moment is not None]
     if drop.release is None:
@@ -70,13 +70,13 @@ def _picture(
         if drop.start is not None and drop.end is not None:
             marks.append(Band(drop.start, drop.end))
         marks += [*events, Curve(time[inside], lane.values[inside], "signal" if lane.used else "unused", width=0.9)]
-        if (of := lane.marked[inside[lane.marked]]).size:
-            marks.append(Points(time[of], lane.values[of], "fault", size=0.7))
-        note, wrong = ("", "") if near else (", ".join(lane.notes), ", ".join(lane.wrong))
-        panels.append(Panel(_axis(lane), tuple(marks), _LANE, note, wrong, lane.name, lane.name))
-    said = "" if near else f" {drop.why_start and f'The decay begins where it does as {drop.why_start}.'}"
-    told = f"Accelerations of {len(panels)} channels in m/s², the decay shaded.{said}"
-    return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), told, zoomable=True)
+        if (faulty := lane.marked[inside[lane.marked]]).size:
+            marks.append(Points(time[faulty], lane.values[faulty], "fault", size=0.7))
+        note, warning = ("", "") if near else (", ".join(lane.notes), ", ".join(lane.warnings))
+        panels.append(Panel(_axis(lane), tuple(marks), _LANE, note, warning, lane.name, lane.name))
+    reason = f" Reason for its start: {drop.why_start}." if drop.why_start and not near else ""
+    description = f"Accelerations of {len(panels)} channels in m/s², the free decay shaded.{reason}"
+    return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), description, zoomable=True)
 
 
 def _axis(lane: Lane) -> Axis:
@@ -86,7 +86,7 @@ def _axis(lane: Lane) -> Axis:
 
 
 def _few(ticks: tuple[tuple[float, str], ...]) -> tuple[tuple[float, str], ...]:
-    """Keep so many ticks as a lane has room for."""
+    """Return as many ticks as a lane has room for."""
     return ticks if len(ticks) <= 3 else tuple(ticks[:: int(np.ceil(len(ticks) / 3))])
 
 

@@ -1,4 +1,4 @@
-"""What a drawing shows of a vehicle besides its outline: wheels, seats of springs and dampers, dimension lines, axes, scale."""
+"""Elements of a drawing besides the outline: wheels, springs and dampers, dimension lines, axes, scale."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from sprung.report.sketch.geometry import Length
 from sprung.report.sketch.labels import LINE, Box, text_box
 from sprung.report.sketch.marks import Frame
 from sprung.report.sketch.proportions import Proportions
-from sprung.report.sketch.shapes import Anchor, Disc, Point, Shape, Stroke, Words
+from sprung.report.sketch.shapes import Anchor, Disc, Point, Shape, Stroke, TextShape
 
 
 def wheels_from_above(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
@@ -27,11 +27,11 @@ def wheels_from_above(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
         yield Stroke((frame.at(x, drawn.half_track), frame.at(x, -drawn.half_track)), "wheel", dashed)
         for y in (drawn.half_track, -drawn.half_track):
             corners = [(x - long, y - wide), (x + long, y - wide), (x + long, y + wide), (x - long, y + wide)]
-            yield Stroke(tuple(frame.at(*one) for one in corners), "wheel", dashed, closed=True)
+            yield Stroke(tuple(frame.at(*corner) for corner in corners), "wheel", dashed, closed=True)
 
 
 def half_distances(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
-    """Draw springs, dampers where they have half-distances of their own, and their distance from the centreline.
+    """Draw springs, dampers with half-distances of their own, and their distance from the centreline.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def half_distances(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
     """
     front, rear, _ = drawn.outline
     geometry = drawn.geometry
-    for axle, (x, end, way) in enumerate(((0.0, front, 1), (-drawn.wheelbase, rear, -1))):
+    for axle, (x, end, sign) in enumerate(((0.0, front, 1), (-drawn.wheelbase, rear, -1))):
         letter = "fr"[axle]
         names = (f"t_{letter}2", f"t_{letter}1") if geometry.separate else (f"t_{letter}",)
         for springs, name in zip((True, False), names, strict=False):
@@ -50,16 +50,16 @@ def half_distances(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
             y = drawn.half_distance(springs, axle) * (1 if springs else -1)
             dashed = length.value is None
             yield from _seats(frame, x, abs(y), springs, dashed)
-            line = frame.at(end, 0.0)[0] + 12.0 * way
+            line = frame.at(end, 0.0)[0] + 12.0 * sign
             low, high = frame.at(0.0, 0.0)[1], frame.at(0.0, y)[1]
-            yield Stroke((frame.at(x, y), (line + 4.0 * way, high)), "dimension", dashed)
+            yield Stroke((frame.at(x, y), (line + 4.0 * sign, high)), "dimension", dashed)
             yield Stroke(((line, low), (line, high)), "dimension", dashed, arrows="both")
-            anchor: Anchor = "start" if way > 0 else "end"
-            middle, beside = (low + high) / 2, line + 5.0 * way
+            anchor: Anchor = "start" if sign > 0 else "end"
+            middle, beside = (low + high) / 2, line + 5.0 * sign
             # Springs above the centreline, dampers below it, however short the dimension line is.
             upper = min(middle - 2.0, low - LINE - 3.5) if springs else max(middle - 2.0, low + 10.5)
-            yield Words(name, (beside, upper), "dimension", anchor, symbol=True)
-            yield Words(length.text, (beside, upper + LINE), "dimension", anchor)
+            yield TextShape(name, (beside, upper), "dimension", anchor, symbol=True)
+            yield TextShape(length.text, (beside, upper + LINE), "dimension", anchor)
 
 
 def _seats(frame: Frame, x: float, y: float, springs: bool, dashed: bool) -> Iterator[Shape]:
@@ -74,7 +74,7 @@ def _seats(frame: Frame, x: float, y: float, springs: bool, dashed: bool) -> Ite
 
 
 def lengths_along(drawn: Proportions, frame: Frame, y: float, lengths: Sequence[tuple[str, Length]]) -> Iterator[Shape]:
-    """Draw dimension lines along the vehicle, one after the other from the front axle on.
+    """Draw dimension lines along the vehicle, one after the other from the front axle.
 
     Parameters
     ----------
@@ -85,11 +85,11 @@ def lengths_along(drawn: Proportions, frame: Frame, y: float, lengths: Sequence[
     y
         Of the lines, units.
     lengths
-        With their names: a and b, or the wheelbase alone.
+        Names and lengths: a and b, or the wheelbase alone.
     """
     cg, _ = drawn.centre_of_gravity
     ends = (0.0, cg, -drawn.wheelbase) if len(lengths) > 1 else (0.0, -drawn.wheelbase)
-    written: list[Box] = []
+    texts: list[Box] = []
     for (name, length), front, rear in zip(lengths, ends, ends[1:], strict=False):
         right, left = frame.at(front, 0.0)[0], frame.at(rear, 0.0)[0]
         dashed = length.value is None
@@ -98,10 +98,10 @@ def lengths_along(drawn: Proportions, frame: Frame, y: float, lengths: Sequence[
             yield Stroke(((x, y - 9.0), (x, y + 3.0)), "dimension", dashed)
         text = f"{name} {length.text}"
         at = ((left + right) / 2, y + 11.5)
-        if any(text_box(text, at, "middle").overlaps(box) for box in written):
+        if any(text_box(text, at, "middle").overlaps(box) for box in texts):
             at = (at[0], at[1] + LINE)
-        written.append(text_box(text, at, "middle"))
-        yield Words(text, at, "dimension", "middle")
+        texts.append(text_box(text, at, "middle"))
+        yield TextShape(text, at, "dimension", "middle")
 
 
 def coordinate_axes(frame: Frame, up: str) -> Iterator[Shape]:
@@ -118,8 +118,8 @@ def coordinate_axes(frame: Frame, up: str) -> Iterator[Shape]:
     yield Disc(origin, 2.0, "axis", filled=True)
     yield Stroke((origin, (origin[0] + long, origin[1])), "axis", arrows="end")
     yield Stroke((origin, (origin[0], origin[1] - long)), "axis", arrows="end")
-    yield Words("x", (origin[0] + long + 2.0, origin[1] + 3.5), "axis")
-    yield Words(up, (origin[0] + 4.0, origin[1] - long + 3.0), "axis")
+    yield TextShape("x", (origin[0] + long + 2.0, origin[1] + 3.5), "axis")
+    yield TextShape(up, (origin[0] + 4.0, origin[1] - long + 3.0), "axis")
 
 
 def centre_of_gravity(centre: Point, dashed: bool) -> Iterator[Shape]:
@@ -128,9 +128,9 @@ def centre_of_gravity(centre: Point, dashed: bool) -> Iterator[Shape]:
     Parameters
     ----------
     centre
-        Where it is, units.
+        Its position, units.
     dashed
-        Whether its place is not known.
+        Whether its position is unknown.
     """
     r = 5.0
     yield Disc(centre, r, "gravity", dashed=dashed)
@@ -139,7 +139,7 @@ def centre_of_gravity(centre: Point, dashed: bool) -> Iterator[Shape]:
 
 
 def scale_bar(drawn: Proportions, scale: float, y: float) -> Iterator[Shape]:
-    """Draw a bar that is 1 m long, or write that the drawing is not to scale.
+    """Draw a bar of 1 m, or the note that the drawing is not to scale.
 
     Parameters
     ----------
@@ -152,9 +152,9 @@ def scale_bar(drawn: Proportions, scale: float, y: float) -> Iterator[Shape]:
     """
     if not drawn.to_scale:
         why = "" if drawn.geometry.blank else ": no length is known"
-        yield Words(f"not to scale{why}", (4.0, y + 3.5), "dimension")
+        yield TextShape(f"not to scale{why}", (4.0, y + 3.5), "dimension")
         return
     yield Stroke(((4.0, y), (4.0 + scale, y)), "dimension")
     for x in (4.0, 4.0 + scale):
         yield Stroke(((x, y - 3.0), (x, y + 3.0)), "dimension")
-    yield Words("1 m", (8.0 + scale, y + 3.5), "dimension")
+    yield TextShape("1 m", (8.0 + scale, y + 3.5), "dimension")

@@ -1,4 +1,4 @@
-"""Dimensions of the vehicle as far as a campaign or a result has them: what the sketch is drawn from."""
+"""Dimensions of the vehicle in a campaign or a result, for the sketch."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import EMPTY, Load, Sensor
 
 _FINEST = 0.01
-"""m: a standard uncertainty below this one adds no more figures, as the second figure of this one is 1 mm."""
+"""Smallest standard uncertainty for rounding, m: lengths are rounded to 1 mm at most."""
 
 
 @dataclass(frozen=True, slots=True)
 class Length:
-    """A length that the sketch shows.
+    """A length in the sketch.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Length:
     std
         Standard uncertainty, m; 0 for an exact value.
     written
-        What stands in place of the value; empty for the value itself.
+        Text in place of the value; empty for the value itself.
     """
 
     value: float | None = None
@@ -34,7 +34,7 @@ class Length:
 
     @property
     def text(self) -> str:
-        """The value as the sketch shows it: rounded by its uncertainty, to 1 mm at most; ``?`` where it is not known."""
+        """The value, rounded by its uncertainty to 1 mm at most; ``?`` where it is not known."""
         if self.written or self.value is None:
             return self.written or "?"
         written = round_by_uncertainty(self.value, max(self.std, _FINEST))[0] if self.std else f"{self.value:.4g}"
@@ -52,7 +52,7 @@ class Length:
 
 
 UNKNOWN = Length()
-"""A length that nobody has measured or identified."""
+"""A length that is neither measured nor identified."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Geometry:
     identified
         Whether a, b and the half-distances come from an identification.
     blank
-        Whether it is drawn to be written on, and not to scale.
+        Whether it is to be filled in by hand, not to scale.
     """
 
     name: str
@@ -98,12 +98,12 @@ class Geometry:
 
 
 def geometry_of(source: Campaign | Result) -> Geometry:
-    """Collect the dimensions that a campaign or a result has.
+    """Return the dimensions in a campaign or a result.
 
     Parameters
     ----------
     source
-        A campaign holds what was measured beforehand; a result also what was identified. Estimates of a rejected result
+        A campaign has the lengths measured beforehand, a result also the identified ones. Estimates of a rejected result
         are not used.
 
     Returns
@@ -123,9 +123,9 @@ def geometry_of(source: Campaign | Result) -> Geometry:
 def _of_result(result: Result) -> Geometry:
     usable = ("known",) if result.verdict.state == "reject" else ("known", "estimated")
     lengths = {
-        name: Length(found.value, found.std or 0.0)
-        for name, found in {**result.parameters, **result.derived}.items()
-        if found.status in usable
+        name: Length(estimate.value, estimate.std or 0.0)
+        for name, estimate in {**result.parameters, **result.derived}.items()
+        if estimate.status in usable
     }
     setup = result.setup
     lengths = {name: Length(prior.value, prior.std) for name, prior in setup.known.items()} | lengths

@@ -1,6 +1,6 @@
-"""Places for labels beside their points: no label covers another, a point or a line that belongs to a label.
+"""Placement of labels near their points, without overlapping another label, a point or a leader line.
 
-Dimension lines are left free too where there is a place close to the point.
+Dimension lines are kept free too where that is possible close to the point.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from itertools import chain, takewhile
 from sprung.report.sketch.shapes import Kind, Point
 
 LETTER = 6.0
-"""Width of a letter, units: of the widest usual font at the size of labels."""
+"""Width of a letter of a label, units, in the widest of the usual fonts."""
 
 LINE = 12.5
-"""From line to line of a label, units."""
+"""Line spacing of labels, units."""
 
 _DISTANCES = (9.0, 14.0, 20.0, 28.0, 38.0, 50.0)
-"""From a point to its label, units, the preferred one first."""
+"""Distances from a point to its label, units, in order of preference."""
 
 _DIRECTIONS = (
     (1, 0),
@@ -35,18 +35,18 @@ _DIRECTIONS = (
     (1, 0.5),
     (-1, 0.5),
 )
-"""From a point to its label, the preferred one first."""  # fmt: skip
+"""Directions from a point to its label, in order of preference."""  # fmt: skip
 
 _CLOSE = 20.0
-"""Distance up to which a label goes to keep a dimension line free, units."""
+"""Largest distance of a label that keeps a dimension line free, units."""
 
 _NEAR = 10.0
-"""Distance up to which a label needs no line to its point, units."""
+"""Largest distance of a label without a leader line, units."""
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A rectangle with its sides parallel to the frame's."""
+    """A rectangle parallel to the frame."""
 
     left: float
     top: float
@@ -68,12 +68,12 @@ class Box:
             and self.bottom <= other.bottom
         )
 
-    def grown(self, by: float) -> Box:
-        """Add a margin on all sides."""
+    def with_margin(self, by: float) -> Box:
+        """Return the rectangle with a margin on all sides."""
         return Box(self.left - by, self.top - by, self.right + by, self.bottom + by)
 
     def nearest(self, point: Point) -> Point:
-        """Point of the rectangle that is nearest to another point."""
+        """Return the point of the rectangle that is nearest to another point."""
         return min(max(point[0], self.left), self.right), min(max(point[1], self.top), self.bottom)
 
     def is_crossed(self, start: Point, end: Point) -> bool:
@@ -101,9 +101,9 @@ class Label:
     at
         The point.
     lines
-        The text.
+        Text.
     kind
-        What it belongs to.
+        Kind of the marked object.
     """
 
     at: Point
@@ -117,17 +117,17 @@ class Label:
 
 
 @dataclass(frozen=True, slots=True)
-class Placed:
-    """A label with its place.
+class PlacedLabel:
+    """A label with its position.
 
     Attributes
     ----------
     label
         The label.
     box
-        What its text covers.
+        Area of its text.
     leader
-        End of the line from the point to the text; None where the text is so near that it needs none.
+        End of the leader line from the point to the text; None where none is needed.
     """
 
     label: Label
@@ -136,14 +136,14 @@ class Placed:
 
 
 def text_box(text: str, at: Point, anchor: str) -> Box:
-    """Return what one line of text covers.
+    """Return the area of one line of text.
 
     Parameters
     ----------
     text
-        The text.
+        Any.
     at
-        Of its baseline.
+        Position of its baseline.
     anchor
         ``start``, ``middle`` or ``end``.
     """
@@ -154,49 +154,51 @@ def text_box(text: str, at: Point, anchor: str) -> Box:
 
 def place_labels(
     labels: Sequence[Label], taken: Iterable[Box], frame: Box, lines: Sequence[tuple[Point, Point]] = ()
-) -> tuple[Placed | None, ...]:
-    """Place labels one after the other, each as near to its point as it can be.
+) -> tuple[PlacedLabel | None, ...]:
+    """Return the positions of labels, placed one after the other, each as near to its point as possible.
 
     Parameters
     ----------
     labels
-        In the order of their importance.
+        In order of importance.
     taken
-        What no label may cover.
+        Areas that no label may cover.
     frame
-        What no label may leave.
+        Area that no label may leave.
     lines
-        What no label should cover.
+        Lines that no label should cover.
 
     Returns
     -------
     tuple
-        One for each label; None where there is no place for it.
+        One for each label; None where it cannot be placed.
     """
-    points = [Box(label.at[0], label.at[1], label.at[0], label.at[1]).grown(5.0) for label in labels]
+    points = [Box(label.at[0], label.at[1], label.at[0], label.at[1]).with_margin(5.0) for label in labels]
     texts = list(taken)
     leaders: list[tuple[Point, Point]] = []
-    placed: list[Placed | None] = []
+    placed: list[PlacedLabel | None] = []
     for label in labels:
         possible = (
             place
             for place in chain(_around(label), _anywhere(label, frame))
             if place.box.within(frame)
             and not any(place.box.overlaps(box) for box in (*texts, *points))
-            and not any(place.box.grown(1.0).is_crossed(*leader) for leader in leaders)
+            and not any(place.box.with_margin(1.0).is_crossed(*leader) for leader in leaders)
             and (place.leader is None or not any(box.is_crossed(label.at, place.leader) for box in texts))
         )
-        found = _freest(possible, label.at, lines)
-        placed.append(found)
-        if found is not None:
-            texts.append(found.box)
-            if found.leader is not None:
-                leaders.append((label.at, found.leader))
+        best = _best_position(possible, label.at, lines)
+        placed.append(best)
+        if best is not None:
+            texts.append(best.box)
+            if best.leader is not None:
+                leaders.append((label.at, best.leader))
     return tuple(placed)
 
 
-def _freest(possible: Iterator[Placed], point: Point, lines: Sequence[tuple[Point, Point]]) -> Placed | None:
-    """Take the first of the places close to a point that covers the fewest lines, or else the first of all."""
+def _best_position(
+    possible: Iterator[PlacedLabel], point: Point, lines: Sequence[tuple[Point, Point]]
+) -> PlacedLabel | None:
+    """Return the first of the positions close to a point that covers the fewest lines, or else the first of all."""
     first = next(possible, None)
     if first is None:
         return None
@@ -204,14 +206,14 @@ def _freest(possible: Iterator[Placed], point: Point, lines: Sequence[tuple[Poin
     return min((first, *close), key=lambda place: sum(place.box.is_crossed(*line) for line in lines))
 
 
-def _around(label: Label) -> Iterator[Placed]:
-    """Give places beside the point in the preferred directions."""
+def _around(label: Label) -> Iterator[PlacedLabel]:
+    """Yield positions beside the point in the preferred directions."""
     width, height = label.size
     # Above the centre of gravity nothing else is dimensioned.
     directions = ((0, -1), *_DIRECTIONS) if label.kind == "gravity" else _DIRECTIONS
     for distance in _DISTANCES:
         for x, y in directions:
-            # The side of the text that faces the point stays at the distance, whatever the text's size.
+            # The side of the text that faces the point is at this distance, whatever the size of the text.
             middle = (
                 label.at[0] + x * distance + (width / 2 if x > 0.7 else -width / 2 if x < -0.7 else x * width / 2),
                 label.at[1] + y * distance + (height / 2) * (1 if y > 0 else -1 if y < 0 else 0),
@@ -219,8 +221,8 @@ def _around(label: Label) -> Iterator[Placed]:
             yield _at(label, middle)
 
 
-def _anywhere(label: Label, frame: Box) -> Iterator[Placed]:
-    """Give places all over the frame, the nearest first."""
+def _anywhere(label: Label, frame: Box) -> Iterator[PlacedLabel]:
+    """Yield positions all over the frame, the nearest first."""
     width, height = label.size
     across, down = int((frame.right - frame.left - width) / LETTER), int((frame.bottom - frame.top - height) / LINE)
     middles = [
@@ -228,11 +230,11 @@ def _anywhere(label: Label, frame: Box) -> Iterator[Placed]:
         for i in range(across + 1)
         for k in range(down + 1)
     ]
-    yield from (_at(label, middle) for middle in sorted(middles, key=lambda one: math.dist(one, label.at)))
+    yield from (_at(label, middle) for middle in sorted(middles, key=lambda middle: math.dist(middle, label.at)))
 
 
-def _at(label: Label, middle: Point) -> Placed:
+def _at(label: Label, middle: Point) -> PlacedLabel:
     width, height = label.size
     box = Box(middle[0] - width / 2, middle[1] - height / 2, middle[0] + width / 2, middle[1] + height / 2)
     near = box.nearest(label.at)
-    return Placed(label, box, near if math.dist(near, label.at) > _NEAR else None)
+    return PlacedLabel(label, box, near if math.dist(near, label.at) > _NEAR else None)

@@ -14,45 +14,45 @@ from sprung.vehicle import WHEELS, Wheel
 _MARK = 3.6
 """Half-size of the mark of a sensor or a load, units."""
 
-_SAME = 7.0
-"""Marks less than this apart, units, share one label."""
+_COINCIDENT = 7.0
+"""Distance of marks, units, below which they share one label."""
 
 _LONGEST = 26
-"""Letters of a name that are written."""
+"""Letters of a name that are shown at most."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """How lengths are placed on a drawing.
+    """Transformation from lengths to positions on a drawing.
 
     Attributes
     ----------
     scale
         Units per m.
     origin
-        Of the front axle's centre on the ground or on the centreline.
+        Position of the centre of the front axle, on the ground or on the centreline, units.
     """
 
     scale: float
     origin: Point
 
     def at(self, x: float, up: float) -> Point:
-        """Place a point: x to the right, y or z upwards."""
+        """Return the position of a point: x to the right, y or z upwards."""
         return self.origin[0] + self.scale * x, self.origin[1] - self.scale * up
 
 
 @dataclass(frozen=True)
 class Mark:
-    """A sensor or a piece of a load.
+    """Mark of a sensor or of an item of a load.
 
     Attributes
     ----------
     at
-        Where it is, units.
+        Its position, units.
     text
         Its label.
     kind
-        What it is.
+        ``sensor`` or ``load``.
     on_body
         Whether it is on the body, and not on a wheel.
     """
@@ -64,7 +64,7 @@ class Mark:
 
 
 Marks: TypeAlias = Callable[[Frame], list[Mark]]
-"""Places the marks once the frame of a drawing is known."""
+"""Returns the marks for the frame of a drawing."""
 
 
 def mark_placer(
@@ -72,7 +72,7 @@ def mark_placer(
     project: Callable[[tuple[float, float, float]], tuple[float, float]],
     wheel: Callable[[Wheel], tuple[float, float]],
 ) -> Marks:
-    """Return a function that places the sensors and loads whose place is known.
+    """Return a function that marks the sensors and loads with known positions.
 
     Parameters
     ----------
@@ -86,26 +86,26 @@ def mark_placer(
     stations: list[str | None] = ["body", *WHEELS, None]
 
     def marks(frame: Frame) -> list[Mark]:
-        found = []
-        for sensor in sorted(drawn.geometry.sensors, key=lambda one: stations.index(one.on)):
+        placed = []
+        for sensor in sorted(drawn.geometry.sensors, key=lambda sensor: stations.index(sensor.on)):
             if sensor.position is not None:
-                found.append(Mark(frame.at(*project(sensor.position)), shortened(sensor.channel), "sensor"))
+                placed.append(Mark(frame.at(*project(sensor.position)), shortened(sensor.channel), "sensor"))
             elif sensor.on is not None and sensor.on != "body":
-                found.append(Mark(frame.at(*wheel(sensor.on)), shortened(sensor.channel), "sensor", False))
+                placed.append(Mark(frame.at(*wheel(sensor.on)), shortened(sensor.channel), "sensor", False))
         for load in drawn.geometry.loads:
             for item in load.items:
                 text = shortened(f"{load.name} {item.mass:.4g} kg")
                 if item.position is not None:
-                    found.append(Mark(frame.at(*project(item.position)), text, "load"))
+                    placed.append(Mark(frame.at(*project(item.position)), text, "load"))
                 elif item.on is not None:
-                    found.append(Mark(frame.at(*wheel(item.on)), text, "load", False))
-        return found
+                    placed.append(Mark(frame.at(*wheel(item.on)), text, "load", False))
+        return placed
 
     return marks
 
 
 def grouped_labels(marks: Sequence[Mark]) -> Iterator[Label]:
-    """Yield the labels of marks; marks of one kind that lie on one point share one.
+    """Yield the labels of marks; coincident marks of one kind share one.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def grouped_labels(marks: Sequence[Mark]) -> Iterator[Label]:
     for mark in marks:
         for group in groups:
             apart = max(abs(mark.at[0] - group[0].at[0]), abs(mark.at[1] - group[0].at[1]))
-            if group[0].kind == mark.kind and apart < _SAME:
+            if group[0].kind == mark.kind and apart < _COINCIDENT:
                 group.append(mark)
                 break
         else:
@@ -126,7 +126,7 @@ def grouped_labels(marks: Sequence[Mark]) -> Iterator[Label]:
 
 
 def shortened(name: str) -> str:
-    """Shorten a name that is too long for a label.
+    """Return a name, shortened for a label.
 
     Parameters
     ----------
@@ -138,12 +138,12 @@ def shortened(name: str) -> str:
 
 
 def mark_shapes(mark: Mark) -> Iterator[Shape]:
-    """Draw the mark of a sensor or a load.
+    """Draw a mark.
 
     Parameters
     ----------
     mark
-        The mark.
+        Any.
     """
     (x, y), r = mark.at, _MARK
     if mark.kind == "sensor":

@@ -1,4 +1,4 @@
-"""Proportions of the drawn vehicle: those that are known, to scale, and usual ones in place of those that are not."""
+"""Proportions of the drawn vehicle: known lengths to scale, typical ones for the others."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from sprung.report.sketch.geometry import Geometry
 from sprung.vehicle import Wheel
 
 _WHEELBASE = 2.7
-"""m, of a usual car: drawn dashed where nobody has measured it."""
+"""Wheelbase of a typical car, m, drawn dashed where it is unknown."""
 
 _HALF_TRACK, _WHEEL_RADIUS, _CG_HEIGHT = 0.27, 0.115, 0.2
-"""Usual half track, wheel radius and height of the centre of gravity beside the wheelbase."""
+"""Typical half track, wheel radius and height of the centre of gravity, as parts of the wheelbase."""
 
 _OVERHANG, _BODY_BOTTOM, _BODY_TOP, _WHEEL_WIDTH = 0.2, 0.09, 0.48, 0.07
-"""Of the outline, beside the wheelbase: nothing in a campaign tells the outline of the body."""
+"""Of the outline, as parts of the wheelbase; a campaign has no outline of the body."""
 
 _OUTSIDE = 1.15
-"""Half track beside the largest half-distance of springs and dampers, which lie inside of the wheels."""
+"""Half track relative to the largest half-distance of springs and dampers, which are inside the wheels."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ class Proportions:
     Attributes
     ----------
     geometry
-        What is known.
+        Known dimensions.
     wheelbase, half_track, wheel_radius
-        As they are drawn.
+        As drawn.
     """
 
     geometry: Geometry
@@ -40,32 +40,32 @@ class Proportions:
 
     @property
     def to_scale(self) -> bool:
-        """Whether anything along the vehicle is known."""
+        """Whether any length along the vehicle is known."""
         if self.geometry.blank:
             return False
         return self.geometry.wheelbase.value is not None or any(True for _ in self.places)
 
     @property
     def wheel_width(self) -> float:
-        """Of the outline of a wheel, seen from above."""
+        """Width of a wheel in the plan view, m."""
         return _WHEEL_WIDTH * self.wheelbase
 
     @property
     def places(self) -> Iterator[tuple[float, float, float]]:
-        """Known positions on the body: of sensors and of pieces of a load."""
+        """Known positions on the body, of sensors and load items, m."""
         yield from (sensor.position for sensor in self.geometry.sensors if sensor.position is not None)
         for load in self.geometry.loads:
             yield from (item.position for item in load.items if item.position is not None)
 
     @property
     def centre_of_gravity(self) -> tuple[float, float]:
-        """Place (x, z) of the sprung mass's centre of gravity; half-way between the axles where a is not known."""
+        """Position (x, z) of the sprung mass's centre of gravity; half-way between the axles where a is not known."""
         a, height = self.geometry.a.value, self.geometry.cg_height.value
         x = -self.wheelbase / 2 if a is None else -a
         return x, _CG_HEIGHT * self.wheelbase if height is None else height
 
     def half_distance(self, springs: bool, axle: int) -> float:
-        """Return the half-distance of springs or dampers as it is drawn.
+        """Return the half-distance of springs or dampers, as drawn.
 
         Parameters
         ----------
@@ -78,7 +78,7 @@ class Proportions:
         return self.half_track / _OUTSIDE if known is None else known
 
     def wheel(self, wheel: Wheel) -> tuple[float, float]:
-        """Return x and y of a wheel's centre.
+        """Return x and y of the centre of a wheel, m.
 
         Parameters
         ----------
@@ -96,9 +96,9 @@ class Proportions:
         margin = _OVERHANG * self.wheelbase
         width = self.half_track + self.wheel_width
         return (
-            max([margin, *(one + 0.25 * margin for one in x)]),
-            min([-self.wheelbase - margin, *(one - 0.25 * margin for one in x)]),
-            max([width, *(one + 0.1 * margin for one in y)]),
+            max([margin, *(value + 0.25 * margin for value in x)]),
+            min([-self.wheelbase - margin, *(value - 0.25 * margin for value in x)]),
+            max([width, *(value + 0.1 * margin for value in y)]),
         )
 
     @property
@@ -106,28 +106,28 @@ class Proportions:
         """Lower and upper edge of the outline of the body, from the side."""
         z = [place[2] for place in self.places]
         margin = 0.04 * self.wheelbase
-        top = max([_BODY_TOP * self.wheelbase, self.centre_of_gravity[1] + margin, *(one + margin for one in z)])
-        return min([_BODY_BOTTOM * self.wheelbase, *(one - margin for one in z if one > margin)]), top
+        top = max([_BODY_TOP * self.wheelbase, self.centre_of_gravity[1] + margin, *(value + margin for value in z)])
+        return min([_BODY_BOTTOM * self.wheelbase, *(value - margin for value in z if value > margin)]), top
 
 
 def proportions_of(geometry: Geometry) -> Proportions:
-    """Complete what is known of a vehicle by usual proportions.
+    """Return the proportions of a vehicle, unknown ones from typical vehicles.
 
     Parameters
     ----------
     geometry
-        What is known.
+        Known dimensions.
 
     Returns
     -------
     Proportions
     """
-    bare = Proportions(geometry, _WHEELBASE, 0.0, 0.0)
-    x = [place[0] for place in bare.places]
+    incomplete = Proportions(geometry, _WHEELBASE, 0.0, 0.0)
+    x = [place[0] for place in incomplete.places]
     span = max(x) - min(x) if x else 0.0
     wheelbase = geometry.wheelbase.value or (span if span > 0.5 * _WHEELBASE else _WHEELBASE)
-    known = [one.value for one in (*geometry.springs, *geometry.dampers) if one.value is not None]
-    y = [abs(place[1]) for place in bare.places]
+    known = [length.value for length in (*geometry.springs, *geometry.dampers) if length.value is not None]
+    y = [abs(place[1]) for place in incomplete.places]
     if known:
         half_track = _OUTSIDE * max(known)
     else:

@@ -1,4 +1,4 @@
-"""What a technical drawing consists of: strokes, discs and words, in units of its frame, apart from how they are drawn."""
+"""Technical drawings as data: strokes, discs and text, in units of the frame."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ Point: TypeAlias = tuple[float, float]
 """To the right and down from the upper left corner, units."""
 
 Kind = Literal["outline", "wheel", "dimension", "axis", "sensor", "load", "gravity", "leader", "write"]
-"""What a shape stands for; its colour follows."""
-
+"""Meaning of a shape, which determines its colour."""
 
 Anchor = Literal["start", "middle", "end"]
-"""Which part of a text is at its point."""
+"""Part of a text that is at its position."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,15 +22,15 @@ class Stroke:
     Attributes
     ----------
     points
-        At least two.
+        Two or more.
     kind
-        What it stands for.
+        Its meaning.
     dashed
-        Whether it shows something that is not known.
+        Whether it shows an unknown position or length.
     closed
         Whether it returns to its first point.
     arrows
-        At which ends it has arrowheads.
+        Ends with arrowheads.
     """
 
     points: tuple[Point, ...]
@@ -52,9 +51,9 @@ class Disc:
     radius
         Units.
     kind
-        What it stands for.
+        Its meaning.
     dashed
-        Whether it shows something that is not known.
+        Whether it shows an unknown position or length.
     filled
         Whether it is filled with its colour.
     """
@@ -67,19 +66,19 @@ class Disc:
 
 
 @dataclass(frozen=True, slots=True)
-class Words:
+class TextShape:
     """One line of text.
 
     Attributes
     ----------
     text
-        The text.
+        Any.
     at
-        Where its baseline begins, is centred or ends.
+        Beginning, middle or end of its baseline.
     kind
-        What it belongs to.
+        Its meaning.
     anchor
-        Which part of the text is at that point.
+        Part of the text that is at that position.
     symbol
         Whether it is a symbol with an index after an underscore, such as ``t_f``.
     """
@@ -91,8 +90,8 @@ class Words:
     symbol: bool = False
 
 
-Shape: TypeAlias = Stroke | Disc | Words
-"""Anything in a drawing."""
+Shape: TypeAlias = Stroke | Disc | TextShape
+"""Any shape of a drawing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,17 +101,17 @@ class Drawing:
     Attributes
     ----------
     title
-        What it shows.
-    described
-        The same in a sentence, for readers who cannot see it.
+        Above it.
+    description
+        Content in a sentence, for screen readers.
     width, height
         Of its frame, units.
     shapes
-        The hindmost first.
+        Drawn in this order.
     """
 
     title: str
-    described: str
+    description: str
     width: float
     height: float
     shapes: tuple[Shape, ...]

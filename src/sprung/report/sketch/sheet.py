@@ -1,33 +1,33 @@
-"""The sketch as a file of its own, and a blank one to print and write on at the vehicle."""
+"""The sketch as an SVG file, and a blank sketch to print and fill in at the vehicle."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from sprung.report.drawing.elements import svg_file
 from sprung.report.drawing.palette import LIGHT
-from sprung.report.drawing.style import alone_style
 from sprung.report.sketch.composition import WIDTH
 from sprung.report.sketch.geometry import Geometry, Length
-from sprung.report.sketch.shapes import Drawing, Shape, Stroke, Words
+from sprung.report.sketch.shapes import Drawing, Shape, Stroke, TextShape
 from sprung.report.sketch.sketch import VehicleSketch
 from sprung.report.sketch.svg import shapes_svg
 from sprung.report.sketch.views import plan_view, side_view
 from sprung.tables import escaped
 
 _EDGE, _GAP, _TITLE = 16.0, 24.0, 20.0
-"""Units: around the sheet, between drawings, and for a drawing's title."""
+"""Units: margin of the sheet, gap between drawings, height of a title."""
 
 _LARGER = 1.5
-"""By how much the drawings are larger on the blank sheet, so that there is room to write."""
+"""Magnification of the drawings on the blank sheet, for room to write."""
 
 _PAGE = (720.0, 1018.0)
-"""Units across and down the blank sheet: an A4 page without its margins."""
+"""Width and height of the blank sheet, units: an A4 page without margins."""
 
 _ROW = 21.0
 """Height of a line to write on, units."""
 
 _WRITE = "________ m"
-"""In place of a length that is to be written down."""
+"""In place of a length to be filled in."""
 
 
 def sketch_sheet(sketch: VehicleSketch) -> str:
@@ -41,7 +41,7 @@ def sketch_sheet(sketch: VehicleSketch) -> str:
     Returns
     -------
     str
-        The content of the file; the same for the same sketch.
+        Content of the file; identical for identical sketches.
     """
     plan, side = sketch.drawings
     width = 2 * _EDGE + 2 * WIDTH + _GAP
@@ -56,7 +56,7 @@ def blank_sketch() -> str:
     Returns
     -------
     str
-        The content of an SVG file; always the same.
+        Content of an SVG file; always the same.
     """
     usual = Geometry(
         name="",
@@ -88,23 +88,23 @@ def blank_sketch() -> str:
 def _placed(drawing: Drawing, x: float, y: float, scale: float = 1.0) -> str:
     title = f'<text class="title" x="{x:.0f}" y="{y + 12:.0f}">{escaped(drawing.title)}</text>'
     place = f"translate({x:.1f} {y + _TITLE:.1f}) scale({scale:g})"
-    return f'{title}<g transform="{place}"><desc>{escaped(drawing.described)}</desc>{shapes_svg(drawing.shapes)}</g>'
+    return f'{title}<g transform="{place}"><desc>{escaped(drawing.description)}</desc>{shapes_svg(drawing.shapes)}</g>'
 
 
 def _lines(labels: Sequence[str], y: float) -> Iterator[Shape]:
-    """Give labels beside each other, each with a line to write on."""
+    """Yield labels side by side, each with a line to write on."""
     width = _PAGE[0] / len(labels)
     for column, label in enumerate(labels):
-        yield Words(label, (column * width, y), "write")
+        yield TextShape(label, (column * width, y), "write")
         yield Stroke(((column * width + 84.0, y + 2.0), ((column + 1) * width - 12.0, y + 2.0)), "write")
 
 
 def _table(headers: Sequence[str], rows: int, y: float) -> Iterator[Shape]:
-    """Give an empty table, its first column twice as wide as the others."""
+    """Yield an empty table, its first column twice as wide as the others."""
     width = _PAGE[0] / (len(headers) + 1)
     starts = [0.0, *(width * (column + 2) for column in range(len(headers) - 1)), _PAGE[0]]
     for start, header in zip(starts, headers, strict=False):
-        yield Words(header, (start + 4.0, y + 14.0), "write")
+        yield TextShape(header, (start + 4.0, y + 14.0), "write")
     for row in range(rows + 2):
         line = y + _ROW * row
         yield Stroke(((0.0, line), (_PAGE[0], line)), "write")
@@ -112,11 +112,6 @@ def _table(headers: Sequence[str], rows: int, y: float) -> Iterator[Shape]:
         yield Stroke(((start, y), (start, y + _ROW * (rows + 1))), "write")
 
 
-def _file(title: str, inside: str, width: float, height: float) -> str:
-    own = f".sketch .title {{ font-size: 13px; font-weight: 600; fill: {LIGHT['text']}; }}"
-    return (
-        '<?xml version="1.0" encoding="utf-8"?>\n'
-        f'<svg xmlns="http://www.w3.org/2000/svg" class="sketch" viewBox="-1 -1 {width + 2:.0f} {height + 2:.0f}" '
-        f'width="{width:.0f}" height="{height:.0f}"><title>{escaped(title)}</title>{alone_style()}<style>{own}</style>'
-        f'<rect x="-1" y="-1" width="100%" height="100%" fill="{LIGHT["paper"]}"/>{inside}</svg>\n'
-    )
+def _file(title: str, content: str, width: float, height: float) -> str:
+    rules = f".sketch .title {{ font-size: 13px; font-weight: 600; fill: {LIGHT['text']}; }}"
+    return svg_file(title, (width, height), rules, content, "sketch", margin=1)

@@ -1,4 +1,4 @@
-"""The sketch of the vehicle: its two views, and in words what is not known yet."""
+"""The sketch of the vehicle: two views, and the list of unknown dimensions."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ class VehicleSketch:
     Attributes
     ----------
     geometry
-        What it is drawn from.
+        Dimensions, sensors and loads.
     drawings
         Plan view and side view.
     unknown
-        What is drawn dashed or not at all because it is not known, one text each.
+        Unknown dimensions, drawn dashed or not at all, one text each.
     """
 
     geometry: Geometry
@@ -32,17 +32,17 @@ class VehicleSketch:
 
     @property
     def key(self) -> str:
-        """How the sketch is to be read, in a sentence or two."""
+        """Legend of the sketch in a sentence or two."""
         geometry = self.geometry
-        seats = "circles are spring seats, diamonds damper mounts" if geometry.separate else "circles are spring seats"
+        seats = "circles: springs; diamonds: dampers" if geometry.separate else "circles: springs and dampers"
         return (
-            "Axes after ISO 8855: x forward from the front axle, y to the left, z up from the ground. Dots are sensors on the "
-            f"body, rings sensors on wheels, crossed squares loads, {seats}. The outlines of body and wheels are schematic."
+            "Axes according to ISO 8855: x forward from the front axle, y to the left, z up from the ground. Dots: sensors on "
+            f"the body; rings: sensors on wheels; crossed squares: loads; {seats}. Outlines are schematic."
         )
 
 
 def vehicle_sketch(source: Campaign | Result) -> VehicleSketch:
-    """Sketch a vehicle with axes, dimensions, sensors, loads and centre of gravity.
+    """Return the sketch of a vehicle with axes, dimensions, sensors, loads and centre of gravity.
 
     Parameters
     ----------
@@ -52,32 +52,32 @@ def vehicle_sketch(source: Campaign | Result) -> VehicleSketch:
     Returns
     -------
     VehicleSketch
-        What is not known is dashed and named; nothing is invented.
+        Unknown dimensions are dashed and listed.
     """
     geometry = geometry_of(source)
     return VehicleSketch(geometry, (plan_view(geometry), side_view(geometry)), tuple(_unknown(geometry)))
 
 
 def _unknown(geometry: Geometry) -> Iterator[str]:
-    """Name what is not known of the vehicle, its sensors and its loads."""
+    """Yield the unknown dimensions of the vehicle, its sensors and its loads."""
     if geometry.wheelbase.value is None:
         yield "wheelbase"
     if geometry.a.value is None:
         yield "centre of gravity (a, b)"
     kinds = {"2": geometry.springs, "1": geometry.dampers} if geometry.separate else {"": geometry.springs}
     for index, lengths in kinds.items():
-        names = [f"t_{axle}{index}" for axle, one in zip("fr", lengths, strict=True) if one.value is None]
+        names = [f"t_{axle}{index}" for axle, length in zip("fr", lengths, strict=True) if length.value is None]
         if names:
             yield f"half-distance{'s' * (len(names) > 1)} {', '.join(names)}"
     if geometry.cg_height.value is None:
         yield "height of the centre of gravity"
     if geometry.wheel_height.value is None:
         yield "height of the wheel centres"
-    yield from _placeless(geometry)
+    yield from _without_position(geometry)
 
 
-def _placeless(geometry: Geometry) -> Iterator[str]:
-    """Name the sensors and loads whose place is not known."""
+def _without_position(geometry: Geometry) -> Iterator[str]:
+    """Yield the sensors and loads without a known position."""
     body = [sensor.channel for sensor in geometry.sensors if sensor.on == "body" and sensor.position is None]
     if body:
         yield f"position{'s' * (len(body) > 1)} of {', '.join(body)}"
@@ -86,4 +86,4 @@ def _placeless(geometry: Geometry) -> Iterator[str]:
         yield f"wheel station{'s' * (len(wheels) > 1)} of {', '.join(wheels)}"
     for load in geometry.loads:
         if not load.items:
-            yield f"where load {load.name} lies" + (f" ({load.mass:g} kg in all)" if load.added is not None else "")
+            yield f"position of load {load.name}" + (f" ({load.mass:g} kg in total)" if load.added is not None else "")

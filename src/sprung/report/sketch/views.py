@@ -1,4 +1,4 @@
-"""The vehicle from above and from the side, to scale, with axes, dimensions, sensors, loads and centre of gravity."""
+"""Plan view and side view to scale, with axes, dimensions, sensors, loads and centre of gravity."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sprung.report.sketch.dimensions import (
 from sprung.report.sketch.geometry import Geometry
 from sprung.report.sketch.labels import Label
 from sprung.report.sketch.marks import Frame, mark_placer
-from sprung.report.sketch.proportions import proportions_of
+from sprung.report.sketch.proportions import Proportions, proportions_of
 from sprung.report.sketch.shapes import Disc, Drawing, Shape, Stroke
 from sprung.vehicle import WHEELS, Wheel
 
@@ -23,12 +23,12 @@ SIDE = 62.0
 
 
 def plan_view(geometry: Geometry) -> Drawing:
-    """Draw the vehicle from above.
+    """Return the plan view of a vehicle.
 
     Parameters
     ----------
     geometry
-        What is known of it.
+        Its dimensions.
 
     Returns
     -------
@@ -36,35 +36,34 @@ def plan_view(geometry: Geometry) -> Drawing:
     """
     drawn = proportions_of(geometry)
     front, rear, half = drawn.outline
-    scale = (WIDTH - 2 * SIDE) / (front - rear)
 
     def shapes(top: float) -> tuple[Frame, list[Shape], list[Label], float]:
-        frame = Frame(scale, (SIDE - scale * rear, top + scale * half))
+        frame = _frame(drawn, top, half)
         corners = [(front, half), (front, -half), (rear, -half), (rear, half)]
-        parts: list[Shape] = [Stroke(tuple(frame.at(*one) for one in corners), "outline", closed=True)]
+        parts: list[Shape] = [Stroke(tuple(frame.at(*corner) for corner in corners), "outline", closed=True)]
         parts.append(Stroke((frame.at(front, 0.0), frame.at(rear, 0.0)), "outline", dashed=True))
         parts += wheels_from_above(drawn, frame)
         parts += half_distances(drawn, frame)
         bottom = frame.at(0.0, -half)[1]
         parts += lengths_along(drawn, frame, bottom + 14.0, (("a", geometry.a), ("b", geometry.b)))
         parts += coordinate_axes(frame, "y")
-        parts += scale_bar(drawn, scale, bottom + 46.0)
+        parts += scale_bar(drawn, frame.scale, bottom + 46.0)
         x, _ = drawn.centre_of_gravity
         labels = [Label(frame.at(x, 0.0), ("centre of gravity",), "gravity")]
         parts += centre_of_gravity(frame.at(x, 0.0), geometry.a.value is None)
         return frame, parts, labels, bottom
 
-    marks = mark_placer(drawn, lambda place: (place[0], place[1]), drawn.wheel)
-    return compose("Plan view", _described(geometry), shapes, marks)
+    marks = mark_placer(drawn, lambda position: (position[0], position[1]), drawn.wheel)
+    return compose("Plan view", _description(geometry), shapes, marks)
 
 
 def side_view(geometry: Geometry) -> Drawing:
-    """Draw the vehicle from its right side.
+    """Return the side view of a vehicle, from its right.
 
     Parameters
     ----------
     geometry
-        What is known of it.
+        Its dimensions.
 
     Returns
     -------
@@ -73,19 +72,18 @@ def side_view(geometry: Geometry) -> Drawing:
     drawn = proportions_of(geometry)
     front, rear, _ = drawn.outline
     low, high = drawn.heights
-    scale = (WIDTH - 2 * SIDE) / (front - rear)
 
     def shapes(top: float) -> tuple[Frame, list[Shape], list[Label], float]:
-        frame = Frame(scale, (SIDE - scale * rear, top + scale * high))
+        frame = _frame(drawn, top, high)
         corners = [(front, low), (front, 0.6 * high), (0.55 * front, high), (rear, high), (rear, low)]
-        parts: list[Shape] = [Stroke(tuple(frame.at(*one) for one in corners), "outline", closed=True)]
+        parts: list[Shape] = [Stroke(tuple(frame.at(*corner) for corner in corners), "outline", closed=True)]
         ground = frame.at(0.0, 0.0)[1]
         parts.append(Stroke(((SIDE - 30.0, ground), (WIDTH - SIDE + 30.0, ground)), "outline"))
         labels = []
         for x in (0.0, -drawn.wheelbase):
             dashed = geometry.wheel_height.value is None or (x != 0.0 and geometry.wheelbase.value is None)
             hub = frame.at(x, drawn.wheel_radius)
-            parts.append(Disc(hub, scale * drawn.wheel_radius, "wheel", dashed=dashed))
+            parts.append(Disc(hub, frame.scale * drawn.wheel_radius, "wheel", dashed=dashed))
             parts.append(Disc(hub, 1.6, "wheel", filled=True))
         if geometry.wheel_height.value is not None:
             labels.append(
@@ -106,11 +104,18 @@ def side_view(geometry: Geometry) -> Drawing:
     def wheel(station: Wheel) -> tuple[float, float]:
         return drawn.wheel(station)[0], drawn.wheel_radius
 
-    marks = mark_placer(drawn, lambda place: (place[0], place[2]), wheel)
-    return compose("Side view", _described(geometry), shapes, marks)
+    marks = mark_placer(drawn, lambda position: (position[0], position[2]), wheel)
+    return compose("Side view", _description(geometry), shapes, marks)
 
 
-def _described(geometry: Geometry) -> str:
+def _frame(drawn: Proportions, top: float, height: float) -> Frame:
+    """Return the frame of a view below an upper margin, its origin a height in m below the top of the outline."""
+    front, rear, _ = drawn.outline
+    scale = (WIDTH - 2 * SIDE) / (front - rear)
+    return Frame(scale, (SIDE - scale * rear, top + scale * height))
+
+
+def _description(geometry: Geometry) -> str:
     known = [f"wheelbase {geometry.wheelbase.text}", f"a {geometry.a.text}", f"b {geometry.b.text}"]
     placed = sum(sensor.position is not None or sensor.on in WHEELS for sensor in geometry.sensors)
-    return f"{', '.join(known)}; {placed} of {len(geometry.sensors)} sensors with a known place; {len(geometry.loads)} loads."
+    return f"{', '.join(known)}; {placed} of {len(geometry.sensors)} sensors at known positions; {len(geometry.loads)} loads."

@@ -1,4 +1,4 @@
-"""What the recordings of a campaign show and what is missing, for the terminal."""
+"""The check of a campaign, for the terminal."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from rich.text import Text
 
 from sprung.campaign import MissingEntry
 from sprung.checking import ChannelReport, Check, DropReport
-from sprung.report.terminal.layout import figures, hanging, laid_out
+from sprung.report.terminal.layout import hanging_text, render_table, significant_figures
 from sprung.report.terminal.result import fault_list
 from sprung.tables import Table
 
 _FEW = 3
-"""Drops that are named; of more the number is said."""
+"""Drops that are listed by name; of more their number is given."""
 
 
 class MissingItem(NamedTuple):
-    """Something that a campaign file does not say, in one or several places.
+    """A missing item of a campaign file, in one or several places.
 
     Attributes
     ----------
     item
-        What it is.
+        Its name.
     what
-        What is to be written there.
+        What to write there.
     places
-        Of which sensors, loads or drops.
+        Sensors, loads or drops that lack it.
     needed
-        Whether nothing can be identified without it.
+        Whether an identification is impossible without it.
     """
 
     item: str
@@ -44,66 +44,67 @@ class MissingItem(NamedTuple):
 
 
 def missing_items(missing: Sequence[MissingEntry]) -> list[MissingItem]:
-    """Collect what is missing alike in several places.
+    """Return missing items, with the places of equal ones merged.
 
     Parameters
     ----------
     missing
         Of a campaign.
     """
-    alike: defaultdict[str, list[MissingEntry]] = defaultdict(list)
-    for one in missing:
-        alike[one.item].append(one)
-    found = []
-    for item, ones in alike.items():
-        places = [named[1] for one in ones if (named := re.search(r"\(([^()]*)\)$", one.problem.where))]
-        found.append(MissingItem(item, ones[0].problem.expected, ", ".join(places), any(one.needed for one in ones)))
-    return found
+    by_item: defaultdict[str, list[MissingEntry]] = defaultdict(list)
+    for entry in missing:
+        by_item[entry.item].append(entry)
+    items = []
+    for item, entries in by_item.items():
+        places = [match[1] for entry in entries if (match := re.search(r"\(([^()]*)\)$", entry.problem.where))]
+        needed = any(entry.needed for entry in entries)
+        items.append(MissingItem(item, entries[0].problem.expected, ", ".join(places), needed))
+    return items
 
 
 def check_view(check: Check, page: Path | None = None) -> RenderableType:
-    """Show what the recordings of a campaign show and what is missing; in the last line how many drops are usable.
+    """Return the view of a check; its last line is the number of usable drops.
 
     Parameters
     ----------
     check
         From `sprung.check`.
     page
-        Where its page was written.
+        Path of its page.
 
     Returns
     -------
     RenderableType
         For `text_of`.
     """
-    parts = [laid_out(drops_table(check.drops))]
+    parts = [render_table(drops_table(check.drops))]
     if reasons := list(_reasons(check.drops)):
-        parts += [Text(), _listed("Limits of the decays", reasons)]
-    if others := [drop for drop in check.drops if drop.contradicted]:
-        parts += [Text(), _listed("Otherwise than stated", map(_otherwise, others))]
+        parts += [Text(), _listed("Limits of the free decays", reasons)]
+    if contradicted := [drop for drop in check.drops if drop.contradicted]:
+        parts += [Text(), _listed("Wheels other than stated", map(_contradiction, contradicted))]
     if any(drop.channels for drop in check.drops):
-        parts += [Text(), laid_out(channels_table(check.drops))]
+        parts += [Text(), render_table(channels_table(check.drops))]
     if check.faults:
         parts += [Text(), fault_list(check.faults)]
     if check.missing:
-        parts += [Text(), _listed("Missing", map(_said, missing_items(check.missing)))]
+        parts += [Text(), _listed("Missing", map(_missing_text, missing_items(check.missing)))]
     if page is not None:
-        parts += [Text(), Text(f"Page: {page}", no_wrap=True, overflow="ignore")]
+        parts += [Text(), Text(f"Report: {page}", no_wrap=True, overflow="ignore")]
     return Group(*parts, Text(), Text(check.summary, style="bold"))
 
 
-def _said(missing: MissingItem) -> str:
+def _missing_text(missing: MissingItem) -> str:
     places = f" ({missing.places})" if missing.places else ""
     return f"{missing.item}{places}: {missing.what}" + ("" if missing.needed else "; recommended")
 
 
 def drops_table(drops: Sequence[DropReport]) -> Table:
-    """Show what happened when in each drop.
+    """Return the table of the drops with their events.
 
     Parameters
     ----------
     drops
-        What is said of them.
+        Reports of the drops.
     """
     headers = ("recording", "load", "dropped", "release", "landing", "lift-off", "from", "to", "length", "faults")
     rows = []
@@ -113,7 +114,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
         if drop.start is None:
             moments[-1] = "left out"
         rows.append([drop.label, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
-    title = "Drops, s on each recording's own clock; free decay from ... to"
+    title = "Drops: times in s on each recording's own clock; free decay from ... to ..."
     spare = ("length", "faults", "load", "lift-off", "landing", "release")
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)
 
@@ -123,41 +124,41 @@ def _moment(moment: float | None) -> str:
 
 
 def _reasons(drops: Sequence[DropReport]) -> Iterator[str]:
-    """Say every reason once, and of which drops it is the one."""
+    """Yield every reason once, with its drops."""
     used = [drop for drop in drops if drop.start is not None]
     for side in ("start", "end"):
         reasons: defaultdict[str, list[str]] = defaultdict(list)
         for drop in used:
             if why := getattr(drop, f"why_{side}"):
                 reasons[why].append(drop.label)
-        for why, files in reasons.items():
-            yield f"{'from' if side == 'start' else 'to'}: {why} ({_which(files, len(used))})"
+        for why, labels in reasons.items():
+            yield f"{side}: {why} ({_drop_names(labels, len(used))})"
     rates: defaultdict[str, list[str]] = defaultdict(list)
     for drop in drops:
         if drop.rate is not None:
-            rates[f"{drop.rate:.6g} samples per second"].append(drop.label)
-    for rate, files in rates.items():
-        yield f"{rate} ({_which(files, len(drops))})"
+            rates[f"sampling rate {drop.rate:.6g} Hz"].append(drop.label)
+    for rate, labels in rates.items():
+        yield f"{rate} ({_drop_names(labels, len(drops))})"
 
 
-def _which(files: Sequence[str], everything: int) -> str:
-    if len(files) == everything and everything > 1:
+def _drop_names(labels: Sequence[str], total: int) -> str:
+    if len(labels) == total and total > 1:
         return "all drops"
-    return ", ".join(files) if len(files) <= _FEW else f"{len(files)} drops"
+    return ", ".join(labels) if len(labels) <= _FEW else f"{len(labels)} drops"
 
 
-def _otherwise(drop: DropReport) -> str:
+def _contradiction(drop: DropReport) -> str:
     seen = ", ".join(drop.wheels_seen or ()) or "no wheel"
-    return f"{drop.label}: {', '.join(drop.wheels)} stated to be dropped; the release shows {seen} to have fallen"
+    return f"{drop.label}: stated {', '.join(drop.wheels)}, detected {seen}"
 
 
 def channels_table(drops: Sequence[DropReport]) -> Table:
-    """Show each channel over all drops.
+    """Return the table of the channels over all drops.
 
     Parameters
     ----------
     drops
-        What is said of them.
+        Reports of the drops.
     """
     by_name: defaultdict[str, list[tuple[DropReport, ChannelReport]]] = defaultdict(list)
     for drop in drops:
@@ -167,15 +168,18 @@ def channels_table(drops: Sequence[DropReport]) -> Table:
     for name, found in by_name.items():
         noise = [channel.noise for _, channel in found if channel.noise is not None]
         peaks = [channel.peak for _, channel in found if channel.peak is not None]
-        out = [drop.label for drop, channel in found if drop.start is not None and not channel.used]
-        usual, most = (figures(size(noise), 2) if noise else "-" for size in (median, max))
-        peak = figures(max(peaks), 3) if peaks else "-"
-        rows.append([name, found[0][1].on or "a wheel", usual, most, peak, _which(out, len(found)) if out else ""])
+        without = [drop.label for drop, channel in found if drop.start is not None and not channel.used]
+        median_noise, largest = (
+            significant_figures(statistic(noise), 2) if noise else "-" for statistic in (median, max)
+        )
+        peak = significant_figures(max(peaks), 3) if peaks else "-"
+        left_out = _drop_names(without, len(found)) if without else ""
+        rows.append([name, found[0][1].on or "a wheel", median_noise, largest, peak, left_out])
     headers = ("channel", "on", "noise", "largest", "peak", "left out of")
-    title = "Channels, m/s²: noise at rest (median and largest), largest peak after a release"
+    title = "Channels, m/s²: noise at rest (median, largest), largest peak after a release"
     spare = ("left out of", "on", "largest")
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[2:5]), spare)
 
 
 def _listed(title: str, lines: Iterable[str]) -> RenderableType:
-    return Group(Text(title, style="bold"), *(hanging("  - ", line) for line in lines))
+    return Group(Text(title, style="bold"), *(hanging_text("  - ", line) for line in lines))

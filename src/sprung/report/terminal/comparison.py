@@ -1,4 +1,4 @@
-"""Results side by side, for the terminal."""
+"""The comparison of results, for the terminal."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.report.terminal.layout import figures, hanging, table
+from sprung.report.terminal.layout import hanging_text, render_rows, significant_figures
 from sprung.report.terminal.result import COLOURS
-from sprung.study import Comparison, Difference, Joint, Quantity, Scatter, Told
+from sprung.study import Comparison, Difference, JointTest, QuantityComparison, ResultValue, ScatterEstimate
 from sprung.tables import unit_text
 from sprung.uncertainty import round_by_uncertainty
 
-_WORDS = {
-    "none": "none to be seen",
+_FINDINGS = {
+    "none": "not significant",
     "likely": "likely",
     "certain": "certain",
     "given": "known beforehand",
@@ -22,11 +22,11 @@ _WORDS = {
 }
 
 _SMALLEST = 1e-9
-"""A chance below which its size says nothing more."""
+"""Smallest probability that is written out."""
 
 
 def comparison_view(comparison: Comparison) -> RenderableType:
-    """Show results side by side, what differs, and how sure that is.
+    """Return the view of a comparison: results side by side, differences and their significance.
 
     Parameters
     ----------
@@ -39,29 +39,28 @@ def comparison_view(comparison: Comparison) -> RenderableType:
         For `text_of`.
     """
     parts: list[RenderableType] = [*_verdicts(comparison), Text()]
-    labels = tuple(one.name for one in comparison.results)
+    labels = tuple(result.name for result in comparison.results)
     for title, rows in _tables(comparison).items():
         cells = [[name, unit_text(row.unit), *map(_cell, row.told)] for name, row in rows.items()]
         headers = ("", "unit", *labels)
-        parts += [table(f"{title}, value ± standard uncertainty", headers, cells, labels, heads=2), Text()]
-    first, *others = (one.name for one in comparison.results)
-    for i, other in enumerate(others):
-        parts += [*_against(comparison, first, other, i), Text()]
+        parts += [render_rows(f"{title}, value ± standard uncertainty", headers, cells, labels, heads=2), Text()]
+    for i in range(len(labels) - 1):
+        parts += [*_differences_from_first(comparison, i), Text()]
     if comparison.scatter:
         parts += [scatter_table(comparison), Text()]
-    parts += [hanging("  - ", note) for note in comparison.notes]
-    parts.append(hanging("  - ", _HOW))
+    parts += [hanging_text("  - ", note) for note in comparison.notes]
+    parts.append(hanging_text("  - ", _SIGNIFICANCE))
     return Group(*parts)
 
 
-_HOW = (
-    "likely: chance up to 0.05, certain: up to 0.001, of such a difference anywhere in the table between two tests of one "
-    "unchanged vehicle (Holm's correction for the number of rows; errors of the results taken as independent)"
+_SIGNIFICANCE = (
+    "likely: p ≤ 0.05, certain: p ≤ 0.001; p is the probability of such a difference anywhere in the table between two tests "
+    "of one unchanged vehicle (Holm's correction for the number of rows; errors of the results assumed independent)"
 )
 
 
-def _tables(comparison: Comparison) -> dict[str, dict[str, Quantity]]:
-    """Give the rows of every table by its title: parameters, and modes load by load."""
+def _tables(comparison: Comparison) -> dict[str, dict[str, QuantityComparison]]:
+    """Return the rows of every table by its title: parameters, and modes of each load."""
     tables = {"Parameters": comparison.parameters}
     for name, row in comparison.modes.items():
         load, _, mode = name.partition(", ")
@@ -74,78 +73,79 @@ def _short(mode: str) -> str:
 
 
 def _verdicts(comparison: Comparison) -> Iterator[RenderableType]:
-    yield Text("Compared", style="bold")
-    for i, one in enumerate(comparison.results):
-        what = f"{one.name}{' (reference)' * (i == 0)}: {one.vehicle}, "
-        yield hanging("  - ", Text.assemble(what, (one.verdict, COLOURS[one.verdict])))
+    yield Text("Results", style="bold")
+    for i, result in enumerate(comparison.results):
+        name = f"{result.name}{' (reference)' * (i == 0)}: {result.vehicle}, "
+        yield hanging_text("  - ", Text.assemble(name, (result.verdict, COLOURS[result.verdict])))
 
 
-def _cell(told: Told) -> str:
-    if told.value is None or told.std is None:
+def _cell(quantity: ResultValue) -> str:
+    if quantity.value is None or quantity.std is None:
         return "-"
-    value, std = round_by_uncertainty(told.value, told.std)
+    value, std = round_by_uncertainty(quantity.value, quantity.std)
     return f"{value} ± {std}" if std else value
 
 
-def _against(comparison: Comparison, first: str, other: str, i: int) -> Iterator[RenderableType]:
+def _differences_from_first(comparison: Comparison, i: int) -> Iterator[RenderableType]:
+    first, other = comparison.results[0].name, comparison.results[i + 1].name
     modes = {_short(name): row for name, row in comparison.modes.items()}
     for kind, rows in (("parameters", comparison.parameters), ("modal values", modes)):
-        judged = {name: row for name, row in rows.items() if row.differences[i].p is not None}
-        seen = {name: row for name, row in judged.items() if row.differences[i].finding in ("likely", "certain")}
-        if judged:
-            title = f"{other} less {first}: {len(seen)} of {len(judged)} {kind} differ"
-            # Of two results every difference is shown; of many those that matter.
-            shown = judged if len(comparison.results) == 2 and kind == "parameters" else seen
+        tested = {name: row for name, row in rows.items() if row.differences[i].p is not None}
+        significant = {name: row for name, row in tested.items() if row.differences[i].finding in ("likely", "certain")}
+        if tested:
+            title = f"{other} minus {first}: {len(significant)} of {len(tested)} {kind} differ"
+            # Of two results every difference is shown, of many the significant ones.
+            shown = tested if len(comparison.results) == 2 and kind == "parameters" else significant
             yield _differences(title, shown, i) if shown else Text(title, style="bold")
     yield from _joint_line(comparison.joint[i])
     yield from _not_compared(comparison.parameters, i)
 
 
-def _differences(title: str, rows: Mapping[str, Quantity], i: int) -> RenderableType:
-    headers = ("", "difference", "±", "unit", "%", "z", "chance", "finding")
+def _differences(title: str, rows: Mapping[str, QuantityComparison], i: int) -> RenderableType:
+    headers = ("", "difference", "±", "unit", "%", "z", "p", "finding")
     cells = [_row(name, row, row.differences[i]) for name, row in rows.items()]
-    return table(title, headers, cells, ("difference", "±", "%", "z", "chance"), ("unit", "z", "±", "chance"))
+    return render_rows(title, headers, cells, ("difference", "±", "%", "z", "p"), ("unit", "z", "±", "p"))
 
 
-def _row(name: str, row: Quantity, one: Difference) -> list[str]:
-    value, std = round_by_uncertainty(one.value or 0.0, one.std or 0.0)
-    percent = "" if one.percent is None else f"{one.percent:+.2f}"
-    sure = "" if one.z is None else f"{one.z:+.1f}"
+def _row(name: str, row: QuantityComparison, difference: Difference) -> list[str]:
+    value, std = round_by_uncertainty(difference.value or 0.0, difference.std or 0.0)
+    percent = "" if difference.percent is None else f"{difference.percent:+.2f}"
+    z = "" if difference.z is None else f"{difference.z:+.1f}"
     sign = "+" if not value.startswith("-") else ""
-    return [name, sign + value, std, unit_text(row.unit), percent, sure, _chance(one.p_holm), _WORDS[one.finding]]
+    p = _probability(difference.p_holm)
+    return [name, sign + value, std, unit_text(row.unit), percent, z, p, _FINDINGS[difference.finding]]
 
 
-def _chance(p: float | None) -> str:
+def _probability(p: float | None) -> str:
     if p is None:
         return ""
-    return f"< {_SMALLEST:g}" if p < _SMALLEST else figures(p, 2)
+    return f"< {_SMALLEST:g}" if p < _SMALLEST else significant_figures(p, 2)
 
 
-def _joint_line(one: Joint | None) -> Iterator[RenderableType]:
-    if one is not None and one.freedom:
-        told = f"chi-square {figures(one.chi_square, 3)} of {one.freedom} degrees of freedom"
-        yield hanging(
-            "",
-            f"All {len(one.names)} estimated parameters at once: {told}, chance {_chance(one.p)} if nothing differs.",
-        )
+def _joint_line(test: JointTest | None) -> Iterator[RenderableType]:
+    if test is not None and test.freedom:
+        statistic = f"chi-square {significant_figures(test.chi_square, 3)} with {test.freedom} degrees of freedom"
+        p = f"p = {_probability(test.p)}".replace("= <", "<")
+        text = f"Joint test of all {len(test.names)} estimated parameters: {statistic}, {p}."
+        yield hanging_text("", text)
 
 
-def _not_compared(rows: Mapping[str, Quantity], i: int) -> Iterator[RenderableType]:
-    """Say why some are not compared, each reason once."""
+def _not_compared(rows: Mapping[str, QuantityComparison], i: int) -> Iterator[RenderableType]:
+    """Yield the reasons why quantities are not compared, each once."""
     reasons: dict[str, list[str]] = {}
     for name, row in rows.items():
-        one = row.differences[i]
-        if one.finding == "not comparable" and one.why:
-            reasons.setdefault(one.why, []).append(name)
-        elif one.finding == "given":
-            same = "the same" if one.value == 0 else "not the same"
-            reasons.setdefault(f"known beforehand in both, {same}", []).append(name)
+        difference = row.differences[i]
+        if difference.finding == "not comparable" and difference.why:
+            reasons.setdefault(difference.why, []).append(name)
+        elif difference.finding == "given":
+            equality = "equal" if difference.value == 0 else "different"
+            reasons.setdefault(f"known beforehand in both, {equality}", []).append(name)
     for why, names in reasons.items():
-        yield hanging("", f"Not compared: {', '.join(names)} ({why}).")
+        yield hanging_text("", f"Not compared: {', '.join(names)} ({why}).")
 
 
 def scatter_table(comparison: Comparison) -> RenderableType:
-    """Show how far all results scatter, and what stands out.
+    """Return the table of the scatter of all results, and the outliers.
 
     Parameters
     ----------
@@ -153,24 +153,29 @@ def scatter_table(comparison: Comparison) -> RenderableType:
         From `sprung.compare`, of three results or more.
     """
     rows = []
-    for name, one in comparison.scatter.items():
+    for name, scatter in comparison.scatter.items():
         row = comparison.parameters.get(name) or comparison.modes[name]
-        rows.append([_short(name), *_scatter_cells(one), unit_text(row.unit), f"{one.furthest}{' !' * one.stands_out}"])
-    headers = ("", "mean", "±", "spread", "%", "chance", "unit", "furthest")
-    shown = table(
-        f"Scatter of {max(len(one.names) for one in comparison.scatter.values())} results beyond their uncertainties",
+        furthest = f"{scatter.furthest}{' !' * scatter.stands_out}"
+        rows.append([_short(name), *_scatter_cells(scatter), unit_text(row.unit), furthest])
+    headers = ("", "mean", "±", "spread", "%", "p", "unit", "furthest")
+    shown = render_rows(
+        f"Scatter of {max(len(scatter.names) for scatter in comparison.scatter.values())} results beyond their uncertainties",
         headers,
         rows,
         headers[1:6],
-        ("unit", "chance", "±"),
+        ("unit", "p", "±"),
     )
-    out = {one.furthest for one in comparison.scatter.values() if one.stands_out}
-    said = f"!: stands out from the others' scatter (5 %): {', '.join(sorted(out))}." if out else "None stands out."
-    return Group(shown, hanging("", said))
+    outliers = {scatter.furthest for scatter in comparison.scatter.values() if scatter.stands_out}
+    text = (
+        f"!: outlier at the 5 % level: {', '.join(sorted(outliers))}." if outliers else "No outlier at the 5 % level."
+    )
+    return Group(shown, hanging_text("", text))
 
 
-def _scatter_cells(one: Scatter) -> list[str]:
-    mean, std = round_by_uncertainty(one.mean, one.mean_std)
-    spread = figures(one.spread, 2) if one.spread else "0"
-    percent = figures(100 * one.spread / abs(one.mean), 2) if one.spread and one.mean else "0"
-    return [mean, std, spread, percent, _chance(one.p)]
+def _scatter_cells(scatter: ScatterEstimate) -> list[str]:
+    mean, std = round_by_uncertainty(scatter.mean, scatter.mean_std)
+    spread = significant_figures(scatter.spread, 2) if scatter.spread else "0"
+    percent = (
+        significant_figures(100 * scatter.spread / abs(scatter.mean), 2) if scatter.spread and scatter.mean else "0"
+    )
+    return [mean, std, spread, percent, _probability(scatter.p)]

@@ -1,4 +1,4 @@
-"""A drafted campaign, for the terminal: the drops that were found, and what is missing."""
+"""The draft of a campaign file, for the terminal."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.drafting import DraftCampaign
-from sprung.report.terminal.layout import hanging, table
+from sprung.report.terminal.layout import hanging_text, render_rows
 
-_TOLD = 5
-"""Events that are no drops which are told one by one."""
+_LISTED = 5
+"""Other events that are listed one by one."""
 
 
 def draft_view(draft: DraftCampaign) -> RenderableType:
-    """Show what a draft found and what it lacks.
+    """Return the view of a draft: detected drops, sensors, and missing items.
 
     Parameters
     ----------
@@ -28,12 +28,12 @@ def draft_view(draft: DraftCampaign) -> RenderableType:
         For `text_of`.
     """
     parts: list[RenderableType] = [_drops(draft), Text(), _sensors(draft), Text()]
-    others = [hanging("  - ", each) for each in _others(draft)]
+    others = [hanging_text("  - ", text) for text in _others(draft)]
     if others:
-        parts += [Text("Besides", style="bold"), *others, Text()]
+        parts += [Text("Not used", style="bold"), *others, Text()]
     if draft.missing:
-        parts += [Text("Missing, to be filled in", style="bold")]
-        parts += [hanging("  - ", Text.assemble((f"{where}: ", "yellow"), what)) for where, what in draft.missing]
+        parts += [Text("Missing, to be completed", style="bold")]
+        parts += [hanging_text("  - ", Text.assemble((f"{where}: ", "yellow"), what)) for where, what in draft.missing]
     return Group(*parts)
 
 
@@ -52,7 +52,7 @@ def _drops(draft: DraftCampaign) -> RenderableType:
         for drop in draft.drops
     ]
     count = f"{len(rows)} drop{'s' * (len(rows) != 1)}"
-    return table(f"{draft.name}: {count} found", headers, rows, headers[1:4], ("until s", "length s", "drop"))
+    return render_rows(f"{draft.name}: {count} detected", headers, rows, headers[1:4], ("until s", "length s", "drop"))
 
 
 def _sensors(draft: DraftCampaign) -> RenderableType:
@@ -68,19 +68,19 @@ def _sensors(draft: DraftCampaign) -> RenderableType:
         ]
         for sensor in draft.sensors
     ]
-    return table("Sensors", headers, rows, ("clips at",), ("coupling", "clips at"))
+    return render_rows("Sensors", headers, rows, ("clips at",), ("coupling", "clips at"))
 
 
 def _others(draft: DraftCampaign) -> Iterator[str]:
-    """Tell of everything that did not become part of the campaign."""
+    """Yield everything that is not part of the draft, with the reason."""
     for file in draft.files:
-        if not file.drops and not file.refused:
-            yield f"{file.name}: no drop, nothing in it moves"
-        for event in file.refused[:_TOLD]:
-            yield f"{file.name}: no drop at {event.time:.3f} s: {event.why}"
-        if file.events > min(len(file.refused), _TOLD):
-            yield f"{file.name}: {file.events - min(len(file.refused), _TOLD)} more events that are no drops"
+        if not file.drops and not file.rejected:
+            yield f"{file.name}: no drop, no motion"
+        for event in file.rejected[:_LISTED]:
+            yield f"{file.name}: event at {event.time:.3f} s is no drop: {event.why}"
+        if file.events > min(len(file.rejected), _LISTED):
+            yield f"{file.name}: {file.events - min(len(file.rejected), _LISTED)} other events are no drops"
     left_out = {item for file in draft.files for item in file.left_out.items()}
-    yield from (f"'{channel}' is no sensor: {why}" for channel, why in sorted(left_out))
+    yield from (f"'{channel}' is not a sensor: {why}" for channel, why in sorted(left_out))
     for name, problems in draft.unreadable.items():
-        yield f"{name} was not read: found {problems[0].found}; expected {problems[0].expected}. {problems[0].do}"
+        yield f"{name} cannot be read: found {problems[0].found}; expected {problems[0].expected}. {problems[0].do}"

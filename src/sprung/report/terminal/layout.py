@@ -1,4 +1,4 @@
-"""How text is laid out on a terminal of any width: what does not fit is wrapped or set below, never cut or left out."""
+"""Layout of text and tables on a terminal of any width: wrapped or rearranged, never truncated."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from rich.cells import cell_len
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.text import Text
 
-from sprung.report.terminal.columns import arrange, breaks
+from sprung.report.terminal.columns import arrange, line_breaks
 from sprung.tables import Table
 
 _MEASURE = 100
-"""Columns that a line of prose has at most: longer ones are hard to read."""
+"""Longest line of prose, in columns: longer ones are hard to read."""
 
 _UNLIMITED = 1 << 20
-"""Width of what is no terminal: a file or another program, which takes every table as wide as it is."""
+"""Width of a file or pipe, which takes tables of any width."""
 
 
 @dataclass(frozen=True)
-class Fitting:
-    """A table that is arranged for the width of the terminal; made by `laid_out`."""
+class TerminalTable:
+    """A table that is arranged for the width of the terminal; made by `render_table`."""
 
     table: Table
 
@@ -34,25 +34,25 @@ class Fitting:
 
 
 @dataclass(frozen=True)
-class Hanging:
-    """A text beside what leads it in; made by `hanging`."""
+class HangingText:
+    """A text with a hanging indent; made by `hanging_text`."""
 
     first: str
     text: Text
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Render it for a terminal: its further lines below its own first one, words whole."""
+        """Render it for a terminal: further lines indented as the first one, words unbroken."""
         indent = cell_len(self.first)
         width = max(min(options.max_width, _MEASURE) - indent, 1)
         lead = self.first
         for paragraph in self.text.split("\n", allow_blank=True):
-            for line in paragraph.divide(breaks(paragraph.plain, width)):
+            for line in paragraph.divide(line_breaks(paragraph.plain, width)):
                 line.rstrip()
                 yield Text.assemble(lead, line, no_wrap=True, overflow="ignore")
                 lead = " " * indent
 
 
-def table(
+def render_rows(
     title: str,
     headers: Sequence[str],
     rows: Iterable[Sequence[str]],
@@ -60,7 +60,7 @@ def table(
     spare: Iterable[str] = (),
     heads: int = 1,
 ) -> RenderableType:
-    """Lay out one table.
+    """Render a table from headers and rows.
 
     Parameters
     ----------
@@ -71,48 +71,48 @@ def table(
     rows
         Cells as text.
     numbers
-        Headers of the columns to set flush right.
+        Headers of the columns that are flush right.
     spare
-        Headers of the columns that a narrow terminal sets below the others, the first to go first.
+        Headers of the columns that a narrow terminal moves below the others, in this order.
     heads
-        How many columns at the left name the rows.
+        Number of columns, from the left, that name the rows.
     """
-    return laid_out(Table(title, tuple(headers), tuple(map(tuple, rows)), frozenset(numbers), tuple(spare), heads))
+    return render_table(Table(title, tuple(headers), tuple(map(tuple, rows)), frozenset(numbers), tuple(spare), heads))
 
 
-def laid_out(table: Table) -> RenderableType:
-    """Lay out a table with its title above it.
+def render_table(table: Table) -> RenderableType:
+    """Render a table with its title above it.
 
     Parameters
     ----------
     table
-        The table.
+        Any.
     """
-    return Group(hanging("", Text(table.title, style="bold")), Fitting(table))
+    return Group(hanging_text("", Text(table.title, style="bold")), TerminalTable(table))
 
 
-def hanging(first: str, text: str | Text) -> RenderableType:
-    """Set a text beside what leads it in, its further lines below its own first one.
+def hanging_text(first: str, text: str | Text) -> RenderableType:
+    """Render a text with a hanging indent.
 
     Parameters
     ----------
     first
-        What leads it in, such as a dash.
+        Beginning of the first line, such as a dash.
     text
-        The text.
+        Any; further lines are indented by the width of `first`.
     """
-    return Hanging(first, Text(text) if isinstance(text, str) else text)
+    return HangingText(first, Text(text) if isinstance(text, str) else text)
 
 
-def figures(number: float, count: int) -> str:
-    """Write a number with a few figures, trailing zeros among them.
+def significant_figures(number: float, count: int) -> str:
+    """Return a number with a given number of significant figures, trailing zeros included.
 
     Parameters
     ----------
     number
-        The number.
+        In any unit.
     count
-        How many figures.
+        Number of figures.
 
     Examples
     --------
@@ -123,15 +123,15 @@ def figures(number: float, count: int) -> str:
 
 
 def text_of(view: RenderableType, console: Console | None = None) -> str:
-    """Turn a view into the text that a terminal shows.
+    """Return a view as the text that a terminal shows.
 
     Parameters
     ----------
     view
-        From one of this room's views.
+        From one of the functions that return a view.
     console
-        Knows the width and the colours; standard output unless given. What is no terminal, a file or another program, takes
-        tables of any width, unless the variable COLUMNS says otherwise.
+        Determines width and colours; standard output unless given. A file or pipe takes tables of any width, unless the
+        variable COLUMNS is set.
 
     Returns
     -------

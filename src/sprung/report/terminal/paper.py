@@ -1,4 +1,4 @@
-"""The paper's tables beside ours, for the terminal."""
+"""The reproduction of the paper, for the terminal."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.paper import Misprint, ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow
-from sprung.report.terminal.layout import hanging, table
+from sprung.report.terminal.layout import hanging_text, render_rows
 
 
 def paper_view(reproduction: PaperReproduction) -> RenderableType:
-    """Show the reproduction of the paper.
+    """Return the view of the reproduction of the paper.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def paper_view(reproduction: PaperReproduction) -> RenderableType:
     parts = (
         _parameters("Table 2: the simulated car, without noise", reproduction.table2, "paper"),
         _modes(reproduction.table3),
-        _parameters("The school bus, identified back from simulated drops", reproduction.bus, None),
+        _parameters("The school bus, identified from simulated drops", reproduction.bus, None),
         _misprints(reproduction.misprints),
         _noise(reproduction.noise),
     )
@@ -35,13 +35,13 @@ def paper_view(reproduction: PaperReproduction) -> RenderableType:
 
 
 def _parameters(title: str, rows: Sequence[ParameterRow], paper: str | None) -> RenderableType:
-    headers = ["parameter", "known", *([paper, "its error %"] if paper else []), "ours", "our error %"]
+    headers = ["parameter", "known", *([paper, "error %"] if paper else []), "sprung", "error % "]
     cells = []
     for row in rows:
         printed = [f"{row.paper:g}", f"{100 * (row.paper / row.known - 1):+.3f}"] if paper else []
-        error = "given" if row.given else f"{row.error_percent:+.1e}"
+        error = "known" if row.given else f"{row.error_percent:+.1e}"
         cells.append([row.name, f"{row.known:.8g}", *printed, f"{row.identified:.8g}", error])
-    return table(title, headers, cells, headers[1:])
+    return render_rows(title, headers, cells, headers[1:])
 
 
 def _modes(rows: Sequence[ModeRow]) -> RenderableType:
@@ -54,15 +54,15 @@ def _modes(rows: Sequence[ModeRow]) -> RenderableType:
 
     headers = ["mode", "paper's name", "paper f_n", "f_d", "ζ", "computed f_n", "f_d", "ζ"]
     cells = [[row.mode, row.paper_name, *three(row.paper), *three(row.computed)] for row in rows]
-    return table("Table 3: modes of the bus of Tables 4 and 5, Hz", headers, cells, headers[2:])
+    return render_rows("Table 3: modes of the bus of Tables 4 and 5, Hz", headers, cells, headers[2:])
 
 
 def _misprints(misprints: Sequence[Misprint]) -> RenderableType:
     lines: list[RenderableType] = [Text("Misprints", style="bold")]
     for misprint in misprints:
-        lines.append(hanging("", Text.assemble((misprint.where, "bold"), f": {misprint.printed}")))
-        lines.append(hanging("  should be: ", misprint.should_be))
-        lines.append(hanging("  because:   ", misprint.reason))
+        lines.append(hanging_text("", Text.assemble((misprint.where, "bold"), f": {misprint.printed}")))
+        lines.append(hanging_text("  correct: ", misprint.should_be))
+        lines.append(hanging_text("  reason:  ", misprint.reason))
     return Group(*lines)
 
 
@@ -72,6 +72,6 @@ def _noise(points: Sequence[NoisePoint]) -> RenderableType:
 
     cells = [[f"{point.noise:g}", two_figures(point.paper_method), two_figures(point.joint_fit)] for point in points]
     headers = ["noise m/s²", "paper's method %", "joint fit %"]
-    return table(
-        "Where the method breaks: worst error of any parameter, five bumps, ΔM = 0.1 M", headers, cells, headers
+    return render_rows(
+        "Sensitivity to noise: largest error of any parameter, five bumps, ΔM = 0.1 M", headers, cells, headers
     )

@@ -1,4 +1,4 @@
-"""What could be measured next, for the terminal."""
+"""The plan of a test, for the terminal."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.planning import Plan, PlanRow, two_figures
-from sprung.report.terminal.layout import hanging, table
+from sprung.report.terminal.layout import hanging_text, render_rows
 
 _FIRST = ("m_s", "I_yy", "I_xx", "k_sf", "k_sr", "c_sf", "c_sr", "m_uf", "m_ur", "k_tf", "k_tr", "a", "b")
-"""Parameters whose columns stand first."""
+"""Parameters whose columns come first."""
 
 _NAMED = 4
-"""Alternatives that one reason names before it counts the others."""
+"""Alternatives that a reason lists by name; of more their number is given."""
 
 
 def plan_view(plan: Plan) -> RenderableType:
-    """Show a plan.
+    """Return the view of a plan.
 
     Parameters
     ----------
@@ -31,31 +31,31 @@ def plan_view(plan: Plan) -> RenderableType:
         For `text_of`.
     """
     if plan.rejected:
-        head = hanging(
+        head = hanging_text(
             "", Text(f"{plan.vehicle}: the campaign is rejected; no plan can be made from it.", style="bold red")
         )
-        return Group(head, *(hanging("  - ", reason) for reason in plan.rejected))
+        return Group(head, *(hanging_text("  - ", reason) for reason in plan.rejected))
     parts = [plan_table(plan), Text()]
-    reasons = [hanging("  - ", reason) for reason in _reasons(plan)]
+    reasons = [hanging_text("  - ", reason) for reason in _reasons(plan)]
     if reasons:
         parts += [Text("Not determined", style="bold"), *reasons, Text()]
     return Group(*parts, next_line(plan.next_step.text))
 
 
 def next_line(text: str) -> RenderableType:
-    """Show what to measure next."""
-    return hanging("Next: ", f"{text}.")
+    """Return the line with the recommended next measurement."""
+    return hanging_text("Next: ", f"{text}.")
 
 
 def plan_table(plan: Plan) -> RenderableType:
-    """Show every alternative with the percentages that it promises."""
-    named = {name: None for row in plan.rows if row.bound is not None for name in row.bound.percents}
-    ranked = sorted(named, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
+    """Return the table of all alternatives with the expected uncertainties."""
+    names = {name: None for row in plan.rows if row.bound is not None for name in row.bound.percents}
+    ranked = sorted(names, key=lambda name: _FIRST.index(name) if name in _FIRST else len(_FIRST))
     above = f"> {plan.wanted:g} %"
     headers = ("test", "worst", "%", above, *ranked)
     rows = [[row.label, *_cells(plan, row, ranked)] for row in plan.rows]
-    title = f"{plan.vehicle}: standard uncertainty to expect, %"
-    return table(title, headers, rows, headers[2:])
+    title = f"{plan.vehicle}: expected standard uncertainty, %"
+    return render_rows(title, headers, rows, headers[2:])
 
 
 def _cells(plan: Plan, row: PlanRow, names: Sequence[str]) -> Iterator[str]:
@@ -71,18 +71,20 @@ def _cells(plan: Plan, row: PlanRow, names: Sequence[str]) -> Iterator[str]:
 
 
 def _reasons(plan: Plan) -> Iterator[str]:
-    """Say of every dash why it stands there, each reason once."""
+    """Yield the reason for every dash, each once."""
     rows: dict[str, list[str]] = {}
     for row in plan.rows:
         if row.refused is not None:
-            rows.setdefault(f"cannot be done: {row.refused}", []).append(row.label)
+            rows.setdefault(f"not possible: {row.refused}", []).append(row.label)
         elif row.bound is not None:
-            for one in row.bound.why:
-                # The scale's text is about whatever scales and does not name it, the others begin with their names.
+            for combination in row.bound.why:
+                # The text about the scale does not name its parameters, the others begin with their names.
                 names = (
-                    "" if one.parameters[0] in one.text.replace(",", " ").split() else f"{', '.join(one.parameters)}: "
+                    ""
+                    if combination.parameters[0] in combination.text.replace(",", " ").split()
+                    else f"{', '.join(combination.parameters)}: "
                 )
-                rows.setdefault(f"{names}{one.text}", []).append(row.label)
+                rows.setdefault(f"{names}{combination.text}", []).append(row.label)
     for reason, labels in rows.items():
         others = f" and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
         yield f"{', '.join(labels[:_NAMED])}{others}: {reason}"

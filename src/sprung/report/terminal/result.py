@@ -1,4 +1,4 @@
-"""What the terminal shows: the parameter table, the modal tables, the verdict, the faults."""
+"""A result, for the terminal: parameters, modes, fit, faults, verdict."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.errors import Fault
-from sprung.report.page.summary import record_of
-from sprung.report.terminal.layout import hanging, laid_out, table
+from sprung.report.page.summary import test_record_of
+from sprung.report.terminal.layout import hanging_text, render_rows, render_table
 from sprung.report.terminal.plan import next_line
 from sprung.results import (
     FitReport,
@@ -28,12 +28,12 @@ COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
 
 
 def result_view(result: Result) -> RenderableType:
-    """Show a result.
+    """Return the view of a result.
 
     Parameters
     ----------
     result
-        The result.
+        Of an identification.
 
     Returns
     -------
@@ -43,21 +43,21 @@ def result_view(result: Result) -> RenderableType:
     if result.verdict.state == "reject":
         return _rejected_view(result)
     parts: list[RenderableType] = [
-        *_record(result),
-        laid_out(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
+        *_test_record(result),
+        render_table(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
     if characteristics_tables(result.name, result.derived):
-        parts += [laid_out(derived_table(result.name, result.derived)), Text()]
+        parts += [render_table(derived_table(result.name, result.derived)), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
         parts += [Text("Not determined", style="bold")]
-        parts += [*(hanging("  - ", item.text) for item in result.unidentifiable), Text()]
+        parts += [*(hanging_text("  - ", item.text) for item in result.unidentifiable), Text()]
     if not result.scale.known and result.scale.per_total_mass:
-        parts += [laid_out(ratios_table(result.scale.per_total_mass)), Text()]
+        parts += [render_table(ratios_table(result.scale.per_total_mass)), Text()]
     for load, modes in result.modes.items():
-        parts += [laid_out(modes_table(load, modes)), Text()]
+        parts += [render_table(modes_table(load, modes)), Text()]
     parts += [fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
@@ -68,49 +68,51 @@ def result_view(result: Result) -> RenderableType:
 
 
 def _rejected_view(result: Result) -> RenderableType:
-    """Show what tells why a result was rejected, and no estimate."""
-    parts: list[RenderableType] = [*_record(result), Text(result.name, style="bold")]
-    parts += [hanging("", f"{item.text}.") for item in result.unidentifiable]
+    """Return the view of a rejected result: the evidence, no estimates."""
+    parts: list[RenderableType] = [*_test_record(result), Text(result.name, style="bold")]
+    parts += [hanging_text("", f"{item.text}.") for item in result.unidentifiable]
     parts += [Text(), residual_table(result), Text(), fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
     return Group(*parts, verdict_view(result))
 
 
-def _record(result: Result) -> list[RenderableType]:
-    """Show what the campaign file says of the test and the vehicle; nothing where it says nothing."""
-    lines: list[RenderableType] = [hanging(f"{name}: ", told) for name, told in record_of(result)]
+def _test_record(result: Result) -> list[RenderableType]:
+    """Return the test record of the campaign file, as far as there is one."""
+    lines: list[RenderableType] = [hanging_text(f"{name}: ", text) for name, text in test_record_of(result)]
     return [*lines, Text()] if lines else []
 
 
 def residual_table(result: Result) -> RenderableType:
-    """Show how far the fitted model is from each channel, the worst first."""
+    """Return the table of model error and residual by channel, the largest error first."""
     fit = result.fit
     worst = sorted(fit.misfit, key=lambda channel: -fit.misfit[channel])
     rows = [[name, f"{100 * fit.misfit[name]:.1f}", f"{fit.noise[name]:.3g}"] for name in worst]
     headers = ("channel", "model error, % of signal", "residual, m/s² rms")
-    return table("Residuals", headers, rows, headers[1:])
+    return render_rows("Residuals", headers, rows, headers[1:])
 
 
 def verdict_view(result: Result) -> RenderableType:
-    """Show the verdict and its reasons."""
+    """Return the verdict and its reasons."""
     verdict = result.verdict
     head = Text.assemble(("Verdict: ", "bold"), (verdict.state, f"bold {COLOURS[verdict.state]}"))
-    return Group(head, *(hanging("  - ", reason) for reason in verdict.reasons))
+    return Group(head, *(hanging_text("  - ", reason) for reason in verdict.reasons))
 
 
 def interval_table(profiles: Mapping[str, Estimate]) -> RenderableType:
-    """Show the intervals that follow from profiles of the likelihood, by name."""
-    rows = [[name, *_interval_cells(found), unit_text(found.unit)] for name, found in profiles.items()]
-    shown = table("95 % intervals from the whole likelihood", ("parameter", "from", "to", "unit"), rows, ("from", "to"))
-    if any(found.interval95 is not None and None in found.interval95 for found in profiles.values()):
-        return Group(shown, hanging("", "< or >: open to the other side, where the recordings set no limit."))
+    """Return the table of intervals from likelihood profiles."""
+    rows = [[name, *_interval_cells(estimate), unit_text(estimate.unit)] for name, estimate in profiles.items()]
+    shown = render_rows(
+        "95 % intervals from likelihood profiles", ("parameter", "from", "to", "unit"), rows, ("from", "to")
+    )
+    if any(estimate.interval95 is not None and None in estimate.interval95 for estimate in profiles.values()):
+        return Group(shown, hanging_text("", "< or >: open interval; the recordings give no limit on the other side."))
     return shown
 
 
 def _profiles(result: Result) -> dict[str, Estimate]:
-    everything = {**result.parameters, **result.derived}
-    return {name: found for name, found in everything.items() if found.interval_from == "profile"}
+    estimates = {**result.parameters, **result.derived}
+    return {name: estimate for name, estimate in estimates.items() if estimate.interval_from == "profile"}
 
 
 def _interval_cells(estimate: Estimate) -> tuple[str, str]:
@@ -123,12 +125,12 @@ def _interval_cells(estimate: Estimate) -> tuple[str, str]:
 
 
 def _limit(limit: float, std: float | None) -> str:
-    # A limit far below the standard uncertainty keeps two figures of its own.
+    # A limit far below the standard uncertainty is given with two figures.
     return round_by_uncertainty(limit, min(std or abs(limit), abs(limit)) or 1.0)[0]
 
 
 def fit_line(result: Result) -> RenderableType:
-    """Say in a line or two how the fit went."""
+    """Return a summary of the fit in a few lines."""
     fit = result.fit
     noise = ", ".join(f"{channel} {value:.3g}" for channel, value in fit.noise.items())
     extras = f", with {', '.join(fit.model)}" if fit.model else ""
@@ -138,17 +140,17 @@ def fit_line(result: Result) -> RenderableType:
     )
     rejected = result.verdict.state == "reject"
     if fit.inflation > 1 and not rejected:
-        text += f"\nUncertainties are {fit.inflation**0.5:.2f} times those of white noise{_because(fit)}."
+        text += f"\nUncertainties are {fit.inflation**0.5:.2f} times those of white noise{_inflation_reason(fit)}."
     if rejected:
         return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""
-    return hanging("", f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
+    return hanging_text("", f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
 
 
-def _because(fit: FitReport) -> str:
+def _inflation_reason(fit: FitReport) -> str:
     match fit.inflated_by:
         case "coloured residuals":
-            return f": the residuals are coloured, most of all in {fit.most_coloured}"
+            return f": the residuals are autocorrelated, most in {fit.most_coloured}"
         case "drops that disagree":
             return ": the drops disagree by more than their noise"
         case _:
@@ -160,9 +162,9 @@ def _count(number: int, thing: str) -> str:
 
 
 def fault_list(faults: Sequence[Fault]) -> RenderableType:
-    """Show what is wrong with the recordings and what to do."""
+    """Return the list of faults with their remedies."""
     lines: list[RenderableType] = [Text("Faults", style="bold")]
     for fault in faults:
         text = Text.assemble(f"{fault.where}: ", (fault.code, "yellow"), f": {fault.what}. {fault.do}")
-        lines.append(hanging("  - ", text))
+        lines.append(hanging_text("  - ", text))
     return Group(*lines)

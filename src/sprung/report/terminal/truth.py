@@ -1,4 +1,4 @@
-"""Estimates beside true values, for the terminal."""
+"""Estimates and true values, for the terminal."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Mapping
 
 from rich.console import Group, RenderableType
 
-from sprung.report.terminal.layout import hanging, table
+from sprung.report.terminal.layout import hanging_text, render_rows
 from sprung.study import TrueValue
 from sprung.tables import unit_text
 from sprung.uncertainty import round_by_uncertainty
 
-_USUAL = 2.0
-"""Standard errors within which 95 of 100 differences lie."""
+_COVERAGE_95 = 2.0
+"""Standard uncertainties within which 95 of 100 estimates lie."""
 
 
 def truth_view(values: Mapping[str, TrueValue]) -> RenderableType:
-    """Show estimates beside the true values, and how large their errors are.
+    """Return the table of estimates and true values with the errors.
 
     Parameters
     ----------
@@ -28,18 +28,18 @@ def truth_view(values: Mapping[str, TrueValue]) -> RenderableType:
     RenderableType
         For `text_of`.
     """
-    headers = ("parameter", "true", "estimate", "±", "unit", "difference %", "in standard errors")
-    rows = [[name, *_cells(one)] for name, one in values.items()]
-    shown = table("Against the true values, which are known because the vehicle is simulated", headers, rows, _NUMBERS)
-    near = sum(abs(one.standard_errors) <= _USUAL for one in values.values())
-    said = (
-        f"{near} of {len(values)} estimates lie within {_USUAL:g} standard errors of the true value; 95 of 100 are to be "
-        "expected there. The errors are not independent of each other: one wrong scale moves all masses and rates together."
+    headers = ("parameter", "true", "estimate", "±", "unit", "difference %", "standard errors")
+    rows = [[name, *_cells(value)] for name, value in values.items()]
+    shown = render_rows("Estimates and true values of the simulated vehicle", headers, rows, _NUMBERS)
+    covered = sum(abs(value.standard_errors) <= _COVERAGE_95 for value in values.values())
+    text = (
+        f"{covered} of {len(values)} estimates are within {_COVERAGE_95:g} standard errors of the true value (expected: 95 %). "
+        "The errors are correlated: an error of the scale affects all masses and rates."
     )
-    return Group(shown, hanging("", said))
+    return Group(shown, hanging_text("", text))
 
 
-_NUMBERS = ("true", "estimate", "±", "difference %", "in standard errors")
+_NUMBERS = ("true", "estimate", "±", "difference %", "standard errors")
 
 
 def _cells(one: TrueValue) -> list[str]:

@@ -1,4 +1,4 @@
-"""What a validation shows: a table of the drops and one of the modes for the terminal, and drawings."""
+"""A cross-validation, for the terminal: a table of the drops and one of the modes."""
 
 from __future__ import annotations
 
@@ -8,30 +8,29 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.assessment import AmplitudeCurve, DropValidation, ModeAmplitude
-from sprung.report.terminal.layout import figures, hanging, laid_out
+from sprung.report.terminal.layout import hanging_text, render_table, significant_figures
 from sprung.report.terminal.result import fault_list, verdict_view
 from sprung.study import Validation
 from sprung.tables import Table
 
 COLUMNS = (
-    "/noise: residual over the sensors' noise. Predicted: by the vehicle fitted to all other drops. Least white: largest "
-    "autocorrelation of the residuals: channel, value, lag."
+    "/noise: residual over the sensors' noise. Predicted: by the vehicle fitted to all other drops. Autocorrelation: largest "
+    "residual autocorrelation: channel, value, lag."
 )
-"""What the columns of the table of drops say."""
+"""Explanation of the columns of the table of drops."""
 
 AMPLITUDES = (
-    "A damped sinusoid fitted to one and a half periods of a record at a time (symbols, with two standard uncertainties), the "
-    "same of the simulated drops (thin lines), and a free decay of the fitted vehicle in this mode alone (thick line); dashed "
-    "its linear part."
+    "Symbols: damped sinusoid fitted to 1.5 periods of the recording at a time, with two standard uncertainties. Thin lines: "
+    "the same of the simulated drops. Thick line: free decay of the fitted vehicle in this mode alone; dashed: its linear part."
 )
-"""How modes against amplitude are to be read."""
+"""Explanation of the figures of modes against amplitude."""
 
-_COLOURED = 6.0
-"""Standard deviations from which a channel's residuals are said not to be white."""
+_SIGNIFICANT = 6.0
+"""Standard deviations above which an autocorrelation is significant."""
 
 
 def validation_view(validation: Validation) -> RenderableType:
-    """Show a validation.
+    """Return the view of a cross-validation.
 
     Parameters
     ----------
@@ -45,28 +44,38 @@ def validation_view(validation: Validation) -> RenderableType:
     """
     result = validation.result
     parts: list[RenderableType] = [
-        laid_out(validation_table(result.name, result.validation)),
-        hanging("", COLUMNS),
+        render_table(validation_table(result.name, result.validation)),
+        hanging_text("", COLUMNS),
         Text(),
     ]
     if validation.amplitudes:
-        parts += [laid_out(amplitude_table(validation.load, validation.amplitudes)), Text()]
+        parts += [render_table(amplitude_table(validation.load, validation.amplitudes)), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
     return Group(*parts, verdict_view(result))
 
 
 def validation_table(vehicle: str, drops: Mapping[str, DropValidation]) -> Table:
-    """Show how well each drop is explained, and predicted by the others.
+    """Return the table of fitted and predicted errors by drop.
 
     Parameters
     ----------
     vehicle
-        Whose they are.
+        Name of the vehicle.
     drops
         By name.
     """
-    headers = ("drop", "vertical %", "pitch %", "roll %", "all %", "/noise", "predicted %", "/noise ", "least white")
+    headers = (
+        "drop",
+        "vertical %",
+        "pitch %",
+        "roll %",
+        "all %",
+        "/noise",
+        "predicted %",
+        "/noise ",
+        "autocorrelation",
+    )
     rows = tuple(
         (
             name,
@@ -74,16 +83,16 @@ def validation_table(vehicle: str, drops: Mapping[str, DropValidation]) -> Table
             f"{drop.residual:.2f}",
             _percent(drop.predicted),
             "-" if drop.predicted_residual is None else f"{drop.predicted_residual:.2f}",
-            _least_white(drop),
+            _autocorrelation(drop),
         )
         for name, drop in drops.items()
     )
-    title = f"{vehicle}: measured minus simulated as a part of the measured, of the body and of all channels"
-    return Table(title, headers, rows, frozenset(headers[1:-1]), ("least white", "all %", "/noise"))
+    title = f"{vehicle}: measured minus simulated, % of the measured, of the body and of all channels"
+    return Table(title, headers, rows, frozenset(headers[1:-1]), ("autocorrelation", "all %", "/noise"))
 
 
 def amplitude_table(load: str, amplitudes: Sequence[ModeAmplitude]) -> Table:
-    """Show frequency and damping of each mode at its largest and its smallest amplitude.
+    """Return the table of frequency and damping of each mode at its largest and its smallest amplitude.
 
     Parameters
     ----------
@@ -93,25 +102,25 @@ def amplitude_table(load: str, amplitudes: Sequence[ModeAmplitude]) -> Table:
         By mode.
     """
     rows = []
-    for one in amplitudes:
-        for trace in one.records:
-            if trace.amplitude.size:
-                rows.append((one.mode, trace.name, *_ends(trace)))
-        if one.model.amplitude.size:
-            rows.append((one.mode, "fitted vehicle", *_ends(one.model)))
+    for mode in amplitudes:
+        for curve in mode.records:
+            if curve.amplitude.size:
+                rows.append((mode.mode, curve.name, *_ends(curve)))
+        if mode.model.amplitude.size:
+            rows.append((mode.mode, "fitted vehicle", *_ends(mode.model)))
     headers = ("mode", "from", "mm", "f Hz", "±", "damping", "mm ", "f Hz ", "± ", "damping ")
-    title = f"Modes of the body against amplitude, {load}: at the largest, then at the smallest"
+    title = f"Modes of the body at the largest and the smallest amplitude, {load}"
     return Table(title, headers, tuple(rows), frozenset(headers[2:]), ("± ", "±", "damping ", "damping"))
 
 
-def _ends(trace: AmplitudeCurve) -> list[str]:
+def _ends(curve: AmplitudeCurve) -> list[str]:
     cells = []
-    for i in (int(trace.amplitude.argmax()), int(trace.amplitude.argmin())):
+    for i in (int(curve.amplitude.argmax()), int(curve.amplitude.argmin())):
         cells += [
-            figures(1e3 * float(trace.amplitude[i]), 2),
-            f"{trace.frequency[i]:.3f}",
-            f"{trace.frequency_std[i]:.3f}",
-            f"{trace.damping_ratio[i]:.3f}",
+            significant_figures(1e3 * float(curve.amplitude[i]), 2),
+            f"{curve.frequency[i]:.3f}",
+            f"{curve.frequency_std[i]:.3f}",
+            f"{curve.damping_ratio[i]:.3f}",
         ]
     return cells
 
@@ -120,8 +129,10 @@ def _percent(error: float | None) -> str:
     return "-" if error is None else f"{100 * error:.1f}"
 
 
-def _least_white(drop: DropValidation) -> str:
+def _autocorrelation(drop: DropValidation) -> str:
     if not drop.whiteness:
         return "-"
-    name, left = max(drop.whiteness.items(), key=lambda item: item[1].colour)
-    return "none" if left.colour < _COLOURED else f"{name} {left.correlation:.2f} at {1e3 * left.lag:.0f} ms"
+    name, residual = max(drop.whiteness.items(), key=lambda item: item[1].colour)
+    if residual.colour < _SIGNIFICANT:
+        return "none"
+    return f"{name} {residual.correlation:.2f} at {1e3 * residual.lag:.0f} ms"

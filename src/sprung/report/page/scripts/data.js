@@ -23,10 +23,10 @@ async function decode(held) {
 const scaled = (axis, value) => (axis.log ? Math.log(value) : value);
 function along(axis, value) {
   const part = (scaled(axis, value) - scaled(axis, axis.low)) / (scaled(axis, axis.high) - scaled(axis, axis.low));
-  return axis.falling ? 1 - part : part;
+  return axis.descending ? 1 - part : part;
 }
 function valueAt(axis, part) {
-  const value = scaled(axis, axis.low) + (axis.falling ? 1 - part : part) * (scaled(axis, axis.high) - scaled(axis, axis.low));
+  const value = scaled(axis, axis.low) + (axis.descending ? 1 - part : part) * (scaled(axis, axis.high) - scaled(axis, axis.low));
   return axis.log ? Math.exp(value) : value;
 }
 

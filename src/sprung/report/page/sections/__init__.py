@@ -1,4 +1,4 @@
-"""What each part of the report shows: the context of its template, or None where a result has nothing for it."""
+"""Sections of the report: the context of each template, or None where a result has nothing to show."""
 
 from sprung.report.page.sections.drops import motions, recordings
 from sprung.report.page.sections.geometry import geometry

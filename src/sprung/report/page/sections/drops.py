@@ -1,4 +1,4 @@
-"""Every drop: its recording, what was wrong, and measured against simulated."""
+"""Sections about the drops: recordings, faults, measured and simulated motion."""
 
 from __future__ import annotations
 
@@ -8,49 +8,49 @@ from sprung.checking import DropReport
 from sprung.errors import Fault
 from sprung.report.page.sections.context import Context
 from sprung.report.pictures.motions import motion_picture
-from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.terminal.check import drops_table
 from sprung.report.terminal.validation import COLUMNS, validation_table
 from sprung.results import Result
 
 
 def recordings(result: Result, unfolded: bool) -> Context:
-    """Show every recording, with what happened in it and what was wrong."""
-    drawn, shown = [], _shown(result)
+    """Return every recording with its events and faults."""
+    drawn, unfolded_drops = [], _unfolded_drops(result)
     for drop in result.drops:
         recorded = result.recordings.get(drop.name)
         if recorded is None or not drop.channels:
             continue
-        pictures = [whole_picture(drop, recorded), near_picture(drop, recorded)]
+        pictures = [recording_picture(drop, recorded), landing_picture(drop, recorded)]
         drawn.append(
             {
                 "file": drop.label,
-                "said": f"{drop.kind}, {drop.load}",
-                "wrong": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
+                "caption": f"{drop.kind}, {drop.load}",
+                "warning": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
                 "limits": _limits(drop),
-                "open": unfolded or drop.name in shown,
+                "open": unfolded or drop.name in unfolded_drops,
                 "pictures": [picture for picture in pictures if picture is not None],
             }
         )
-    return {"overview": drops_table(result.drops), "faults": _joined(result.faults), "drawn": drawn}
+    return {"overview": drops_table(result.drops), "faults": _merged(result.faults), "drawn": drawn}
 
 
-def _shown(result: Result) -> set[str]:
-    """Return the names of the drops to look at first: the one that is explained worst, and those with faults."""
-    residuals = {name: one.residual for name, one in result.validation.items()}
+def _unfolded_drops(result: Result) -> set[str]:
+    """Return the names of the drop with the largest residual and of those with faults."""
+    residuals = {name: validated.residual for name, validated in result.validation.items()}
     worst = max(residuals, key=residuals.__getitem__) if residuals else next((drop.name for drop in result.drops), "")
     return {worst, *(drop.name for drop in result.drops if drop.faults)}
 
 
 def _limits(drop: DropReport) -> str:
-    if drop.start is None or drop.end is None or not drop.why_start:
+    if drop.start is None or drop.end is None:
         return ""
-    fit = "" if drop.fit_start is None else f" The fit uses it from {drop.fit_start:.3f} s on: {drop.why_fit}."
-    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}.{fit}"
+    fit = "" if drop.fit_start is None else f" The fit begins at {drop.fit_start:.3f} s ({drop.why_fit})."
+    return f"Free decay from {drop.start:.3f} s ({drop.why_start}) to {drop.end:.3f} s ({drop.why_end}).{fit}"
 
 
-def _joined(faults: tuple[Fault, ...]) -> list[Fault]:
-    """Say once what was found alike in several places."""
+def _merged(faults: tuple[Fault, ...]) -> list[Fault]:
+    """Return faults with the places of equal ones merged."""
     places: defaultdict[tuple[str, str, str], list[str]] = defaultdict(list)
     for fault in faults:
         places[fault.code, fault.what, fault.do].append(fault.where)
@@ -60,15 +60,15 @@ def _joined(faults: tuple[Fault, ...]) -> list[Fault]:
 def motions(result: Result, unfolded: bool) -> Context:
     """Return the motion of the body in each drop, measured and simulated, with the errors."""
     groups: dict[str, list[Context]] = {}
-    shown = _shown(result)
+    unfolded_drops = _unfolded_drops(result)
     for drop in result.drops:
         if drop.name in result.series:
             validated = result.validation[drop.name]
             groups.setdefault(drop.load, []).append(
                 {
                     "picture": motion_picture(drop.name, result.series[drop.name], validated),
-                    "said": f"residual {validated.residual:.2f} times the noise",
-                    "open": unfolded or drop.name in shown,
+                    "caption": f"residual {validated.residual:.2f} times the noise",
+                    "open": unfolded or drop.name in unfolded_drops,
                 }
             )
     return {

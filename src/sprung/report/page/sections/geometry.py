@@ -1,4 +1,4 @@
-"""The sketch of the vehicle: where axles, sensors, loads and the centre of gravity are."""
+"""Section with the sketch of the vehicle: axles, sensors, loads, centre of gravity."""
 
 from __future__ import annotations
 

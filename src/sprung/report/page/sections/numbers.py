@@ -1,4 +1,4 @@
-"""The parameters: what was found, what was known, what is uncertain together."""
+"""Sections about the parameters: estimates, prior knowledge, correlation."""
 
 from __future__ import annotations
 
@@ -8,49 +8,49 @@ import numpy as np
 from markupsafe import Markup
 
 from sprung.report.page.sections.context import Context
-from sprung.report.page.summary import symbol as parts_of
+from sprung.report.page.summary import symbol_parts
 from sprung.report.pictures.parameters import half_width, limits_percent
 from sprung.results import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
 
 _CLOSE = 0.9
-"""Correlation from which two parameters are to be read together."""
+"""Correlation above which a pair of parameters is listed."""
 
 _STRENGTHS = (0.3, 0.5, 0.7, 0.9)
-"""Correlations from which a cell is shaded more."""
+"""Correlations at which the shade of a cell gets darker."""
 
 
 def symbol(name: str) -> Markup:
-    """Write a parameter as formulas have it."""
-    letter, below = parts_of(name)
-    return Markup("{}<sub>{}</sub>").format(letter, below) if below else Markup("{}").format(letter)
+    """Return a parameter's name as a formula writes it."""
+    letter, index = symbol_parts(name)
+    return Markup("{}<sub>{}</sub>").format(letter, index) if index else Markup("{}").format(letter)
 
 
 def characteristics(result: Result) -> Context | None:
-    """Show masses, loads, centre of gravity, ride and wheel hop."""
+    """Return masses, loads, centre of gravity, ride and wheel hop."""
     tables = characteristics_tables(result.name, result.derived)
     return {"tables": tables} if tables else None
 
 
 def parameters(result: Result) -> Context:
-    """Show every parameter with its interval; of a rejected result none."""
-    found = {} if result.verdict.state == "reject" else {**result.parameters, **other_quantities(result.derived)}
-    half = half_width(found)
-    rows = [_parameter(name, one, half) for name, one in found.items()]
-    profiled = [name for name, one in found.items() if one.interval_from == "profile"]
-    left = not result.scale.known and bool(result.scale.per_total_mass)
+    """Return every parameter with its interval; none of a rejected result."""
+    estimates = {} if result.verdict.state == "reject" else {**result.parameters, **other_quantities(result.derived)}
+    half = half_width(estimates)
+    rows = [_parameter(name, estimate, half) for name, estimate in estimates.items()]
+    profiled = [name for name, estimate in estimates.items() if estimate.interval_from == "profile"]
+    scale_free = not result.scale.known and bool(result.scale.per_total_mass)
     return {
         "rows": rows,
         "half": f"{half:g}",
-        "opened": ", ".join(profiled),
+        "profiled": ", ".join(profiled),
         "undetermined": result.unidentifiable,
-        "ratios": ratios_table(result.scale.per_total_mass) if left else None,
+        "ratios": ratios_table(result.scale.per_total_mass) if scale_free else None,
     }
 
 
-def _parameter(name: str, found: Estimate, half: float) -> Context:
-    value, std, percent, unit, status = value_cells(found)
+def _parameter(name: str, estimate: Estimate, half: float) -> Context:
+    value, std, percent, unit, status = value_cells(estimate)
     row: Context = {
         "name": name,
         "symbol": symbol(name),
@@ -63,8 +63,8 @@ def _parameter(name: str, found: Estimate, half: float) -> Context:
         "bar": None,
         "instead": "exact" if status == "known" else "not determined" if status == "unidentifiable" else "",
     }
-    limits = limits_percent(found)
-    if limits is not None and found.interval95 is not None:
+    limits = limits_percent(estimate)
+    if limits is not None and estimate.interval95 is not None:
         low, high = (float(np.clip(60 + 60 * limit / half, 0, 120)) for limit in limits)
         row["bar"] = {
             "low": f"{low:.1f}",
@@ -72,25 +72,25 @@ def _parameter(name: str, found: Estimate, half: float) -> Context:
             "more_low": limits[0] < -half,
             "more_high": limits[1] > half,
         }
-        ends = [_limit(limit, found.std) for limit in found.interval95]
-        row["told"] = f"{name}: 95 % interval from {ends[0]} to {ends[1]} {unit}".rstrip()
+        ends = [_limit(limit, estimate.std) for limit in estimate.interval95]
+        row["description"] = f"{name}: 95 % interval from {ends[0]} to {ends[1]} {unit}".rstrip()
     return row
 
 
 def _limit(limit: float | None, std: float | None) -> str:
-    return "an open end" if limit is None else round_by_uncertainty(limit, std or abs(limit) or 1.0)[0]
+    return "open" if limit is None else round_by_uncertainty(limit, std or abs(limit) or 1.0)[0]
 
 
 def known(result: Result) -> Context:
     """Return the table of what was known beforehand beside its estimates."""
-    headers = ("quantity", "known before", "±", "found", "± ", "unit", "the recordings")
+    headers = ("quantity", "known value", "±", "estimate", "± ", "unit", "difference")
     rows = []
-    for name, one in result.setup.known.items():
-        value, std = round_by_uncertainty(one.value, one.std)
-        found, found_std, *_ = value_cells(one.found) if one.std else ("held", "")
-        says = "" if one.missed is None else f"differ by {one.missed:.1f} standard uncertainties"
-        rows.append((name, value, std or "exact", found, found_std, unit_text(one.unit), says))
-    table = Table("What was known", headers, tuple(rows), frozenset(headers[1:5]))
+    for name, prior in result.setup.known.items():
+        value, std = round_by_uncertainty(prior.value, prior.std)
+        estimate, estimate_std, *_ = value_cells(prior.found) if prior.std else ("fixed", "")
+        difference = "" if prior.missed is None else f"{prior.missed:.1f} standard uncertainties"
+        rows.append((name, value, std or "exact", estimate, estimate_std, unit_text(prior.unit), difference))
+    table = Table("Known beforehand", headers, tuple(rows), frozenset(headers[1:5]))
     heights = ", ".join(f"{key.replace('_', ' ')} {value:g} m" for key, value in result.setup.heights.items())
     return {"known": table, "heights": heights, "loads": list(_loads(result.setup)), "sensors": _sensors(result.setup)}
 
@@ -133,7 +133,7 @@ def _sensors(setup: Setup) -> Table:
 
 
 def correlation(result: Result) -> Context | None:
-    """Show which parameters are uncertain together."""
+    """Return the correlation matrix of the estimates, and its largest entries in words."""
     names, matrix = result.correlation.names, result.correlation.matrix
     if len(names) < 2:
         return None
@@ -146,28 +146,28 @@ def correlation(result: Result) -> Context | None:
         ),
         key=lambda pair: -abs(pair[0]),
     )
-    told = ", ".join(f"{one} with {other} ({_signed(value)})" for value, one, other in pairs[:8])
+    listed = ", ".join(f"{first} and {second} ({_signed(value)})" for value, first, second in pairs[:8])
     more = f", and {len(pairs) - 8} more pairs" if len(pairs) > 8 else ""
-    said = (
-        f"To be read together, as they are uncertain together: {told}{more}."
+    text = (
+        f"Correlations of {_CLOSE} or more: {listed}{more}."
         if pairs
-        else f"No two parameters are correlated by {_CLOSE} or more: each error bar can be read on its own."
+        else f"No two parameters have a correlation of {_CLOSE} or more."
     )
     rows = [
         (name, [_cell(value, i == j) for j, value in enumerate(row)])
         for i, (name, row) in enumerate(zip(names, matrix, strict=True))
     ]
-    return {"said": said, "names": names, "rows": rows, "symbol": symbol}
+    return {"text": text, "names": names, "rows": rows, "symbol": symbol}
 
 
 def _cell(value: float, same: bool) -> dict[str, str]:
     if same:
         return {"text": "", "kind": ""}
-    strength = sum(abs(value) >= least for least in _STRENGTHS)
+    strength = sum(abs(value) >= threshold for threshold in _STRENGTHS)
     return {"text": _signed(value), "kind": f"{'p' if value > 0 else 'n'}{strength}" if strength else ""}
 
 
 def _signed(value: float) -> str:
-    # What is not quite one shall not look like it, and nothing shall have no sign.
+    # A correlation just below one must not be rounded to one, and zero has no sign.
     text = f"{value:.3f}" if 0.995 <= abs(value) < 1 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
     return text.replace("-", "\N{MINUS SIGN}")

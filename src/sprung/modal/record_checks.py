@@ -1,4 +1,4 @@
-"""Records as the methods take them, and what cannot be worked on."""
+"""Checks of the records that are passed to a method."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from sprung.errors import Problems
 Real = NDArray[np.float64]
 
 
-def as_records(records: Sequence[ArrayLike], rate: float, where: str) -> list[Real]:
-    """Take up records, and refuse those that cannot be worked on together.
+def check_records(records: Sequence[ArrayLike], rate: float, where: str) -> list[Real]:
+    """Return records as arrays, after checking that they can be used together.
 
     Parameters
     ----------
@@ -48,6 +48,6 @@ def as_records(records: Sequence[ArrayLike], rate: float, where: str) -> list[Re
             problems.add(place, found, expected, "Give the same channels of every drop.")
         elif not np.isfinite(record).all():
             bad = int((~np.isfinite(record)).sum())
-            problems.add(place, f"{bad} samples that are not numbers", "numbers", "Leave out what could not be used.")
+            problems.add(place, f"{bad} samples that are not numbers", "numbers", "Leave those samples out.")
     problems.raise_if_any()
     return arrays

@@ -1,4 +1,4 @@
-"""Records with fewer samples and the same poles: what every method but the likelihood works on."""
+"""Decimation of records: fewer samples and the same poles, for every method but maximum likelihood."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from sprung.modal.spectrum import Spectrum
 Real = NDArray[np.float64]
 
 _LAG = 0.4
-"""Periods of the highest frequency between block rows: more than half a period would take it for another one."""
+"""Periods of the highest frequency between block rows: more than half a period would alias it."""
 
 _WINDOW = 0.5
-"""Periods of the lowest frequency that the block rows span: longer gains nothing."""
+"""Periods of the lowest frequency that the block rows span: a longer span gains nothing."""
 
 _LEAST_ROWS = 40
 """Rows of a block Hankel matrix at the least, where the records are long enough: an order may be asked for."""
@@ -25,31 +25,31 @@ _FINE = 2
 """Samples in a lag, once neighbours are averaged."""
 
 _QUIET, _DIFFERENCES = 1e-9, 6
-"""Noise of a channel, as a part of its root-mean-square, that is taken at the least; and the order of the differences in
-which it is looked for: they leave next to nothing of a motion that is sampled a few times in a radian."""
+"""Noise of a channel, as a part of its root-mean-square, its lower limit; and the order of the differences from which it
+is estimated: they remove a motion that is sampled a few times in a radian."""
 
 
 @dataclass(frozen=True, eq=False)
-class Thinned:
-    """Records of which neighbouring samples were averaged, each channel divided by its noise.
+class DecimatedRecords:
+    """Records of averages of neighbouring samples, each channel divided by its noise.
 
-    The mean of e^{λk} over a block of samples is e^{λk} again, times a constant, so that nothing but noise is lost, and no
-    filter has a transient.
+    The mean of e^{λk} over a block of samples is e^{λk} again, times a constant, so that only noise is lost, and there is no
+    filter transient.
 
     Attributes
     ----------
     records
         Shape (channel, time) each.
     every
-        Samples in one of them.
+        Original samples in each average.
     step
-        Samples of these between block rows.
+        Averages between block rows.
     shifts
-        How many steps half a period of the lowest frequency is.
+        Steps in half a period of the lowest frequency.
     scale
-        By which the channels were divided, shape (channel,).
+        Divisors of the channels, shape (channel,).
     longest
-        Samples of the longest record as it was.
+        Original samples of the longest record.
     """
 
     records: tuple[Real, ...]
@@ -60,25 +60,25 @@ class Thinned:
     longest: int
 
     @classmethod
-    def of(cls, records: Sequence[Real], spectrum: Spectrum) -> Thinned:
-        """Average as many neighbours as the records' band allows."""
+    def of(cls, records: Sequence[Real], spectrum: Spectrum) -> DecimatedRecords:
+        """Average as many neighbours as the band of the records allows."""
         rate = 2 * float(spectrum.frequency[-1])
         low, high = spectrum.band
         channels, shortest = records[0].shape[0], min(record.shape[1] for record in records)
         every = max(int(_LAG / high * rate / _FINE), 1)
         step = min(max(round(_LAG / high * rate / every), 1), max(shortest // every // 4, 1))
-        scale = np.sqrt(noise_floor(records))
-        thin = []
+        scale = np.sqrt(estimate_noise_variance(records))
+        decimated_records = []
         for record in records:
             count = record.shape[1] // every
             means = record[:, : count * every].reshape(channels, count, every).mean(axis=2)
-            thin.append(means / scale[:, None])
+            decimated_records.append(means / scale[:, None])
         shifts = round(_WINDOW / low * rate / every / step)
-        return cls(tuple(thin), every, step, shifts, scale, max(record.shape[1] for record in records))
+        return cls(tuple(decimated_records), every, step, shifts, scale, max(record.shape[1] for record in records))
 
     @property
     def channels(self) -> int:
-        """How many channels there are."""
+        """Number of channels."""
         return len(self.scale)
 
     @property
@@ -86,8 +86,8 @@ class Thinned:
         """Samples of the shortest record."""
         return int(min(record.shape[1] for record in self.records))
 
-    def shifted(self, rows: int) -> int:
-        """How many shifts a block Hankel matrix of at most so many rows can have, each of a lag."""
+    def shifts_within(self, rows: int) -> int:
+        """Return the number of shifts of a block Hankel matrix with at most so many rows, each of a lag."""
         wanted = min(max(self.shifts, -(-_LEAST_ROWS // self.channels)), rows // self.channels - 1)
         room = min(wanted, self.shortest // (2 * self.step))
         return int(max(room, min(2, self.shortest // self.step - 1), 1))
@@ -95,7 +95,7 @@ class Thinned:
     def hankel(self, shifts: int) -> list[Real]:
         """Stack each record delayed by 0, 1, ... lags.
 
-        Every row's mean is taken off, and with it the channels' offsets, exactly; the span of the columns stays.
+        Every row's mean is subtracted, and with it the channels' offsets, exactly; the span of the columns stays.
 
         Parameters
         ----------
@@ -115,8 +115,8 @@ class Thinned:
         return found
 
 
-def noise_floor(records: Sequence[Real]) -> Real:
-    """Estimate the variance of each channel's noise from what is left of it in differences, most of the time.
+def estimate_noise_variance(records: Sequence[Real]) -> Real:
+    """Estimate the variance of each channel's noise from the median square of its differences.
 
     Parameters
     ----------
@@ -137,6 +137,6 @@ def noise_floor(records: Sequence[Real]) -> Real:
     return np.asarray(np.maximum(floor, np.where(energy > 0, _QUIET**2 * energy, 1.0)))
 
 
-def triangle(matrix: Real) -> Real:
-    """Give R of the QR factorisation of a matrix."""
+def triangular_factor(matrix: Real) -> Real:
+    """Return R of the QR factorisation of a matrix."""
     return np.asarray(np.linalg.qr(matrix, mode="r"), dtype=float)

@@ -1,4 +1,4 @@
-"""The report: one page that says everything of a result, and needs nothing but itself."""
+"""The report: one self-contained page with everything about a result."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from markupsafe import Markup
 from sprung.errors import Omissions
 from sprung.report.drawing.palette import DARK, LIGHT
 from sprung.report.drawing.picture import Picture
-from sprung.report.drawing.style import alone_style, role_rules
-from sprung.report.drawing.svg import lower, svg_of
+from sprung.report.drawing.style import role_styles, standalone_style
+from sprung.report.drawing.svg import picture_svg, reduce_height
 from sprung.report.page import sections
 from sprung.report.page.embedded import figure_json
 from sprung.report.page.environment import ENVIRONMENT
 from sprung.report.page.sections.context import Context
-from sprung.report.page.summary import facts_of, record_of, verdict_words
+from sprung.report.page.summary import summary_of, test_record_of, verdict_text
 from sprung.report.sketch.shapes import Drawing
-from sprung.report.sketch.svg import drawing_svg
+from sprung.report.sketch.svg import sketch_svg
 from sprung.results import TRACE_TITLE, Result
 
 FILE = "report.html"
-"""The report's name beside results.json."""
+"""File name of the report."""
 
 _SCRIPTS = ("data", "save", "scope", "figures", "modes", "main")
-"""What the page's script is put together from, in order."""
+"""Parts of the script of the page, in order."""
 
 
 class Section(NamedTuple):
@@ -37,55 +37,55 @@ class Section(NamedTuple):
     body: Markup
 
 
-def page_of(result: Result, unfolded: bool = False) -> str:
-    """Write the report; a part that cannot be drawn is named at its top.
+def report_html(result: Result, unfolded: bool = False) -> str:
+    """Return the report; parts that cannot be drawn are listed at its top.
 
     Parameters
     ----------
     result
         From `sprung.identify` or `sprung.load`.
     unfolded
-        Whether every picture is to be seen at once, as on paper.
+        Whether every picture is visible, as on paper.
 
     Returns
     -------
     str
-        HTML; the same for the same result.
+        HTML; identical for identical results.
     """
-    return drawn_page(result, unfolded)[0]
+    return render_report(result, unfolded)[0]
 
 
-def drawn_page(result: Result, unfolded: bool = False) -> tuple[str, tuple[str, ...]]:
-    """Write the report, and say which parts of it could not be drawn.
+def render_report(result: Result, unfolded: bool = False) -> tuple[str, tuple[str, ...]]:
+    """Return the report, and the parts that could not be drawn.
 
     Parameters
     ----------
     result, unfolded
-        As for `page_of`.
+        As for `report_html`.
 
     Returns
     -------
     tuple
-        HTML, and a sentence for each thing that is missing, those of the result first.
+        HTML, and a sentence for each omission, those of the result first.
     """
     page = ENVIRONMENT.get_template("page.html")
-    record = list(record_of(result))
+    record = list(test_record_of(result))
     omissions = Omissions(result.omissions)
     sections = list(_sections(result, unfolded, omissions))
-    text = page.render(
+    html = page.render(
         result=result,
         omissions=omissions.sentences,
-        verdict=verdict_words(result),
+        verdict=verdict_text(result),
         record=record,
-        running_head=_css_text(" · ".join([result.name, *(told for name, told in record if name == "Date")])),
-        facts=facts_of(result),
+        running_head=_css_text(" · ".join([result.name, *(text for name, text in record if name == "Date")])),
+        summary=summary_of(result),
         sections=sections,
         light=LIGHT,
         dark=DARK,
-        roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
+        roles=Markup("\n".join(role_styles())),  # noqa: S704 (made here)
         script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )
-    return text, omissions.sentences
+    return html, omissions.sentences
 
 
 def _script() -> str:
@@ -94,13 +94,13 @@ def _script() -> str:
 
 
 def _css_text(text: str) -> Markup:
-    """Write text as a string of a style sheet, every letter that could mean something there by its number."""
-    letters = (one if one.isascii() and one.isalnum() else f"\\{ord(one):x} " for one in text if one.isprintable())
-    return Markup('"{}"').format(Markup("".join(letters)))  # noqa: S704 (nothing is left in it that means something)
+    """Return text as a string of a style sheet, special characters as escapes."""
+    letters = (c if c.isascii() and c.isalnum() else f"\\{ord(c):x} " for c in text if c.isprintable())
+    return Markup('"{}"').format(Markup("".join(letters)))  # noqa: S704 (escaped above)
 
 
 def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[Section]:
-    style = alone_style(halo=False) if unfolded else ""
+    style = standalone_style(halo=False) if unfolded else ""
     parts: tuple[tuple[str, str, str, Callable[[], Context | None]], ...] = (
         (
             "characteristics",
@@ -125,21 +125,21 @@ def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[
     )
 
     def draw(picture: Picture) -> Markup:
-        picture = lower(picture) if unfolded else picture
+        picture = reduce_height(picture) if unfolded else picture
         data = "" if unfolded else f'<script type="application/json" class="data">{figure_json(picture)}</script>'
-        return Markup(svg_of(picture, style) + data)  # noqa: S704 (they escape their words)
+        return Markup(picture_svg(picture, style) + data)  # noqa: S704 (escaped there)
 
     def sketch(drawing: Drawing) -> Markup:
-        return Markup(drawing_svg(drawing, style))  # noqa: S704 (it escapes its words)
+        return Markup(sketch_svg(drawing, style))  # noqa: S704 (escaped there)
 
     macros = ENVIRONMENT.get_template("macros.html").module
     tools = {"macros": macros, "draw": draw, "sketch": sketch, "style": Markup(style)}  # noqa: S704 (made here)
     for anchor, title, template, context in parts:
         body = None
-        # A part that fails costs no other: the reason why it is missing stands at the top.
-        with omissions.noting(f'The part "{title}" of the report'):
+        # A section that fails does not affect the others: the reason is given at the top.
+        with omissions.record_failure(f'The part "{title}" of the report'):
             shown = context()
             if shown is not None:
                 body = ENVIRONMENT.get_template(template).render(**tools, **shown)
         if body is not None:
-            yield Section(anchor, title, Markup(body))  # noqa: S704 (a template that escapes wrote it)
+            yield Section(anchor, title, Markup(body))  # noqa: S704 (escaped by the template)

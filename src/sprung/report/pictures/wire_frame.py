@@ -1,4 +1,4 @@
-"""A small car of wire whose nodes move with the coordinates of the vehicle: how a mode is shown."""
+"""Wire-frame model of the vehicle, whose nodes move with its coordinates: it shows a mode shape."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from sprung.results import Result
 from sprung.vibration import largest_entry
 
 _DECK, _ROOF, _HUB = 0.3, 0.62, 0.13
-"""Heights of the wire car, parts of its wheelbase: nothing in a result tells a vehicle's outline."""
+"""Heights of the wire frame, as parts of its wheelbase: a result has no outline of the vehicle."""
 
 _OVERHANG, _INSET = 0.2, 0.12
-"""Body beyond the axles, part of the wheelbase; and roof within the deck, part of the track."""
+"""Body beyond the axles, as a part of the wheelbase, and inset of the roof, as a part of the track."""
 
 _TRACK = 0.27
-"""Half the track beside the wheelbase, where nothing tells it."""
+"""Half the track as a part of the wheelbase, where it is not known."""
 
 _AWAY = (0.42, 0.30)
-"""How far to the right and up on the picture what is away from who looks is drawn."""
+"""Oblique projection: shift to the right and up per unit of distance from the viewer."""
 
 _SWING = 0.15
-"""Largest displacement on the picture, part of the wheelbase."""
+"""Largest displacement on the picture, as a part of the wheelbase."""
 
 BODY_EDGES = ((0, 1), (1, 3), (3, 2), (2, 0), (4, 5), (5, 7), (7, 6), (6, 4), (0, 4), (1, 5), (2, 6), (3, 7))
 """Between nodes: deck, roof, pillars."""
@@ -37,20 +37,20 @@ HUBS = (12, 13, 14, 15)
 """Nodes that are wheels: A front left, B front right, C rear left, D rear right."""
 
 _ENGINE = 0.4
-"""Radius of an engine beside a wheel's."""
+"""Radius of an engine relative to that of a wheel."""
 
 
 @dataclass(frozen=True, eq=False)
-class WireCar:
-    """The car on the picture.
+class WireFrame:
+    """The wire frame on the picture.
 
     Attributes
     ----------
     places
-        Of its nodes at rest: to the right and down, units, shape (node, 2). The last is an engine on its mounts, if there
-        is one.
+        Positions of its nodes at rest, to the right and down, units, shape (node, 2). The last is an engine on its mounts, if
+        there is one.
     rows
-        How far each node rises with each coordinate, the engine's the last, units, shape (node, 8).
+        Rise of each node per unit of each coordinate, the engine's the last, units, shape (node, 8).
     wheel
         Radius of a wheel, units.
     width, height
@@ -64,12 +64,12 @@ class WireCar:
     height: float
 
     def swing(self, motion: Sequence[tuple[float, float]]) -> NDArray[np.complex128]:
-        """Give how far each node rises in a mode, so that the largest is well to be seen.
+        """Return the rise of each node in a mode, scaled to a visible largest displacement.
 
         Parameters
         ----------
         motion
-            Of the vehicle's coordinates, real and imaginary parts.
+            Mode shape in the vehicle's coordinates, dimensionless real and imaginary parts.
 
         Returns
         -------
@@ -78,13 +78,13 @@ class WireCar:
         """
         shape = np.array([complex(*part) for part in motion])
         moved: NDArray[np.complex128] = self.rows[:, : len(shape)] @ shape
-        # In the phase in which what moves most is furthest up.
+        # In the phase in which the node with the largest motion is at its top.
         largest = moved[largest_entry(moved)]
         return moved * (_SWING * self._wheelbase / largest) if largest else moved
 
     @property
     def circles(self) -> tuple[tuple[int, float], ...]:
-        """Nodes that are drawn as circles, and their radii, units: the wheels, and an engine."""
+        """Nodes that are drawn as circles, with their radii in units: the wheels, and an engine."""
         engine = range(HUBS[-1] + 1, len(self.places))
         return (*((hub, self.wheel) for hub in HUBS), *((node, _ENGINE * self.wheel) for node in engine))
 
@@ -93,13 +93,13 @@ class WireCar:
         return float(abs(self.places[HUBS[0], 0] - self.places[HUBS[2], 0]))
 
 
-def wire_car(result: Result, width: float = 220.0) -> WireCar:
-    """Make a car of the proportions that a result tells.
+def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
+    """Return a wire frame with the proportions of the identified vehicle.
 
     Parameters
     ----------
     result
-        With what was known beforehand, where it holds that.
+        Of an identification.
     width
         Of the picture, units.
 
@@ -107,18 +107,18 @@ def wire_car(result: Result, width: float = 220.0) -> WireCar:
     -------
     WireCar
     """
-    told = {name: found.value for name, found in result.parameters.items() if found.value is not None}
+    values = {name: estimate.value for name, estimate in result.parameters.items() if estimate.value is not None}
     wheelbase = result.setup.known["wheelbase"].value if "wheelbase" in result.setup.known else 1.0
-    a, b = told.get("a"), told.get("b")
+    a, b = values.get("a"), values.get("b")
     a, b = (a, b) if a and b else (wheelbase / 2, wheelbase / 2)
     length = a + b
-    half = _half_track(result, told, length)
+    half = _half_track(result, values, length)
     front, rear = a + _OVERHANG * length, -b - _OVERHANG * length
     inner = half * (1 - _INSET)
     corners = [(x, y) for x in (front, rear) for y in (half, -half)]
     roof = [(x, y) for x in (0.5 * front, 0.94 * rear) for y in (inner, -inner)]
     stations = [(x, y) for x in (a, -b) for y in (half, -half)]
-    engine = [(a + told["x_e"], 0.0)] if "x_e" in told else []
+    engine = [(a + values["x_e"], 0.0)] if "x_e" in values else []
     flat = np.array([*corners, *roof, *stations, *stations, *engine])
     heights = length * np.array([*np.repeat([_DECK, _ROOF, _DECK, _HUB], 4), *([_DECK] * len(engine))])
     rows = np.zeros((len(flat), 8))
@@ -131,12 +131,12 @@ def wire_car(result: Result, width: float = 220.0) -> WireCar:
     swing = _SWING * length
     top, bottom = up.max() + swing, up[list(HUBS)].min() - radius - swing
     places = np.stack([6 + scale * (across - across.min()), scale * (top - up)], axis=1)
-    return WireCar(places, rows * scale, scale * radius, width, float(scale * (top - bottom)))
+    return WireFrame(places, rows * scale, scale * radius, width, float(scale * (top - bottom)))
 
 
-def _half_track(result: Result, told: Mapping[str, float], wheelbase: float) -> float:
-    """Give half the track: where springs or dampers are widest apart, or else the body's sensors."""
-    places = [value for name, value in told.items() if name.startswith(("t_f", "t_r"))]
+def _half_track(result: Result, values: Mapping[str, float], wheelbase: float) -> float:
+    """Return half the track: the largest half-distance of springs or dampers, or else of the body's sensors."""
+    places = [value for name, value in values.items() if name.startswith(("t_f", "t_r"))]
     if not places:
-        places = [abs(one.position[1]) for one in result.setup.sensors if one.position is not None]
+        places = [abs(sensor.position[1]) for sensor in result.setup.sensors if sensor.position is not None]
     return max(places, default=0.0) or _TRACK * wheelbase

@@ -1,12 +1,12 @@
-"""Modes of poles alone: what each pole contributes to every channel of every record, and how many shapes that takes."""
+"""Mode shapes for given poles: the contribution of each pole to every channel of every record, and its rank."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.modal.decimation import DecimatedRecords
 from sprung.modal.likelihood import Poles
-from sprung.modal.thinning import Thinned
 from sprung.vibration import exponentials
 
 Complex = NDArray[np.complex128]
@@ -15,11 +15,11 @@ _ANOTHER = 6.0
 """Standard errors by which a second shape of one pole must stand out from noise."""
 
 _LEAST = 1e-3
-"""Part of the first that a second shape must be: two poles that are close take rounding for one."""
+"""Part of the first that a second shape must be: close poles leave rounding that looks like one."""
 
 
-def shapes_of(thinned: Thinned, exponent: Complex) -> Poles:
-    """Give poles their shapes: every channel's contribution by least squares, then what is common to the records.
+def fit_shapes(decimated: DecimatedRecords, exponent: Complex) -> Poles:
+    """Fit shapes to given poles: every channel's contribution by least squares, then the shapes common to all records.
 
     The contributions of a pole, a matrix of channels by records, are the product of its shape and its amplitudes. A repeated
     pole has as many shapes as that matrix has ranks, and comes back as often.
@@ -31,9 +31,9 @@ def shapes_of(thinned: Thinned, exponent: Complex) -> Poles:
     exponent
         λ per sample of the records as they were, of one of each conjugate pair, none twice; shape (pole,).
     """
-    every = np.concatenate([exponent, exponent[exponent.imag != 0].conj()]) * thinned.every
+    every = np.concatenate([exponent, exponent[exponent.imag != 0].conj()]) * decimated.every
     contributions, spreads, squares, freedom = [], [], 0.0, 0
-    for record in thinned.records:
+    for record in decimated.records:
         motion = exponentials(every, record.shape[1])
         motion = motion - motion.mean(axis=0)
         sizes = np.linalg.norm(motion, axis=0)
@@ -55,5 +55,5 @@ def shapes_of(thinned: Thinned, exponent: Complex) -> Poles:
         limit = max(_ANOTHER * (np.sqrt(matrix.shape[0]) + np.sqrt(matrix.shape[1])), _LEAST * strengths[0])
         for k in range(max(int((strengths > limit).sum()), 1)):
             poles.append(pole)
-            shapes.append(thinned.scale * own[:, k])
+            shapes.append(decimated.scale * own[:, k])
     return Poles.of(np.array(poles, dtype=np.complex128), np.stack(shapes, axis=1).astype(np.complex128))

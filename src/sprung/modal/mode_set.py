@@ -1,4 +1,4 @@
-"""What a modal identification gives: the modes, and what was met on the way and is none."""
+"""Result of a modal identification: the modes, and the poles that were rejected."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ Real = NDArray[np.float64]
 @shown
 @dataclass(frozen=True, eq=False)
 class RejectedPole:
-    """A pole that was met and is none of the modes.
+    """A pole that is not accepted as a mode.
 
     Attributes
     ----------
     pole
         1/s.
     reason
-        Why not, with the numbers.
+        Reason, with the numbers.
     """
 
     pole: complex
@@ -56,7 +56,7 @@ class ModeSet(Sequence[Mode]):
     @overload
     def __getitem__(self, index: slice) -> tuple[Mode, ...]: ...
     def __getitem__(self, index: int | slice) -> Mode | tuple[Mode, ...]:
-        """Give one mode, or several."""
+        """Return one mode, or several."""
         return self.modes[index]
 
     def __len__(self) -> int:
@@ -64,5 +64,5 @@ class ModeSet(Sequence[Mode]):
         return len(self.modes)
 
     def __iter__(self) -> Iterator[Mode]:
-        """Go through the modes."""
+        """Iterate over the modes."""
         return iter(self.modes)

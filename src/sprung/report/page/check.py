@@ -1,4 +1,4 @@
-"""The page of `sprung check`: what is usable and what is missing, the sketch, every drop with its recording and its faults."""
+"""The page of `sprung check`: usable drops, missing items, the sketch, and every drop with its recording and faults."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from sprung.checking import Check, DropReport, PlottedRecording
 from sprung.errors import Fault
 from sprung.report.drawing.palette import DARK, LIGHT
 from sprung.report.drawing.picture import Picture
-from sprung.report.drawing.style import role_rules
-from sprung.report.drawing.svg import svg_of
+from sprung.report.drawing.style import role_styles
+from sprung.report.drawing.svg import picture_svg
 from sprung.report.page.environment import ENVIRONMENT
-from sprung.report.pictures.recordings import near_picture, whole_picture
+from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.sketch.shapes import Drawing
 from sprung.report.sketch.sketch import vehicle_sketch
-from sprung.report.sketch.svg import drawing_svg
+from sprung.report.sketch.svg import sketch_svg
 from sprung.report.terminal.check import channels_table, drops_table, missing_items
 
 CHECK_FILE = "check.html"
@@ -33,17 +33,17 @@ class DropPart(NamedTuple):
     Attributes
     ----------
     anchor
-        By which links find it.
+        Target of links.
     report
-        What is said of it.
+        From the check.
     limits
-        Which part of it is used, and why.
+        Start and end of the free decay, with reasons.
     contradiction
-        Which wheels fell, where it was not those that the campaign says.
+        The wheels that fell, where the campaign states others.
     faults
-        What is wrong with it: the channel, empty for all of them, and the fault.
+        Channel, empty for all of them, and fault.
     pictures
-        Its recording.
+        Of its recording.
     """
 
     anchor: str
@@ -55,19 +55,19 @@ class DropPart(NamedTuple):
 
     @property
     def is_good(self) -> bool:
-        """Whether it can be used and nothing is wrong with it."""
+        """Whether it is usable and without faults."""
         return self.report.start is not None and not self.faults and not self.contradiction
 
     @property
     def state(self) -> str:
-        """What it is worth, in two words."""
+        """Its state, in two words."""
         if self.report.start is None:
             return "left out"
         return "usable" if self.is_good else "usable, with faults"
 
 
-def check_page(check: Check) -> str:
-    """Write the page of a check.
+def check_html(check: Check) -> str:
+    """Return the page of a check.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def check_page(check: Check) -> str:
     Returns
     -------
     str
-        HTML that needs nothing but itself; the same for the same recordings.
+        Self-contained HTML; identical for identical recordings.
     """
     drops = list(_drops(check))
     clean = check.usable and not check.missing and not check.common_faults and all(drop.is_good for drop in drops)
@@ -94,7 +94,7 @@ def check_page(check: Check) -> str:
         drops=drops,
         light=LIGHT,
         dark=DARK,
-        roles=Markup("\n".join(role_rules())),  # noqa: S704 (made here)
+        roles=Markup("\n".join(role_styles())),  # noqa: S704 (made here)
         macros=ENVIRONMENT.get_template("macros.html").module,
         draw=_draw,
         draw_sketch=_draw_sketch,
@@ -102,15 +102,15 @@ def check_page(check: Check) -> str:
 
 
 def _draw(picture: Picture) -> Markup:
-    return Markup(svg_of(picture))  # noqa: S704 (it escapes its words)
+    return Markup(picture_svg(picture))  # noqa: S704 (escaped there)
 
 
 def _draw_sketch(drawing: Drawing) -> Markup:
-    return Markup(drawing_svg(drawing))  # noqa: S704 (it escapes its words)
+    return Markup(sketch_svg(drawing))  # noqa: S704 (escaped there)
 
 
 def _facts(check: Check) -> Iterator[tuple[str, str]]:
-    """Give what one wants to know first, each with its name."""
+    """Yield the summary: names and texts."""
     loads = Counter(drop.load or "load not stated" for drop in check.drops if drop.start is not None)
     if loads:
         yield "Usable drops", ", ".join(f"{count} {load}" for load, count in loads.items())
@@ -127,30 +127,30 @@ def _facts(check: Check) -> Iterator[tuple[str, str]]:
 def _drops(check: Check) -> Iterator[DropPart]:
     recordings: list[PlottedRecording | None] = [*check.recorded, *([None] * (len(check.drops) - len(check.recorded)))]
     for number, (drop, recorded) in enumerate(zip(check.drops, recordings, strict=True), 1):
-        found = [] if recorded is None else [whole_picture(drop, recorded), near_picture(drop, recorded)]
+        pictures = [] if recorded is None else [recording_picture(drop, recorded), landing_picture(drop, recorded)]
         yield DropPart(
             anchor=f"drop-{number}",
             report=drop,
             limits=_limits(drop),
             contradiction=_contradiction(drop),
             faults=tuple((_channel(fault, drop), fault) for fault in check.faults_of(drop)),
-            pictures=tuple(picture for picture in found if picture is not None),
+            pictures=tuple(picture for picture in pictures if picture is not None),
         )
 
 
 def _limits(drop: DropReport) -> str:
     if drop.start is None or drop.end is None:
         return ""
-    return f"Decay from {drop.start:.3f} s: {drop.why_start}; to {drop.end:.3f} s: {drop.why_end}."
+    return f"Free decay from {drop.start:.3f} s ({drop.why_start}) to {drop.end:.3f} s ({drop.why_end})."
 
 
 def _contradiction(drop: DropReport) -> str:
-    if not drop.contradicted or "wheels" in drop.faults:  # the fault says it already
+    if not drop.contradicted or "wheels" in drop.faults:  # the fault states it
         return ""
     seen = ", ".join(drop.wheels_seen or ()) or "no wheel"
-    return f"The campaign says that {', '.join(drop.wheels)} fell; the release shows that {seen} fell."
+    return f"Stated: drop of {', '.join(drop.wheels)}. Detected: drop of {seen}."
 
 
 def _channel(fault: Fault, drop: DropReport) -> str:
-    """Name the channel that a fault of a drop belongs to."""
+    """Return the channel of a fault of a drop."""
     return re.sub(rf"^{re.escape(drop.file)}(: )?", "", fault.where)

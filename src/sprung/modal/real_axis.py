@@ -1,7 +1,7 @@
-"""Where two poles meet on the real axis: a pair that became two real poles, or two real poles a pair.
+"""Alternatives across the real axis: two real poles for a conjugate pair, and a pair for real poles.
 
-A step along the likelihood cannot cross there, as a pole and its conjugate meet with one shape. What lies on the other side is
-tried instead.
+A step of the optimiser cannot cross the real axis, as a pole and its conjugate meet there with one shape. Models on the other
+side are tried as separate starts.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ _NEAR = 2.0
 """Ratio of two real poles up to which a pair may be as likely."""
 
 _APART = 0.3
-"""How far apart the poles are put that take the place of others, as a part of their size."""
+"""Distance of the new poles, as a part of their size."""
 
 
-def alternatives(poles: Poles) -> Iterator[Poles]:
-    """Give poles on the other side of the real axis's meeting points.
+def real_axis_alternatives(poles: Poles) -> Iterator[Poles]:
+    """Yield models with a pair replaced by real poles, or real poles by a pair.
 
     Parameters
     ----------
@@ -42,16 +42,16 @@ def alternatives(poles: Poles) -> Iterator[Poles]:
         if pole.imag < _NEARLY_REAL * abs(pole.real):
             two = abs(pole) * np.array([-1 - _APART, -1 + _APART], dtype=complex)
             turned = shape.real + shape.imag * np.array([[1.0], [-1.0]])
-            yield poles.without(j).beside(Poles.of(two.astype(np.complex128), turned.T.astype(np.complex128)))
+            yield poles.without(j).joined_with(Poles.of(two.astype(np.complex128), turned.T.astype(np.complex128)))
     for place, i in enumerate(real.tolist()):
         rest = poles.without(i)
         for j in real[place + 1 :].tolist():
             one, other = poles.exponent[i].real, poles.exponent[j].real
             if 1 / _NEAR < one / other < _NEAR:
                 shape = poles.shapes[:, i] + 1j * poles.shapes[:, j]
-                yield rest.without(j - 1).beside(_pair(-float(np.sqrt(one * other)), shape))
+                yield rest.without(j - 1).joined_with(_pair(-float(np.sqrt(one * other)), shape))
         if poles.exponent[i].real < 0:
-            yield rest.beside(_pair(float(poles.exponent[i].real), poles.shapes[:, i]))
+            yield rest.joined_with(_pair(float(poles.exponent[i].real), poles.shapes[:, i]))
 
 
 def _pair(size: float, shape: np.ndarray[tuple[int], np.dtype[np.complex128]]) -> Poles:

@@ -1,0 +1,302 @@
+"""Campaign files and vehicle files, and the recordings that they name: every fault of all of them at once."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
+from sprung.campaign.checks import check, find_wrong_unit
+from sprung.campaign.completeness import find_missing_entries
+from sprung.campaign.drop import Drop, DropTest, unique_recording_names
+from sprung.campaign.drop_recording import assemble_recording, qualify_channels
+from sprung.campaign.parsing import ParsedFile, parse_document
+from sprung.campaign.schema import CampaignFile, VehicleFileSchema
+from sprung.campaign.signals import find_column
+from sprung.campaign.source_file import SourceFile
+from sprung.campaign.toml_document import read_toml
+from sprung.display import shown
+from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
+from sprung.formats import SampleTable, Signals, from_sep005, read_table
+from sprung.progress import Progress, counted
+from sprung.units import split_unit
+from sprung.vehicle import EMPTY, Load, Sensor, Vehicle
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from sprung.campaign.recording import Recording
+    from sprung.uncertainty import KnownValue
+
+
+@shown
+@dataclass(frozen=True, eq=False)
+class VehicleFile:
+    """What a vehicle file says: a vehicle to simulate, and the campaign to simulate with it.
+
+    Attributes
+    ----------
+    vehicle
+        Its parameters.
+    sensors, loads, drops
+        As in a `Campaign`; the drops have no recordings.
+    wheelbase, wheel_height, roll_axis_height, known, model, identification, test
+        As in a `Campaign`: what the simulated campaign may say about itself.
+    path
+        Where the file is.
+    """
+
+    vehicle: Vehicle
+    sensors: tuple[Sensor, ...]
+    loads: tuple[Load, ...]
+    drops: tuple[Drop, ...]
+    wheelbase: KnownValue | None = None
+    wheel_height: float | None = None
+    roll_axis_height: float | None = None
+    known: Mapping[str, KnownValue] = field(default_factory=dict)
+    model: ModelChoice = field(default_factory=ModelChoice)
+    path: Path | None = None
+    identification: str | None = None
+    test: TestRecord = field(default_factory=TestRecord)
+
+    @property
+    def all_known(self) -> dict[str, KnownValue]:
+        """What is known beforehand, the wheelbase included where the file gives it."""
+        return dict(self.known) if self.wheelbase is None else {**self.known, "wheelbase": self.wheelbase}
+
+
+def read_campaign(
+    document: Mapping[str, Any], path: Path, signals: Signals, complete: bool, progress: Progress
+) -> Campaign:
+    """Read the recordings of a campaign file; see `sprung.campaign.read_document`."""
+    problems, unread = Problems(), Problems()
+    of_recordings = problems if complete else unread
+    parsed = parse_document(CampaignFile, document, path.name, problems)
+    missing = tuple(find_missing_entries(parsed))
+    if complete:
+        for one in missing:
+            if one.needed:
+                problems.add(*astuple(one.problem))
+    check(parsed, problems)
+    files = _files(parsed, problems)
+    tables = _tables(files, path.parent, signals, of_recordings, progress)
+    _check_signals(parsed, files, signals, problems)
+    _check_channels(parsed, tables, problems)
+    _check_starts_and_ends(parsed, tables, problems)
+    sensors = qualify_channels(parsed.file.sensor)
+    drops = _recorded(parsed, sensors, tables, of_recordings, progress)
+    problems.raise_if_any()
+    if not drops:
+        unread.raise_if_any()
+    _refuse_unusable([drop.recording for drop in drops.values()])
+    vehicle = parsed.file.vehicle
+    return Campaign(
+        name=vehicle.name or _printable(path.absolute().parent.name),
+        sensors=sensors,
+        drops=tuple(drops.values()),
+        loads=_loads(parsed.file),
+        wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
+        cg_height=vehicle.cg_height,
+        wheel_height=vehicle.wheel_height,
+        roll_axis_height=vehicle.roll_axis_height,
+        known={name: measured.known for name, measured in parsed.file.known.items()},
+        model=parsed.file.model,
+        faults=tuple(_unread_fault(problem) for problem in unread),
+        path=path,
+        files=_sources(files, path, signals),
+        missing=missing,
+        unread=tuple(
+            drop for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True) if index not in drops
+        ),
+        identification=vehicle.identification,
+        test=parsed.file.test,
+    )
+
+
+def read_vehicle_file(path: Path) -> VehicleFile:
+    """Read a vehicle file; see `sprung.campaign.read_vehicle`."""
+    problems = Problems()
+    parsed = parse_document(VehicleFileSchema, read_toml(path), path.name, problems)
+    for one in find_missing_entries(parsed):
+        if one.needed:
+            problems.add(*astuple(one.problem))
+    check(parsed, problems)
+    section = parsed.file.vehicle
+    name = section.name or path.stem
+    vehicle = _vehicle(parsed, name, problems)
+    problems.raise_if_any()
+    assert vehicle is not None  # noqa: S101 (its problems were raised; for the type checker)
+    return VehicleFile(
+        vehicle=vehicle,
+        sensors=parsed.file.sensor,
+        loads=_loads(parsed.file),
+        drops=parsed.file.drop,
+        wheelbase=section.wheelbase.known if section.wheelbase else None,
+        wheel_height=section.wheel_height,
+        roll_axis_height=section.roll_axis_height,
+        known={name: measured.known for name, measured in parsed.file.known.items()},
+        model=parsed.file.model,
+        path=path,
+        identification=section.identification,
+        test=parsed.file.test,
+    )
+
+
+def _vehicle(parsed: ParsedFile[VehicleFileSchema], name: str, problems: Problems) -> Vehicle | None:
+    """Return the vehicle of a file; None, with the problems noted, where it is invalid."""
+    if ("parameters",) in parsed.lost:
+        return None
+    # What was written but not understood is a problem already: it must not be called missing as well.
+    held = {str(place[1]): 1.0 for place in parsed.lost if place[0] == "parameters"}
+    parameters = {**held, **parsed.file.parameters}
+    try:
+        return Vehicle.from_parameters(parameters, name=name, **parsed.file.vehicle.heights.by_key)
+    except InputError as error:
+        for problem in error.problems:
+            where = problem.where.replace(f"vehicle {name}: ", f"{parsed.name}: parameters.")
+            where = where.replace(f"vehicle {name}", f"{parsed.name}: parameters")
+            problems.add(where, problem.found, problem.expected, problem.do)
+    return None
+
+
+def _loads(file: CampaignFile) -> tuple[Load, ...]:
+    return (EMPTY, *(load for load in file.load if load.name != EMPTY.name))
+
+
+def _files(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[int, tuple[str, ...]]:
+    """Return the names of the recordings by the drop's index in the file, also of drops with other faults."""
+    written = [] if ("drop",) in parsed.lost else parsed.document.get("drop", [])
+    entries = {index: entry for index, entry in enumerate(written) if isinstance(entry, dict)}
+    either = {index: entry.get("files") or [entry.get("file")] for index, entry in entries.items()}
+    files = {index: names for index, names in either.items() if names != [None]}
+    for index in parsed.numbered("drop"):
+        if index not in files:
+            where = parsed.where("drop", index, "file")
+            problems.add(where, "nothing", "the name of its recording", 'Add file = "..." to it.')
+    return {
+        index: tuple(names)
+        for index, names in files.items()
+        if isinstance(names, list) and all(isinstance(name, str) for name in names)
+    }
+
+
+def _tables(
+    files: Mapping[int, Sequence[str]], folder: Path, signals: Signals, problems: Problems, progress: Progress
+) -> dict[int, dict[str, SampleTable]]:
+    """Read every recording that can be read, each once; by the drop's index and the recording's name."""
+    others = {Path(file).name for names in files.values() for file in names}
+    read_already: dict[str, SampleTable] = {}
+    each = tuple(dict.fromkeys(file for names in files.values() for file in names))
+    for file in counted(progress, "reading the recordings", each):
+        try:
+            read_already[file] = (
+                from_sep005(signals[file], Path(file).name) if file in signals else read_table(folder / file, others)
+            )
+        except InputError as error:
+            for problem in error.problems:
+                where = problem.where.replace(Path(file).name, file, 1)
+                problems.add(where, problem.found, problem.expected, problem.do)
+    # A drop of which one file is lost has a problem already: its others are not asked for what that one has.
+    return {
+        index: {file: read_already[file] for file in names}
+        for index, names in files.items()
+        if all(file in read_already for file in names)
+    }
+
+
+def _sources(files: Mapping[int, Sequence[str]], path: Path, signals: Signals) -> tuple[SourceFile, ...]:
+    """Return the checksums of all files that were read, each once."""
+    recordings = dict.fromkeys(file for names in files.values() for file in names if file not in signals)
+    names = (path.name, *recordings)
+    return tuple(SourceFile.of(path.parent, name) for name in names if (path.parent / name).is_file())
+
+
+def _unread_fault(problem: Problem) -> Fault:
+    """Return the fault of a recording that cannot be read."""
+    what = f"{problem.found}, where {problem.expected} is expected; the recording is left out"
+    return Fault("unreadable", problem.where, what, problem.do)
+
+
+def _check_signals(
+    parsed: ParsedFile[CampaignFile], files: Mapping[int, Sequence[str]], signals: Signals, problems: Problems
+) -> None:
+    """Add a problem for every given signal that no drop uses."""
+    wanted = {file for names in files.values() for file in names}
+    for name in signals:
+        if name not in wanted and parsed.complete("drop"):
+            do = did_you_mean(name, wanted - set(signals)).replace("Allowed:", "Without signals:")
+            problems.add("signals", f"'{name}', which no drop has", "the name of a drop's recording", do)
+
+
+def _check_channels(
+    parsed: ParsedFile[CampaignFile], tables: Mapping[int, Mapping[str, SampleTable]], problems: Problems
+) -> None:
+    """Add a problem for every sensor that is in no recording."""
+    whole = [table for of_drop in tables.values() for table in of_drop.values()]
+    columns = sorted({name for table in whole for name in table.channels})
+    sensors = tuple(zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True))
+    unclaimed = set(columns) - {split_unit(sensor.channel)[0] for _, sensor in sensors}
+    for index, sensor in sensors:
+        if whole and not any(find_column(table, sensor.channel) for table in whole):
+            where = parsed.where("sensor", index, "channel")
+            expected = "the name of a column of the recordings"
+            problems.add(
+                where,
+                f"'{sensor.channel}', which no recording has",
+                expected,
+                did_you_mean(sensor.channel, unclaimed or columns).replace("Allowed:", "They have:"),
+            )
+
+
+def _recorded(
+    parsed: ParsedFile[CampaignFile],
+    sensors: Sequence[Sensor],
+    tables: Mapping[int, Mapping[str, SampleTable]],
+    problems: Problems,
+    progress: Progress,
+) -> dict[int, DropTest]:
+    """Return every drop whose files could be read, with its recording; by the drop's index."""
+    pairs = [
+        (written, named)
+        for written, named in zip(parsed.file.sensor, sensors, strict=True)
+        if find_wrong_unit(written) is None
+    ]
+    understood = dict(zip(parsed.numbered("drop"), parsed.file.drop, strict=True))
+    drops = [understood.get(index) or Drop(file=next(iter(of_drop))) for index, of_drop in tables.items()]
+    recorded: dict[int, DropTest] = {}
+    names = counted(progress, "checking the clocks and units of the recordings", tuple(unique_recording_names(drops)))
+    for (index, of_drop), drop, name in zip(tables.items(), drops, names, strict=True):
+        with problems.collect():
+            recorded[index] = drop.with_recording(assemble_recording(of_drop, pairs, drop, name))
+    return recorded
+
+
+def _check_starts_and_ends(
+    parsed: ParsedFile[CampaignFile], tables: Mapping[int, Mapping[str, SampleTable]], problems: Problems
+) -> None:
+    for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True):
+        time = next(iter(tables[index].values())).time if index in tables else np.empty(0)
+        window = drop.window or (None, None)
+        for key, value in (("start", drop.start), ("end", drop.end), ("window", window[0]), ("window", window[1])):
+            if value is not None and len(time) > 1 and not time.min() <= value <= time.max():
+                expected = f"a time within the recording, {time.min():.6g} to {time.max():.6g} s on its own clock"
+                do = f"Correct {key}, or leave it out."
+                problems.add(parsed.where("drop", index, key), f"{value:g} s", expected, do)
+
+
+def _printable(name: str) -> str:
+    """Replace what a file system allows in names and UTF-8 does not."""
+    return name.encode("utf-8", errors="replace").decode()
+
+
+def _refuse_unusable(recordings: Sequence[Recording]) -> None:
+    if any(recording.usable.any() for recording in recordings):
+        return
+    raise InputError(
+        Problem(fault.where, fault.what, "something usable in at least one drop", fault.do)
+        for recording in recordings
+        for fault in recording.faults
+    )
