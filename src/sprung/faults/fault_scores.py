@@ -120,7 +120,7 @@ def score_faults(
 
 
 def _estimate(score: float, left: float, max_parameter_shift: float) -> tuple[float, float, float]:
-    """Give value, standard uncertainty and max_parameter_shift, from the score and the information that the parameters leave."""
+    """Return value, standard uncertainty and shift, from the score and its information beside the parameters."""
     return score / left, left**-0.5, max_parameter_shift * left**-0.5
 
 
