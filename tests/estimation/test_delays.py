@@ -11,7 +11,8 @@ from scipy.optimize import minimize
 
 from sprung.campaign import LoggerClock
 from sprung.estimation import FitResult, fit_linear, uncertainty_of
-from sprung.estimation.closed_form import Likelihood
+from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.objective import HasClockDelays
 from sprung.preprocess import FlightLikelihood, FreeDecay, prepare
 from sprung.simulation import free_decays
 from sprung.vehicle import TABLE_1_CAR, Load, Rows, parse_record
@@ -50,13 +51,13 @@ def decays(**what: float) -> list[FreeDecay]:
     return [replace(decay, clocks=clocks(**what)) for decay in prepare(CAMPAIGN).decays]
 
 
-def likelihood(those: list[FreeDecay]) -> Likelihood:
-    return Likelihood(those, MODELS, ROWS)
+def likelihood(those: list[FreeDecay]) -> ClosedFormObjective:
+    return ClosedFormObjective(those, MODELS, ROWS)
 
 
-def cost(fit: Likelihood, values: Real) -> float:
-    residual, penalty = fit.at(values).misfit(WEIGHTS)
-    return float((residual @ WEIGHTS).sum() + penalty)
+def cost(fit: ClosedFormObjective, values: Real) -> float:
+    at = fit.at(values, WEIGHTS)
+    return float((at.residual_sums @ WEIGHTS).sum() + at.penalty)
 
 
 APART = (*NAMES[:-2], "t_f1", "t_f2", "t_r1", "t_r2")
@@ -78,7 +79,7 @@ def test_what_flights_tell_adds_to_cost_gradient_and_information() -> None:
     values, at = TRUTH * np.linspace(0.97, 1.05, 15), TRUTH * 1.01
     with_flights = flown(decays(), at)
     plain, told = likelihood(decays()), likelihood(with_flights)
-    before, after = (fit.at(values).evaluate(WEIGHTS) for fit in (plain, told))
+    before, after = (fit.at(values, WEIGHTS) for fit in (plain, told))
     flights = [one.flight for one in with_flights if one.flight is not None]
     missed = sum(flight.chi_square_at(values @ ONTO) for flight in flights)
     assert cost(told, values) - cost(plain, values) == pytest.approx(missed, rel=1e-9)
@@ -94,7 +95,7 @@ def test_what_flights_tell_adds_to_cost_gradient_and_information() -> None:
 @pytest.mark.parametrize("follows", [0.0, 2e-7])
 def test_gradient_is_the_slope_of_the_cost(follows: float) -> None:
     fit, values = likelihood(decays(late=0.0007, std=0.0005, follows=follows)), TRUTH * np.linspace(0.95, 1.08, 15)
-    gradient = fit.at(values).evaluate(WEIGHTS).gradient
+    gradient = fit.at(values, WEIGHTS).gradient
     for i, value in enumerate(values):
         step = np.zeros(15)
         step[i] = 1e-5 * value
@@ -109,7 +110,7 @@ def test_information_is_half_the_curvature_of_the_cost_at_the_truth(follows: flo
     fit = likelihood(
         [replace(d, clocks=clocks(late=at_truth, std=0.0005, follows=follows)) for d in prepare(QUIET).decays]
     )
-    information = fit.at(TRUTH).evaluate(WEIGHTS).information
+    information = fit.at(TRUTH, WEIGHTS).information
     random = np.random.default_rng(1)
     for _ in range(4):
         direction = TRUTH * random.standard_normal(15)
@@ -121,11 +122,13 @@ def test_information_is_half_the_curvature_of_the_cost_at_the_truth(follows: flo
 def test_delays_are_where_brute_force_finds_them() -> None:
     those = decays()
     values = TRUTH * 1.002
-    found = likelihood(those).at(values).delays(WEIGHTS, np.zeros((15, 15)))[0]
+    likeliest = likelihood(those).at(values, WEIGHTS)
+    assert isinstance(likeliest, HasClockDelays)
+    found = likeliest.clock_delays(np.zeros((15, 15)))[0]
 
     def at(late: Real) -> float:
         told = [replace(clock, delay=float(one), delay_std=1e-9) for clock, one in zip(clocks(), late, strict=True)]
-        residual, _ = likelihood([replace(those[0], clocks=tuple(told))]).at(values).misfit(WEIGHTS)
+        residual = likelihood([replace(those[0], clocks=tuple(told))]).at(values, WEIGHTS).residual_sums
         return float((residual @ WEIGHTS).sum() + np.sum((late / 0.05) ** 2))
 
     def scaled(late: NDArray[np.float64]) -> float:
@@ -140,8 +143,8 @@ def test_delays_are_where_brute_force_finds_them() -> None:
 def test_one_clock_for_all_is_the_fit_without_loggers() -> None:
     together = [replace(decay, clocks=()) for decay in decays()]
     certain = [replace(decay, clocks=clocks(std=1e-12)) for decay in together]
-    plain, bound = (likelihood(those).at(TRUTH * 1.01).evaluate(WEIGHTS) for those in (together, certain))
-    np.testing.assert_allclose(bound.residual, plain.residual, rtol=1e-9)
+    plain, bound = (likelihood(those).at(TRUTH * 1.01, WEIGHTS) for those in (together, certain))
+    np.testing.assert_allclose(bound.residual_sums, plain.residual_sums, rtol=1e-9)
     np.testing.assert_allclose(bound.gradient, plain.gradient, rtol=1e-6, atol=1e-6 * np.abs(plain.gradient).max())
     np.testing.assert_allclose(bound.information, plain.information, rtol=1e-6, atol=1e-6 * plain.information.max())
 
@@ -149,7 +152,7 @@ def test_one_clock_for_all_is_the_fit_without_loggers() -> None:
 def test_unknown_delays_only_take_information_away() -> None:
     together = prepare(QUIET).decays
     apart = [replace(decay, clocks=clocks()) for decay in together]
-    plain, free = (likelihood(list(those)).at(TRUTH).evaluate(WEIGHTS).information for those in (together, apart))
+    plain, free = (likelihood(list(those)).at(TRUTH, WEIGHTS).information for those in (together, apart))
     scale = np.sqrt(np.diag(plain))
     lost = np.linalg.eigvalsh((plain - free) / np.outer(scale, scale))
     assert lost.min() > -1e-9

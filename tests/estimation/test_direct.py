@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.records import Records
+from sprung.estimation.records import batch_records
 from sprung.estimation.starts import VehicleSize
 from sprung.preprocess import prepare
 from sprung.simulation import simulate
@@ -37,10 +37,11 @@ def start(
     vehicle: Vehicle, load: Load | None, noise: float = 0.0, known: dict[str, KnownValue] | None = None
 ) -> dict[str, float] | None:
     campaign = simulate(vehicle, loads=[] if load is None else [load], noise=noise, seed=1, rate=500, duration=3.2)
-    records = Records.of(prepare(campaign).decays)
-    models = [vehicle.model(campaign.load(name)) for name in records.loads]
+    decays = prepare(campaign).decays
+    models = [vehicle.model(campaign.load(name)) for name in sorted({decay.load for decay in decays})]
     given = {"wheelbase": KnownValue(vehicle.wheelbase, 0.0)} | (known or {})
-    return modulating_function_estimate(records.runs, models, campaign.sensors, VehicleSize.of(given, campaign.sensors))
+    size = VehicleSize.of(given, campaign.sensors)
+    return modulating_function_estimate(batch_records(decays), models, campaign.sensors, size)
 
 
 def errors(found: dict[str, float] | None, vehicle: Vehicle) -> dict[str, float]:
@@ -74,10 +75,9 @@ def test_it_says_when_it_cannot() -> None:
     """Four sensors do not see seven coordinates."""
     campaign = simulate(TABLE_1_CAR, noise=0.02, seed=1)
     blind = np.array([0.0] * 4 + [np.nan] * 4)[:, None]
-    records = Records.of([replace(decay, values=decay.values + blind) for decay in prepare(campaign).decays])
-    models = [TABLE_1_CAR.model() for _ in records.loads]
+    batches = batch_records([replace(decay, values=decay.values + blind) for decay in prepare(campaign).decays])
     outline = VehicleSize.of({"wheelbase": KnownValue(TABLE_1_CAR.wheelbase, 0.0)}, campaign.sensors)
-    assert modulating_function_estimate(records.runs, models, campaign.sensors, outline) is None
+    assert modulating_function_estimate(batches, [TABLE_1_CAR.model()], campaign.sensors, outline) is None
 
 
 @settings(max_examples=20, deadline=None)

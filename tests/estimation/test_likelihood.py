@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import Likelihood
-from sprung.estimation.expm_likelihood import evaluate_drop
-from sprung.estimation.solution import differentiate_modes, solve_modes
+from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.matrix_exponential import MatrixExponentialAt
+from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, parse_record
@@ -24,18 +24,18 @@ LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (
 HEAVY = 1e8
 
 
-def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[Likelihood, Real, list[Real], list[str]]:
+def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[ClosedFormObjective, Real, list[Real], list[str]]:
     campaign = free_decays(vehicle, loads=[LOAD], states=2, noise=noise, seed=3, duration=1.5, rate=200)
     decays = prepare(campaign).decays
     names = tuple(vehicle.parameters)
     models = {load.name: vehicle.model(load) for load in campaign.loads}
     sensors = Rows.of([sensor.row for sensor in campaign.sensors], names)
-    likelihood = Likelihood(decays, models, sensors)
+    likelihood = ClosedFormObjective(decays, models, sensors)
     values = np.array(list(vehicle.parameters.values()))
     return likelihood, values, [decay.values for decay in decays], [decay.load for decay in decays]
 
 
-def basis(likelihood: Likelihood, values: Real, load: str, samples: int, rate: float = 200) -> Real:
+def basis(likelihood: ClosedFormObjective, values: Real, load: str, samples: int, rate: float = 200) -> Real:
     """Give every column that a free initial state and the offsets can make, channel after channel, from matrix exponentials."""
     matrices = likelihood.models[load].matrices(values)
     sensors = likelihood.sensors.at(values)
@@ -52,36 +52,36 @@ def test_residual_is_that_of_plain_least_squares(vehicle: Vehicle) -> None:
     likelihood, values, records, loads = likelihood_of(vehicle)
     values = values * 1.07
     weights = np.linspace(1.0, 2.0, 8) * HEAVY
-    found = likelihood.at(values).evaluate(weights)
-    for record, load, residual in zip(records, loads, found.residual, strict=True):
+    found = likelihood.at(values, weights)
+    for record, load, residual in zip(records, loads, found.residual_sums, strict=True):
         root = np.repeat(np.sqrt(weights), record.shape[1])
         columns = basis(likelihood, values, load, record.shape[1])
         coefficients = np.linalg.lstsq(columns * root[:, None], record.ravel() * root, rcond=None)[0]
         left = (record.ravel() - columns @ coefficients).reshape(record.shape)
         np.testing.assert_allclose(residual, np.sum(left**2, axis=1), rtol=1e-8)
-    np.testing.assert_allclose(likelihood.at(values).misfit(weights)[0], found.residual, rtol=1e-12)
+    np.testing.assert_allclose(likelihood.at(values, weights).residual_sums, found.residual_sums, rtol=1e-12)
 
 
 def test_gradient_is_the_slope_of_the_residual() -> None:
     likelihood, values, *_ = likelihood_of(TABLE_1_CAR)
     values = values * np.linspace(0.95, 1.08, len(values))
     weights = np.linspace(0.5, 1.0, 8) * HEAVY
-    gradient = likelihood.at(values).evaluate(weights).gradient
+    gradient = likelihood.at(values, weights).gradient
     for i, value in enumerate(values):
         step = 1e-5 * value
         up, down = values.copy(), values.copy()
         up[i] += step
         down[i] -= step
-        slope = np.sum((likelihood.at(up).misfit(weights)[0] - likelihood.at(down).misfit(weights)[0]) @ weights) / (
-            2 * step
-        )
+        slope = np.sum(
+            (likelihood.at(up, weights).residual_sums - likelihood.at(down, weights).residual_sums) @ weights
+        ) / (2 * step)
         assert gradient[i] == pytest.approx(-slope / 2, rel=1e-5, abs=1e-6 * abs(slope).max())
 
 
 def test_information_is_the_projected_jacobian_squared() -> None:
     likelihood, values, records, loads = likelihood_of(TABLE_1_CAR, noise=0.0)
     weights = np.full(8, HEAVY)
-    information = likelihood.at(values).evaluate(weights).information / HEAVY
+    information = likelihood.at(values, weights).information / HEAVY
     expected = np.zeros_like(information)
     for record, load in zip(records, loads, strict=True):
         columns = basis(likelihood, values, load, record.shape[1])
@@ -107,7 +107,7 @@ def test_poles_and_their_slopes() -> None:
     model = TABLE_1_CAR.model()
     sensors = Rows.of([], names)
     found = solve_modes(model, sensors, values)
-    slopes = differentiate_modes(model, sensors, values, found, 3.0)
+    poles_by_parameter, _ = differentiate_modes(model, sensors, values, found, 3.0)
     for i, value in enumerate(values):
         up, down = values.copy(), values.copy()
         up[i] += 1e-5 * value
@@ -115,7 +115,7 @@ def test_poles_and_their_slopes() -> None:
         poles = [np.linalg.eigvals(model.matrices(side).state) for side in (up, down)]
         nearest = [side[np.argmin(np.abs(side[:, None] - found.poles), axis=0)] for side in poles]
         numeric = (nearest[0] - nearest[1]) / (2e-5 * value)
-        np.testing.assert_allclose(slopes.poles[i] * value, numeric * value, atol=2e-5)
+        np.testing.assert_allclose(poles_by_parameter[i] * value, numeric * value, atol=2e-5)
 
 
 def test_repeated_poles_do_not_spoil_the_derivative() -> None:
@@ -130,15 +130,15 @@ def test_repeated_poles_do_not_spoil_the_derivative() -> None:
     likelihood, values, *_ = likelihood_of(symmetric)
     weights = np.full(8, HEAVY)
     start = values * 1.0
-    gradient = likelihood.at(start).evaluate(weights).gradient
+    gradient = likelihood.at(start, weights).gradient
     for i, value in enumerate(start):
         step = 2e-5 * value
         up, down = start.copy(), start.copy()
         up[i] += step
         down[i] -= step
-        slope = np.sum((likelihood.at(up).misfit(weights)[0] - likelihood.at(down).misfit(weights)[0]) @ weights) / (
-            2 * step
-        )
+        slope = np.sum(
+            (likelihood.at(up, weights).residual_sums - likelihood.at(down, weights).residual_sums) @ weights
+        ) / (2 * step)
         assert gradient[i] * value == pytest.approx(-slope / 2 * value, rel=1e-4, abs=1e-2)
 
 
@@ -163,44 +163,36 @@ def test_modes_that_meet_in_one_shape() -> None:
     assert np.linalg.cond(shapes) > 1e6  # this is what the test is about
     likelihood, values, records, loads = likelihood_of(vehicle, noise=0.02)
     weights = np.full(8, 1 / 0.02**2)
-    found = likelihood.at(values).evaluate(weights)
-    for record, load, residual in zip(records, loads, found.residual, strict=True):
+    found = likelihood.at(values, weights)
+    for record, load, residual in zip(records, loads, found.residual_sums, strict=True):
         columns = basis(likelihood, values, load, record.shape[1])
         left = record.ravel() - columns @ np.linalg.lstsq(columns, record.ravel(), rcond=None)[0]
         np.testing.assert_allclose(residual, np.sum(left.reshape(record.shape) ** 2, axis=1), rtol=1e-3)
     relative = found.information * np.outer(values, values)
     beside = values * (1 + 1e-3 * np.cos(np.arange(len(values))))  # where modal coordinates exist again
-    reference = likelihood.at(beside).evaluate(weights).information * np.outer(values, values)
+    reference = likelihood.at(beside, weights).information * np.outer(values, values)
     np.testing.assert_allclose(np.linalg.eigvalsh(relative), np.linalg.eigvalsh(reference), rtol=0.05)
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS])
-def test_both_ways_agree(vehicle: Vehicle) -> None:
-    """The modal way, in closed form, against matrix exponentials sample by sample."""
-    likelihood, values, records, loads = likelihood_of(vehicle)
+def test_modal_coordinates_and_matrix_exponentials_agree(vehicle: Vehicle) -> None:
+    likelihood, values, *_ = likelihood_of(vehicle)
     values, weights = values * np.linspace(0.97, 1.04, len(values)), np.linspace(0.5, 1.0, 8) * HEAVY
-    found = likelihood.at(values).evaluate(weights)
-    information = np.zeros_like(found.information)
-    gradients, informations = likelihood.at(values).by_drop(weights)
-    leverage = np.zeros_like(weights)
-    fitted = likelihood.at(values).fitted(weights)
-    states = likelihood.at(values).states(weights)
-    for drop, (whole, load) in enumerate(zip(records, loads, strict=True)):
-        record = whole - whole.mean(axis=1, keepdims=True)
-        model = likelihood.models[load]
-        one = evaluate_drop(model, likelihood.sensors, values, record, 200.0, weights)
-        np.testing.assert_allclose(found.residual[drop], one.residual, rtol=1e-9)
-        np.testing.assert_allclose(gradients[drop] * values, one.gradient * values, rtol=1e-7, atol=1e-3)
-        size = np.sqrt(np.diag(one.information))
-        relative = (informations[drop] - one.information) / np.outer(size, size)
-        np.testing.assert_allclose(relative, 0.0, atol=1e-9)
-        leverage += one.leverage
-        np.testing.assert_allclose(fitted[drop], one.fitted, atol=1e-9)
-        np.testing.assert_allclose(states[drop], one.state, atol=1e-9)
-        information += one.information
-    np.testing.assert_allclose(found.leverage, leverage, rtol=1e-6)
+    found = likelihood.at(values, weights)
+    gradients, informations = found.by_drop
+    reference = MatrixExponentialAt(likelihood, likelihood.models, likelihood.sensors, values, weights)
+    np.testing.assert_allclose(found.residual_sums, reference.residual_sums, rtol=1e-9)
+    np.testing.assert_allclose(gradients * values, reference.by_drop[0] * values, rtol=1e-7, atol=1e-3)
+    for own, other in zip(informations, reference.by_drop[1], strict=True):
+        size = np.sqrt(np.diag(other))
+        np.testing.assert_allclose((own - other) / np.outer(size, size), 0.0, atol=1e-9)
+    np.testing.assert_allclose(found.fitted, reference.fitted, atol=1e-9)
+    np.testing.assert_allclose(found.states, reference.states, atol=1e-9)
+    np.testing.assert_allclose(found.leverage, reference.leverage, rtol=1e-6)
+    np.testing.assert_allclose(found.motion(1, 20, 50), reference.motion(1, 20, 50), atol=1e-7)
     np.testing.assert_allclose(found.gradient, gradients.sum(axis=0), rtol=1e-9, atol=1e-9 * np.abs(gradients).max())
-    scale = np.sqrt(np.diag(information))
-    np.testing.assert_allclose(
-        found.information / np.outer(scale, scale), information / np.outer(scale, scale), atol=1e-9
-    )
+    scale = np.sqrt(np.diag(reference.information))
+    difference = (found.information - reference.information) / np.outer(scale, scale)
+    np.testing.assert_allclose(difference, 0.0, atol=1e-9)
+    moved = reference.moved(values * 1.01).of_drop(1)
+    np.testing.assert_allclose(moved.residual_sums, found.moved(values * 1.01).of_drop(1).residual_sums, rtol=1e-9)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.campaign import Campaign
-from sprung.estimation import FitResult, Likelihood, Prediction, fit_linear, predictions
+from sprung.estimation import ClosedFormObjective, FitResult, Prediction, fit_linear, predictions
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import choose_structure
 from sprung.vehicle import TABLE_1_CAR, Rows
@@ -39,8 +39,8 @@ def predicted_by_a_fit(made: Campaign, position: int, weights: NDArray[np.float6
     """The sum of squares of one drop at the end of a fit to all others."""
     others, decays = fitted(made, without=position)
     rows = Rows.of([sensor.row for sensor in made.sensors], others.names)
-    alone = Likelihood([decays[position]], choose_structure(made).linear_models, rows).at(others.values)
-    return float(alone.misfit(weights)[0][0] @ weights)
+    alone = ClosedFormObjective([decays[position]], choose_structure(made).linear_models, rows)
+    return float(alone.at(others.values, weights).residual_sums[0] @ weights)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def predicted_by_a_fit(made: Campaign, position: int, weights: NDArray[np.float6
 def test_one_step_predicts_what_a_fit_without_the_drop_does(position: int, changed: dict[str, float]) -> None:
     made = odd_one_out(**changed)
     optimum, _ = fitted(made)
-    found, weights = predictions(optimum)[position], optimum.point.weights
+    found, weights = predictions(optimum)[position], optimum.weights
     # The noise levels of the fit without the drop are not quite the same, and the step is of second order.
     grown = predicted_by_a_fit(made, position, weights) - found.fitted
     assert found.squares - found.fitted == pytest.approx(grown, rel=0.1, abs=0.5)

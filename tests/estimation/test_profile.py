@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from sprung.campaign import Campaign
-from sprung.estimation import FitResult, FitStatistics, Likelihood, estimate_of, fit_linear, profiled, uncertainty_of
+from sprung.estimation import FitResult, FitStatistics, estimate_of, fit_linear, profiled, uncertainty_of
+from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
 from sprung.uncertainty import Estimate, KnownValue
@@ -72,7 +73,8 @@ class LongWay:
     def __init__(self, campaign: Campaign) -> None:
         decays = prepare(campaign).decays
         models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
-        self.likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in campaign.sensors], NAMES))
+        rows = Rows.of([sensor.row for sensor in campaign.sensors], NAMES)
+        self.objective = ClosedFormObjective(decays, models, rows)
         self.free = [name for name in NAMES if name not in ("m_s", "b", "t_f")]
         self.samples = len(decays) * decays[0].samples
 
@@ -82,10 +84,10 @@ class LongWay:
         values["b"] = TABLE_1_CAR.wheelbase - values["a"]
         if min(values["m_s"], values["b"]) <= 0:
             return 1e6
-        place = self.likelihood.at(np.array([values[name] for name in NAMES]))
+        point = np.array([values[name] for name in NAMES])
         variance = np.ones(8)
         for _ in range(4):  # noise levels and initial states in turn
-            variance = place.misfit(1 / variance)[0].sum(axis=0) / self.samples
+            variance = self.objective.at(point, 1 / variance).residual_sums.sum(axis=0) / self.samples
         return float(self.samples * np.log(variance).sum())
 
     def whole(self, logarithms: Real) -> float:

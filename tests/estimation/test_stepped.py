@@ -18,7 +18,7 @@ from sprung.estimation import (
     score_stepped_terms,
     wald_test,
 )
-from sprung.estimation.time_stepping import SteppedLikelihood
+from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Rows, Vehicle
@@ -65,7 +65,7 @@ def test_with_nothing_to_step_it_is_the_linear_likelihood(
         assert found.parameters[name] == pytest.approx(value, rel=2e-5)
     np.testing.assert_allclose(found.noise, optimum.noise, rtol=1e-4)
     count = len(optimum.names)
-    own, other = (one.point.evaluation.information for one in (optimum, found))
+    own, other = (one.iterate.at.information for one in (optimum, found))
     scale = np.sqrt(np.outer(np.diag(own), np.diag(own)))
     np.testing.assert_allclose(other[:count, :count] / scale, own / scale, atol=2e-3)
 
@@ -143,15 +143,17 @@ def test_a_friction_that_went_astray_begins_anew_without_a_jolt(
     )
     rows = Rows.of([sensor.row for sensor in campaign.sensors], larger.names)
     states = np.hstack([optimum.states, np.tile([1.0, 0.3, -1.4, 1.3], (len(decays), 1))])
-    likelihood = SteppedLikelihood.of(decays, larger.nonlinear_models, rows, states, False, 0.002)
-    anew = likelihood.at(values).believable()
+    objective = TimeSteppingObjective(decays, larger.nonlinear_models, rows, states, False, 0.002)
+    weights = np.ones(8)
+    anew = objective.without_impossible_memories(values, objective.at(values, weights).states)
     assert anew is not None
     np.testing.assert_array_equal(anew[:, 14:], np.tile([1.0, 0.3, 0.0, 0.0], (len(decays), 1)))
     np.testing.assert_array_equal(anew[:, 7:14], states[:, 7:14])
     assert np.all(np.abs(anew[:, :7] - states[:, :7]).max(axis=1) > 1e-3)
-    begun = [one.at(values).motion(np.ones(8), 0, 0, 1) for one in (likelihood, likelihood.beginning(anew))]
+    restarted = objective.with_states(anew)
+    begun = [one.at(values, weights).motion(0, 0, 1) for one in (objective, restarted)]
     model, forces = larger.nonlinear_models["empty"], np.array([30.0, 30.0, 80.0, 80.0])
     matrices, G = model.linear.matrices(values), model.forces.rows.at(values)
     pulls = [matrices.K @ one[:7, 0] + matrices.C @ one[7:14, 0] + G.T @ (forces * one[14:, 0]) for one in begun]
     np.testing.assert_allclose(pulls[1], pulls[0], rtol=1e-9, atol=1e-6)
-    assert likelihood.beginning(anew).at(values).believable() is None
+    assert restarted.without_impossible_memories(values, restarted.at(values, weights).states) is None

@@ -186,7 +186,7 @@ REFUSED = {
     "thousands": ("time;a\n0,002;1.234,5\n0,004;3\n", "without thousands separators, with ','"),
     "two marks": ("time;a\n0.002;1,234\n0.004;3.5\n", "without thousands separators, with '.'"),
     "no names": ("Fs=500\n1;2\n3;4\n", "found numbers without names above them"),
-    "false mark": (b"\xff\xfea", "marked as UTF-16 that is none"),
+    "false mark": (b"\xff\xfea", "marked as UTF-16 with invalid text"),
     "too few names": ("Logger 7\nx;y;z\nt;a\n0;1;2\n", "line 4: found 3 cells; expected 2"),
 }
 

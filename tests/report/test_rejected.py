@@ -77,7 +77,7 @@ def test_results_json_says_so_as_the_contract_has_it(rejected: Result) -> None:
 
 def test_it_is_compared_and_drawn_without(sound: Result, rejected: Result) -> None:
     found = sprung.compare([sound, rejected], names=["one", "other"])
-    assert all(row.told[1].value is None for rows in (found.parameters, found.modes) for row in rows.values())
+    assert all(row.values[1].value is None for rows in (found.parameters, found.modes) for row in rows.values())
     for draw in (sprung.plot.correlation, sprung.plot.amplitude):
         with pytest.raises(InputError):
             draw(rejected)

@@ -131,10 +131,10 @@ def test_of_one_parameter_the_joint_chance_is_its_own(same: list[sprung.Result])
 def test_without_scale_parts_of_the_total_mass_are_compared(same: list[sprung.Result]) -> None:
     found = sprung.compare([same[0], identified(WORN, 101, weighed=False)], names=["weighed", "not"])
     assert found.per_total_mass
-    assert any("scale is not known of not" in note for note in found.notes)
+    assert any("scale of not is not known" in note for note in found.notes)
     row = found.parameters["c_sf / total mass"]
     assert row.unit == "1/s"
-    assert row.told[0].value == pytest.approx(1500 / TABLE_1_CAR.total_mass, rel=0.02)
+    assert row.values[0].value == pytest.approx(1500 / TABLE_1_CAR.total_mass, rel=0.02)
     assert row.differences[0].finding == "certain"
     assert found.parameters["a"].differences[0].finding == "none"  # lengths need no scale
 
@@ -142,7 +142,7 @@ def test_without_scale_parts_of_the_total_mass_are_compared(same: list[sprung.Re
 def test_numbers_of_a_rejected_result_are_not_shown(same: list[sprung.Result], rejected: sprung.Result) -> None:
     found = sprung.compare([same[0], rejected], names=["car", "bus"])
     assert found.rejected == ("bus",)
-    assert all(row.told[1].value is None for row in (*found.parameters.values(), *found.modes.values()))
+    assert all(row.values[1].value is None for row in (*found.parameters.values(), *found.modes.values()))
     assert {row.differences[0].finding for row in found.parameters.values()} == {"not comparable"}
     assert {row.differences[0].why for row in found.parameters.values()} == {"bus was rejected"}
     assert found.joint == (None,)
@@ -152,7 +152,7 @@ def test_numbers_of_a_rejected_result_are_not_shown(same: list[sprung.Result], r
 
 def test_another_model_is_named(same: list[sprung.Result]) -> None:
     found = sprung.compare([same[0], identified(TABLE_1_CAR, 50, tracks="separate", extras=["anti-roll"])])
-    assert any("other models" in note and "anti-roll" in note for note in found.notes)
+    assert any("different models" in note and "anti-roll" in note for note in found.notes)
     assert found.parameters["k_af"].differences[0].why == "Table 1 car (1) has another model"
     assert found.parameters["k_sf"].differences[0].p is not None
 
@@ -174,7 +174,7 @@ def test_what_was_known_in_both_is_given(same: list[sprung.Result]) -> None:
 def test_about_other_axes_inertias_are_not_compared(same: list[sprung.Result]) -> None:
     other = replace(same[1], fit=replace(same[1].fit, axes="about something else"))
     found = sprung.compare([same[0], other])
-    assert "other axes" in found.parameters["I_xx"].differences[0].why
+    assert "different axes" in found.parameters["I_xx"].differences[0].why
     assert found.parameters["m_s"].differences[0].p is not None
 
 
@@ -220,7 +220,7 @@ def test_nothing_to_compare_is_said(same: list[sprung.Result]) -> None:
         sprung.compare(same[:1])
     with pytest.raises(InputError, match="expected two or more"):
         sprung.compare("results")
-    with pytest.raises(InputError, match="a name of its own"):
+    with pytest.raises(InputError, match="a unique name for each"):
         sprung.compare(same[:2], names=["a", "a"])
     with pytest.raises(InputError) as refused:
         sprung.compare(["nowhere", "here", same[0]])
@@ -230,7 +230,7 @@ def test_nothing_to_compare_is_said(same: list[sprung.Result]) -> None:
 def test_the_command(saved: Path) -> None:
     said = run("compare", saved / "before" / "results", saved / "after" / "results" / "results.json")
     assert (said.status, said.err) == (0, "")
-    assert "after less before: 1 of 15 parameters differ" in said.out
+    assert "after minus before: 1 of 15 parameters differ" in said.out
     line = next(line for line in said.out.splitlines() if line.startswith("c_sf") and "certain" in line)
     assert line.split()[1].startswith("-")
     document = run("compare", saved / "before" / "results", saved / "after" / "results", "--json").json
@@ -238,7 +238,7 @@ def test_the_command(saved: Path) -> None:
     assert document["parameters"]["c_sf"]["differences"][0]["finding"] == "certain"
     many = run("compare", *(saved / name / "results" for name in ("before", "after", "again")), columns=50)
     assert "Scatter of 3 results" in many.out
-    assert "again less before: 0 of 15 parameters differ" in many.out
+    assert "again minus before: 0 of 15 parameters differ" in many.out
 
 
 def test_every_width_shows_every_number(saved: Path) -> None:

@@ -27,7 +27,7 @@ def test_every_estimate_stands_beside_its_true_value() -> None:
     view = truth_view(values)
     check_view_is_whole(view, tables=1)
     near = sum(abs(one.standard_errors) <= 2 for one in values.values())
-    assert f"{near} of {len(values)} estimates lie within 2 standard errors" in " ".join(piped(view).split())
+    assert f"{near} of {len(values)} estimates are within 2 standard errors" in " ".join(piped(view).split())
 
 
 def test_what_the_vehicle_has_not_is_not_compared() -> None:

@@ -20,7 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
-from sprung.estimation import FitResult, Likelihood
+from sprung.estimation import FitResult
 from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
 from sprung.simulation import drop_from_blocks
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, with_separate_tracks
@@ -278,13 +278,10 @@ def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tup
     -------
     tuple of Decay
     """
-    likelihood = optimum.problem.likelihood
-    assert isinstance(likelihood, Likelihood)  # noqa: S101 (several loggers are not stepped; for the type checker)
-    place = likelihood.with_decays(decays).at(optimum.values)
     untold = {(i, clock.name) for i, decay in enumerate(decays) for clock in decay.clocks if clock.delay_std > _UNTOLD}
     timed = list(decays)
     shifts = np.arange(-_FARTHEST, _FARTHEST + _COARSE, _COARSE)
-    for i, found in place.align_by_likelihood(1 / optimum.noise**2, shifts).items():
+    for i, found in optimum.most_likely_delays(decays, shifts).items():
         clocks = zip(timed[i].clocks, found.tolist(), strict=True)
         timed[i] = replace(
             timed[i],

@@ -23,14 +23,14 @@ from sprung.vehicle import EMPTY, Heights, Load, Sensor, checked_record
 
 @checked_record
 class ModelChoice:
-    """What the user says about the model; what is left out, sprung decides."""
+    """What the user states of the model; what is left out is selected."""
 
     tracks: Literal["shared", "separate"] | None = None
     """One half-distance per axle, or those of springs and dampers apart."""
     extras: tuple[str, ...] | None = None
     """Exactly these beyond the plain model of seven degrees of freedom."""
     forbid: tuple[str, ...] = ()
-    """Never these, whatever else sprung chooses."""
+    """Never these, whatever else is selected."""
     fall: bool | None = None
     """Whether drops are used from their release on, and not only from when the last tyre is down."""
 
@@ -117,13 +117,13 @@ class Campaign:
         several: dict[str, Callable[..., object]] = {"sensors": Sensor, "drops": DropTest, "loads": Load}
         single: dict[str, Callable[..., object]] = {"model": ModelChoice, "test": TestRecord}
         for name, kind in several.items():
-            object.__setattr__(self, name, tuple(_as_record(one, kind, problems) for one in getattr(self, name)))
+            object.__setattr__(self, name, tuple(_as_record(given, kind, problems) for given in getattr(self, name)))
         for name, kind in single.items():
             object.__setattr__(self, name, _as_record(getattr(self, name), kind, problems))
-        given: dict[str, KnownValueLike] = dict(self.known)
+        stated: dict[str, KnownValueLike] = dict(self.known)
         if self.wheelbase is not None:
-            given["wheelbase"] = self.wheelbase
-        known = parse_known_values(given, f"campaign {self.name}: known", problems)
+            stated["wheelbase"] = self.wheelbase
+        known = parse_known_values(stated, f"campaign {self.name}: known", problems)
         for drop in self.drops:
             if not isinstance(drop, DropTest):
                 do = "Give Drop(...).with_recording(recording), or DropTest(..., recording=recording)."
@@ -172,7 +172,7 @@ class Campaign:
         InputError
             With everything that is missing.
         """
-        needed = [one.problem for one in self.missing if one.needed]
+        needed = [entry.problem for entry in self.missing if entry.needed]
         if needed:
             raise InputError(needed)
 
@@ -182,7 +182,7 @@ class Campaign:
         Raises
         ------
         UnknownNameError
-            If there is none; a `KeyError` that says which one was probably meant.
+            If there is none; a `KeyError` with the most similar name.
         """
         for load in self.loads:
             if load.name == name:

@@ -166,7 +166,7 @@ def unique_drop_names(drops: Sequence[Drop]) -> tuple[str, ...]:
     tuple of str
         In the same order.
     """
-    return _told_apart([(drop.label,) if drop.name else (drop.label, drop._long_name) for drop in drops])
+    return _make_unique([(drop.label,) if drop.name else (drop.label, drop._long_name) for drop in drops])
 
 
 def unique_recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
@@ -183,20 +183,20 @@ def unique_recording_names(drops: Sequence[Drop]) -> tuple[str, ...]:
         In the same order.
     """
     firsts = [(f"{drop.files[0]} and {len(drop.files) - 1} more",) if drop.files[1:] else () for drop in drops]
-    return _told_apart(
+    return _make_unique(
         [(drop.name or drop.recording_name or drop.label, *first) for drop, first in zip(drops, firsts, strict=True)]
     )
 
 
-def _told_apart(names: Sequence[Sequence[str]]) -> tuple[str, ...]:
+def _make_unique(names: Sequence[Sequence[str]]) -> tuple[str, ...]:
     """Return a unique name for each thing: the first of its names that no other has, otherwise its last one, numbered."""
-    often = Counter(name for own in names for name in set(own))
-    taken: dict[str, None] = {}
-    for own in names:
-        name = next((name for name in own if often[name] == 1), own[-1])
-        numbered = itertools.chain([name], (f"{name} ({count})" for count in itertools.count(2)))
-        taken[next(one for one in numbered if one not in taken)] = None
-    return tuple(taken)
+    occurrences = Counter(name for candidates in names for name in set(candidates))
+    unique: dict[str, None] = {}
+    for candidates in names:
+        name = next((name for name in candidates if occurrences[name] == 1), candidates[-1])
+        numbered = itertools.chain([name], (f"{name} ({number})" for number in itertools.count(2)))
+        unique[next(name for name in numbered if name not in unique)] = None
+    return tuple(unique)
 
 
 def _shared_beginning(texts: Sequence[str]) -> str:

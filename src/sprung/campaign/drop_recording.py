@@ -55,12 +55,12 @@ def assemble_recording(
     Returns
     -------
     Recording
-        Of several loggers as if they had all been started at one moment: `prepare` looks where the release is.
+        Several loggers are merged as if all had been started at one moment; preprocessing aligns them at the release.
 
     Raises
     ------
     InputError
-        If a channel's logger cannot be told, or one of the files cannot be used; all problems at once.
+        If the logger of a channel is ambiguous, or one of the files cannot be used; all problems at once.
     """
     if len(tables) == 1:
         ((only, table),) = tables.items()
@@ -68,7 +68,7 @@ def assemble_recording(
         return replace(recording, name=name, channels=tuple(named.channel for _, named in sensors))
     problems = Problems()
     loggers = {written.logger for written, _ in sensors if written.logger}
-    of_file: dict[str, list[tuple[Sensor, Sensor]]] = {file: [] for file in tables}
+    sensors_of_file: dict[str, list[tuple[Sensor, Sensor]]] = {file: [] for file in tables}
     faults: list[Fault] = []
     for written, named in sensors:
         with problems.collect():
@@ -76,14 +76,14 @@ def assemble_recording(
             if file is None:
                 faults.append(_nowhere(written, name))
             else:
-                of_file[file].append((written, named))
+                sensors_of_file[file].append((written, named))
     parts: list[Recording] = []
-    for of, own in of_file.items():
+    for file_name, of_logger in sensors_of_file.items():
         with problems.collect():
-            if own:
-                part = make_recording(tables[of], [written for written, _ in own], of)
-                parts.append(replace(part, channels=tuple(named.channel for _, named in own)))
-    if drop.window is not None and not of_file[drop.files[0]]:
+            if of_logger:
+                part = make_recording(tables[file_name], [written for written, _ in of_logger], file_name)
+                parts.append(replace(part, channels=tuple(named.channel for _, named in of_logger)))
+    if drop.window is not None and not sensors_of_file[drop.files[0]]:
         where, found = f"{name}: window", f"no sensor of the campaign in {drop.files[0]}, on whose clock it is"
         problems.add(where, found, "a window on the clock of a file that is used", "Name another file first in files.")
     problems.raise_if_any()
@@ -110,8 +110,8 @@ def _file_of(sensor: Sensor, tables: Mapping[str, SampleTable], loggers: Collect
     Where no file has its name, one named after another logger is not its own.
     """
     own = find_logger_files(tables, sensor.logger) if sensor.logger else []
-    taken = {file for other in loggers for file in find_logger_files(tables, other)} if sensor.logger else set()
-    free = [file for file in tables if file not in taken]
+    named = {file for logger in loggers for file in find_logger_files(tables, logger)} if sensor.logger else set()
+    free = [file for file in tables if file not in named]
     files = [file for file in own or free if find_column(tables[file], sensor.channel)]
     if len(files) > 1:
         found = f"'{sensor.channel}' in {', '.join(files)}"

@@ -77,9 +77,9 @@ def read_campaign(
     parsed = parse_document(CampaignFile, document, path.name, problems)
     missing = tuple(find_missing_entries(parsed))
     if complete:
-        for one in missing:
-            if one.needed:
-                problems.add(*astuple(one.problem))
+        for entry in missing:
+            if entry.needed:
+                problems.add(*astuple(entry.problem))
     check(parsed, problems)
     files = _files(parsed, problems)
     tables = _tables(files, path.parent, signals, of_recordings, progress)
@@ -120,9 +120,9 @@ def read_vehicle_file(path: Path) -> VehicleFile:
     """Read a vehicle file; see `sprung.campaign.read_vehicle`."""
     problems = Problems()
     parsed = parse_document(VehicleFileSchema, read_toml(path), path.name, problems)
-    for one in find_missing_entries(parsed):
-        if one.needed:
-            problems.add(*astuple(one.problem))
+    for entry in find_missing_entries(parsed):
+        if entry.needed:
+            problems.add(*astuple(entry.problem))
     check(parsed, problems)
     section = parsed.file.vehicle
     name = section.name or path.stem
@@ -189,8 +189,8 @@ def _tables(
     """Read every recording that can be read, each once; by the drop's index and the recording's name."""
     others = {Path(file).name for names in files.values() for file in names}
     read_already: dict[str, SampleTable] = {}
-    each = tuple(dict.fromkeys(file for names in files.values() for file in names))
-    for file in counted(progress, "reading the recordings", each):
+    names_once = tuple(dict.fromkeys(file for names in files.values() for file in names))
+    for file in counted(progress, "reading the recordings", names_once):
         try:
             read_already[file] = (
                 from_sep005(signals[file], Path(file).name) if file in signals else read_table(folder / file, others)

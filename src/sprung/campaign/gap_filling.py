@@ -1,7 +1,7 @@
-"""Samples that are missing, and samples on another clock: what the samples around them say beyond doubt is filled in.
+"""Missing samples: short gaps are interpolated, longer ones cut off where the vehicle is at rest.
 
-Between two samples a quarter of a period of wheel hop apart, 20 ms, a cubic spline follows what a vehicle does. Over a
-longer gap nobody knows. Such a gap does no harm where nothing moves: before the release, or once the motion has died away.
+Between two samples a quarter of a period of wheel hop apart, 20 ms, a cubic spline follows the motion of a vehicle. A longer
+gap does no harm where nothing moves: before the release, or once the motion has decayed.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ LONGEST_GAP = 0.02
 """s between the samples beside a gap that may be filled: a quarter of a period of wheel hop."""
 
 MAX_MISSING = 0.05
-"""Part of a channel's samples that may be filled in."""
+"""Fraction of a channel's samples that may be missing."""
 
 _REST = 0.3
-"""s of rest that have to be left before the release."""
+"""s of rest required before the release."""
 
 _SMALL = 0.03
-"""Part of a channel's peak below which it does not move any more."""
+"""Fraction of a channel's peak below which it is at rest."""
 
 _FEW = 20
-"""Samples whose median is the level of rest."""
+"""Least number of samples whose median is the level at rest."""
 
 _DO = "Check the sensor's cable and the logger, or export the recording again."
 
@@ -57,9 +57,9 @@ def fill_short_gaps(signal: Real, rate: float) -> Real:
     if not short.size or there.size < 4:
         return signal
     wanted = np.concatenate([np.arange(there[i] + 1, there[i + 1]) for i in short])
-    mended = signal.copy()
-    mended[wanted] = CubicSpline(there, signal[there])(wanted)
-    return mended
+    complete = signal.copy()
+    complete[wanted] = CubicSpline(there, signal[there])(wanted)
+    return complete
 
 
 def fill_gaps(
@@ -135,15 +135,15 @@ def find_rest(values: Real, rate: float) -> tuple[int, int]:
     since
         Sample from which on every channel stays at the level of its end.
     """
-    some = values[~np.isnan(values).all(axis=1)]
-    if not some.size:
+    usable = values[~np.isnan(values).all(axis=1)]
+    if not usable.size:
         return 0, values.shape[1]
     few = max(_FEW, round(_REST * rate))
     beginning, end = (
-        np.array([np.nanmedian(_known(row, part)) for row in some]) for part in (slice(few), slice(-few, None))
+        np.array([np.nanmedian(_known(row, part)) for row in usable]) for part in (slice(few), slice(-few, None))
     )
-    noise = np.array([_spread(row) for row in some])[:, None]
-    from_beginning, from_end = (np.abs(some - level[:, None]) for level in (beginning, end))
+    noise = np.array([_spread(row) for row in usable])[:, None]
+    from_beginning, from_end = (np.abs(usable - level[:, None]) for level in (beginning, end))
     allowed = np.maximum(_SMALL * np.nanmax(from_beginning, axis=1, keepdims=True), 5 * noise)
     left = (from_beginning > allowed).any(axis=0)
     back = (from_end > allowed).any(axis=0)

@@ -28,8 +28,8 @@ def parse_known_value(given: KnownValueLike, where: str, problems: Problems) -> 
 
     Returns
     -------
-    Known or None
-        None where it is none.
+    KnownValue or None
+        None where it is invalid.
     """
     if isinstance(given, Mapping):
         if not {"value"} <= given.keys() <= {"value", "std"}:
@@ -71,14 +71,14 @@ def parse_known_values(given: Mapping[str, KnownValueLike], where: str, problems
         if name not in allowed:
             problems.add(place, f"'{name}'", "a parameter or a derived quantity", did_you_mean(name, allowed))
             continue
-        one = parse_known_value(quantity, place, problems)
-        if one is None:
+        value = parse_known_value(quantity, place, problems)
+        if value is None:
             continue
-        told = PARAMETERS.get(name)
-        if (told is None or told.positive) and one.value <= 0:
-            problems.add(place, f"{one.value:g}", "a positive number", "Correct it.")
-        elif told is not None and not told.signed and one.value < 0:
-            problems.add(place, f"{one.value:g}", "a number that is not negative", "Correct it.")
+        parameter = PARAMETERS.get(name)
+        if (parameter is None or parameter.positive) and value.value <= 0:
+            problems.add(place, f"{value.value:g}", "a positive number", "Correct it.")
+        elif parameter is not None and not parameter.signed and value.value < 0:
+            problems.add(place, f"{value.value:g}", "a number that is not negative", "Correct it.")
         else:
-            known[name] = one
+            known[name] = value
     return known

@@ -1,4 +1,4 @@
-"""Several loggers, each with a clock and a rate of its own, put on one clock as far as anybody knows how they stand."""
+"""Recordings of several loggers, each with a clock and a rate of its own, merged on one clock."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from sprung.campaign.recording import LoggerClock, Recording
 from sprung.formats import interpolate
 
 SAME_RATE = 1.5e-4
-"""Part by which rates may differ to be one: crystals differ by less, and times written in ms tell it no better."""
+"""Relative difference up to which two rates are equal: that of quartz clocks is less, and times in ms resolve no more."""
 
 
 def merge_loggers(whole: Recording, moments: Sequence[float | None]) -> Recording:
     """Merge the recordings of several loggers on the clock of the first one whose offset is known.
 
-    Samples are left as they were taken where a logger has the fastest rate; to less than a step its clock then stands
-    elsewhere, which the fit finds. Slower loggers are interpolated.
+    The samples of loggers with the fastest rate are not interpolated: their clocks are aligned to less than a step, and the
+    rest is estimated by the fit. Slower loggers are interpolated.
 
     Parameters
     ----------
     whole
         A recording with parts.
     moments
-        One moment on each part's own clock, the same for all of them, s; None for those that nobody can tell.
+        Time of one common event on each part's own clock, s; None where it is unknown.
 
     Returns
     -------
     Recording
-        With values over the time that all these loggers recorded; NaN in the channels of the others.
+        Over the time that all these loggers recorded; NaN in the channels of the others.
     """
     known = [(part, moment) for part, moment in zip(whole.parts, moments, strict=True) if moment is not None]
     empty = np.full((len(whole.channels), 0), np.nan)
@@ -42,21 +42,25 @@ def merge_loggers(whole: Recording, moments: Sequence[float | None]) -> Recordin
     rate = next(part.rate for part, _ in known if abs(part.rate / rate - 1) < SAME_RATE)
     first = max(part.start - moment for part, moment in known)
     last = min(float(part.time[-1]) - moment for part, moment in known)
-    there = [part.values.shape[1] for part, _ in known if abs(part.rate / rate - 1) < SAME_RATE]
-    samples = max(min(int((last - first) * rate * (1 + 1e-9)) + 1, *there), 0)
+    lengths = [part.values.shape[1] for part, _ in known if abs(part.rate / rate - 1) < SAME_RATE]
+    samples = max(min(int((last - first) * rate * (1 + 1e-9)) + 1, *lengths), 0)
     values = np.full((len(whole.channels), samples), np.nan)
     clocks = []
     for part, moment in known:
         channels = [whole.channels.index(channel) for channel in part.channels]
-        same = abs(part.rate / rate - 1) < SAME_RATE
-        # The sample next to the first common moment, which is to come at the recording's first one.
-        begin = max(min(round((first - part.start + moment) * part.rate), part.values.shape[1] - samples), 0) * same
-        shift = part.start + begin / part.rate - (first + reference) if same else moment - reference
+        is_fastest = abs(part.rate / rate - 1) < SAME_RATE
+        # The sample nearest to the first common time, which becomes the first of the recording.
+        begin = (
+            max(min(round((first - part.start + moment) * part.rate), part.values.shape[1] - samples), 0) * is_fastest
+        )
+        shift = part.start + begin / part.rate - (first + reference) if is_fastest else moment - reference
         if samples:
             values[channels] = (
-                part.values[:, begin : begin + samples] if same else _resampled(part, first + moment, rate, samples)
+                part.values[:, begin : begin + samples]
+                if is_fastest
+                else _resampled(part, first + moment, rate, samples)
             )
-        clocks.append(LoggerClock(part.name, tuple(channels), shift, 1.0 if same else min(part.rate / rate, 1.0)))
+        clocks.append(LoggerClock(part.name, tuple(channels), shift, 1.0 if is_fastest else min(part.rate / rate, 1.0)))
     return Recording(
         name=whole.name,
         channels=whole.channels,
@@ -90,8 +94,8 @@ def _full_scales(whole: Recording) -> tuple[float | None, ...]:
 
 def _resampled(part: Recording, start: float, rate: float, samples: int) -> NDArray[np.float64]:
     """Return the channels of a slower logger at other times of its own clock; shape (channel, time)."""
-    values, taken = np.full((len(part.channels), samples), np.nan), part.time
+    values, own_time = np.full((len(part.channels), samples), np.nan), part.time
     # The logger that began last or ended first did so at one of these times, but for rounding.
-    times = np.clip(start + np.arange(samples) / rate, taken[0], taken[-1])
-    values[part.usable] = interpolate(part.values[part.usable], taken, times)
+    times = np.clip(start + np.arange(samples) / rate, own_time[0], own_time[-1])
+    values[part.usable] = interpolate(part.values[part.usable], own_time, times)
     return values

@@ -1,4 +1,4 @@
-"""The window of a drop in what several loggers recorded all day: stated on the first one's clock, found on the others'."""
+"""The window of a drop in the recordings of several loggers: stated on the clock of the first one, found on the others'."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from sprung.campaign.recording import Recording
 Real = NDArray[np.float64]
 
 _STEP = 0.02
-"""s to which it is told how the clocks stand: a window is longer by far, and the release tells the rest."""
+"""Resolution of the clock offsets, s: a window is much longer, and the release resolves the rest."""
 
 _MARGIN = 0.1
-"""s by which the others' windows are longer at each end."""
+"""s by which the windows of the other loggers are longer at each end."""
 
 
 def cut_to_window(parts: Sequence[Recording], window: tuple[float, float]) -> tuple[Recording, ...]:
@@ -26,9 +26,9 @@ def cut_to_window(parts: Sequence[Recording], window: tuple[float, float]) -> tu
     Parameters
     ----------
     parts
-        What each of them recorded, on its own clock.
+        The recording of each logger, on its own clock.
     window
-        From when to when, s on the clock of the first.
+        Beginning and end, s, on the clock of the first.
 
     Returns
     -------
@@ -36,16 +36,16 @@ def cut_to_window(parts: Sequence[Recording], window: tuple[float, float]) -> tu
 
     Notes
     -----
-    However far the clocks stand apart, all loggers saw the same day: where the one moved, the others did. How long and how
-    strongly each moved, in short steps of time, is the same in all of them but for a shift, that of their best correlation.
+    All loggers recorded the same motion, whatever the offsets of their clocks. Their activities in short steps of time agree
+    but for a shift, at which their cross-correlation is largest.
     """
     first, *others = parts
-    lively = _liveliness(first)
+    activity = _activity(first)
     start, end = window
     cut = [_cut(first, start, end)]
     for part in others:
-        ahead = part.start - first.start + _shift(lively, _liveliness(part))
-        cut.append(_cut(part, start + ahead - _MARGIN, end + ahead + _MARGIN))
+        offset = part.start - first.start + _shift(activity, _activity(part))
+        cut.append(_cut(part, start + offset - _MARGIN, end + offset + _MARGIN))
     return tuple(cut)
 
 
@@ -55,19 +55,19 @@ def _cut(part: Recording, start: float, end: float) -> Recording:
     return replace(part, values=part.values[:, begin:stop], start=part.start + begin / part.rate)
 
 
-def _liveliness(part: Recording) -> Real:
+def _activity(part: Recording) -> Real:
     """Return the centred logarithm of a logger's activity, its mean change per sample in steps of `_STEP`; shape (step,)."""
     changes = np.abs(np.diff(part.values[part.usable], axis=1)).sum(axis=0)
     steps = (np.arange(changes.size) / part.rate / _STEP).astype(np.int64)
     count = np.maximum(np.bincount(steps), 1) if changes.size else np.ones(1)
     mean: Real = (np.bincount(steps, weights=changes) if changes.size else np.zeros(1)) / count
     usual = float(np.median(mean)) or 1.0
-    lively = np.log1p(mean / usual)
-    centred: Real = lively - lively.mean()
+    activity = np.log1p(mean / usual)
+    centred: Real = activity - activity.mean()
     return centred
 
 
-def _shift(one: Real, other: Real) -> float:
+def _shift(first: Real, second: Real) -> float:
     """Return the lag of the second activity behind the first at the maximum of their cross-correlation, s."""
-    alike = correlate(other, one, mode="full", method="fft")
-    return (int(np.argmax(alike)) - (one.size - 1)) * _STEP
+    correlation = correlate(second, first, mode="full", method="fft")
+    return (int(np.argmax(correlation)) - (first.size - 1)) * _STEP

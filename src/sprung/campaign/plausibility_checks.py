@@ -58,9 +58,9 @@ def check_sizes(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     sections = (("sensor", parsed.file.sensor), ("drop", parsed.file.drop))
     for section, entries in sections:
         indices = list(parsed.numbered(section))
-        own = [_of_sensor(one) if section == "sensor" else _of_drop(one) for one in entries]
-        for key in dict.fromkeys(key for each in own for key in each):
-            _check_alike(parsed, section, key, dict(zip(indices, own, strict=True)), problems)
+        stated = [_of_sensor(entry) if section == "sensor" else _of_drop(entry) for entry in entries]
+        for key in dict.fromkeys(key for quantities in stated for key in quantities):
+            _check_alike(parsed, section, key, dict(zip(indices, stated, strict=True)), problems)
 
 
 def _check_alike(
@@ -161,7 +161,7 @@ def check_relations(parsed: ParsedFile[CampaignFile], known: Mapping[str, KnownV
     """
     stated = getattr(parsed.file, "parameters", {})
     parameters = {name: value for name, value in stated.items() if name in LIMITS and LIMITS[name].contain(value)}
-    values = {**parameters, **{name: one.value for name, one in known.items()}}
+    values = {**parameters, **{name: value.value for name, value in known.items()}}
     sections = {**dict.fromkeys(known, "known"), **dict.fromkeys(parameters, "parameters")}
     total = values.get("total_mass")
     for name, (low, high) in {

@@ -79,7 +79,7 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
         _refuse_backward(table, name)
     raw: dict[int, NDArray[np.float64]] = {}
     needed = [column[0] for sensor in sensors if len(column := find_column(table, sensor.channel)) == 1]
-    table = _where_all_reach(table, needed)
+    table = _common_range(table, needed)
     with problems.collect():
         raw = dict(zip(needed, table.take(needed), strict=True))
     problems.raise_if_any()
@@ -98,7 +98,7 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
     problems.raise_if_any()
 
     count = values.shape[1]
-    samples = _evened(table, values, name)
+    samples = _regular(table, values, name)
     useless = np.isnan(samples.values).all() and bool(samples.faults)
     if samples.rate < MIN_RATE and not useless:
         raise InputError([_too_slow(samples.rate, name)])
@@ -144,11 +144,12 @@ def _rate_ratios(table: SampleTable, sensors: Sequence[Sensor]) -> tuple[float, 
     return tuple(slower) if min(slower, default=1.0) < 1 else ()
 
 
-def _where_all_reach(table: SampleTable, needed: Sequence[int]) -> SampleTable:
+def _common_range(table: SampleTable, needed: Sequence[int]) -> SampleTable:
     """Leave out the few samples at both ends that columns of another clock do not reach."""
     reach = [table.resampled[column] for column in needed if column in table.resampled]
-    reach = [one for one in reach if one.last - one.first >= (1 - MAX_MISSING) * table.samples]
-    first, last = max((one.first for one in reach), default=0), min((one.last for one in reach), default=table.samples)
+    reach = [column for column in reach if column.last - column.first >= (1 - MAX_MISSING) * table.samples]
+    first = max((column.first for column in reach), default=0)
+    last = min((column.last for column in reach), default=table.samples)
     return table.part(first, last) if last - first < table.samples else table
 
 
@@ -219,7 +220,7 @@ def _refuse_backward(table: SampleTable, file: str) -> None:
         raise InputError([Problem(file, found, f"steps of {_SHORTEST:g} s or more", do)])
 
 
-def _evened(table: SampleTable, values: NDArray[np.float64], file: str) -> RegularTimeBase:
+def _regular(table: SampleTable, values: NDArray[np.float64], file: str) -> RegularTimeBase:
     if isinstance(table.clock, np.ndarray):
         return regularise_time_base(table.clock, values, table.place, file)
     count = values.shape[1]

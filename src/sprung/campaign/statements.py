@@ -88,7 +88,7 @@ def check_statements(
             wheel_height=heights.wheel_height,
             roll_axis_height=heights.roll_axis_height,
         ),
-        known={quantity: measured(one) for quantity, one in known.items()},
+        known={quantity: measured(value) for quantity, value in known.items()},
         sensor=tuple(sensors),
         load=described,
         drop=tuple(drops),

@@ -1,4 +1,4 @@
-"""The time stamps of samples: even, jittering, with lines lost between them, or with a pause."""
+"""The time base of samples: regular, jittering, with lines lost, or with a pause."""
 
 from __future__ import annotations
 
@@ -19,41 +19,41 @@ Flags = NDArray[np.bool_]
 Index = NDArray[np.int64]
 
 UNEVEN = 0.2
-"""By how much, relative to the usual step, a step of an even clock may differ without a word."""
+"""Relative deviation of a step from the median step up to which a time base counts as regular."""
 
 _JUMP = 1.6
-"""Usual steps from which a step is one over lost lines, as long as there are few such."""
+"""Median steps from which a step is one over lost lines, as long as there are few such."""
 
 _FEW = 0.05
-"""Part of the steps that may be jumps; where more are, the stamps jitter."""
+"""Fraction of the steps that may be jumps; above it, the timestamps jitter."""
 
 _PACKETS = 3
-"""Pauses from which it is asked whether they are any."""
+"""Number of pauses above which the samples may have been stamped packet by packet, without any pause."""
 
 _EXACT = 1e-2
-"""Part of the last digit of a stamp that two of them differ by if they are the same."""
+"""Fraction of the last digit of a timestamp within which two timestamps are equal."""
 
 _SLIGHT = 0.02
-"""Part of a step by which stamps may be off before it is asked what that means."""
+"""Fraction of a step by which timestamps may deviate before the samples are examined."""
 
 _LATE = 0.1
-"""s by which a logger may stamp samples early or late, in bursts, and still have taken them evenly."""
+"""s by which timestamps may deviate, in bursts, from the regular times of the samples."""
 
 _SLOPE = 0.006
-"""s before and after a sample that its slope is taken from."""
+"""s before and after a sample from which its slope is estimated."""
 
 _ROUGH = 5.0
-"""Times what is usual around from which a sample's difference from its neighbours counts as no more than this."""
+"""Limit of a sample's difference from its neighbours, in medians of the samples around."""
 
 _ENOUGH = 100.0
-"""Sum of squares of what is expected, in units of what is usual, from which the samples tell how they were taken."""
+"""Sum of squares of the expected differences, in local medians, from which the test is decisive."""
 
 _SETTLED = 0.1
-"""s of rest that have to follow a pause before the release."""
+"""s of rest required between a pause and the release."""
 
 
 class RegularTimeBase(NamedTuple):
-    """Samples at even steps.
+    """Samples at regular steps.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class RegularTimeBase(NamedTuple):
     origin
         The sample of the file that each was, or is next to, shape (time,).
     faults
-        What was wrong with the stamps, and what was done about it.
+        What was wrong with the timestamps, and what was done about it.
     """
 
     values: Real
@@ -85,23 +85,23 @@ def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> R
     Parameters
     ----------
     time
-        Stamps, s, increasing, shape (time,).
+        Timestamps, s, increasing, shape (time,).
     values
         Shape (channel, time), any unit; NaN where a sample is missing.
     place
-        Says where in the file a sample stands.
+        Returns where in the file a sample stands.
     file
-        Its name.
+        Name of the file.
 
     Returns
     -------
-    Evened
-        All its values NaN where nothing can be made of the clock.
+    RegularTimeBase
+        All values NaN where the time base cannot be used.
 
     Notes
     -----
-    Stamps that jitter say one of two things: that the samples were taken evenly and stamped carelessly, or that they
-    were taken at those times. A vehicle moves smoothly: the right reading is the one in which the samples do.
+    Timestamps that jitter mean one of two things: the samples were taken at regular times and stamped inaccurately, or they
+    were taken at the times stamped. A vehicle moves smoothly, so that reading is used with which the samples are smoother.
     """
     steps = np.diff(time)
     usual = float(np.median(steps))
@@ -111,7 +111,7 @@ def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> R
         return _as_they_are(time, values)
     without = _line(time, np.zeros_like(jumps))
     pauses = np.flatnonzero(jumps & (steps > LONGEST_GAP * (1 + 1e-6)))
-    # Samples stamped packet by packet show many pauses, and none in the long run.
+    # Samples stamped packet by packet show many pauses; on average there is none.
     if pauses.size > _PACKETS and without.off <= _LATE:
         jumps[:] = False
     elif pauses.size:
@@ -123,7 +123,7 @@ def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> R
         what = f"{_steps(steps, uneven, usual, off, place)}; the drop is left out"
         do = "Export the recording at a fixed rate, or repeat the drop."
         return _nothing(time, values, Fault("clock", file, what, do))
-    if off > _SLIGHT * usual and _believed(values, time - start - step * number, 1 / step):
+    if off > _SLIGHT * usual and _sampled_at_timestamps(values, time - start - step * number, 1 / step):
         return _resampled(time, values, step, _steps(steps, uneven, usual, off, place), file)
     lost = np.ones(int(number[-1]) + 1, dtype=bool)
     lost[number.astype(int)] = False
@@ -145,7 +145,7 @@ def regularise_time_base(time: Real, values: Real, place: Place, file: str) -> R
 
 
 class _Line(NamedTuple):
-    """Even steps through stamps: each sample's number, step and start, s, and by how much the stamps are off at most, s."""
+    """Regular steps fitted to timestamps: each sample's number, step and start, s, and the largest deviation, s."""
 
     number: Real
     step: float
@@ -163,8 +163,8 @@ def _line(time: Real, jumps: Flags) -> _Line:
 def _is_even(time: Real, jumps: Flags) -> bool:
     """Return whether timestamps are regular, apart from rounding to the digits in which they are written.
 
-    Where a step is one digit, a lost line looks like a step rounded up. But rounding, and nothing else, keeps all stamps
-    within one digit of each other about a straight line: steps are rounded up at even distances.
+    Where a step is one digit, a lost line looks like a step rounded up. But only rounding keeps all timestamps within one
+    digit of a straight line: steps are rounded up at regular distances.
     """
     digits = next((digits for digits in range(10) if np.allclose(time, time.round(digits), rtol=0, atol=1e-12)), 10)
     digit, off = 10.0**-digits, time - np.linspace(time[0], time[-1], len(time))
@@ -220,31 +220,31 @@ def _without_pauses(time: Real, values: Real, pauses: Index, place: Place, file:
     return kept._replace(origin=kept.origin + first, faults=(Fault("clock", file, what, do), *kept.faults))
 
 
-def _believed(values: Real, off: Real, rate: float) -> bool:
+def _sampled_at_timestamps(values: Real, off: Real, rate: float) -> bool:
     """Return whether the samples were taken at their timestamps rather than at regular times.
 
-    A sample taken late by δ is off by δ times the slope of its signal. What the samples differ from their neighbours is
-    compared with what it would be then: the factor between the two is 1 where the stamps are right, and 0 where the
-    samples are even.
+    A sample taken late by δ differs by δ times the slope of its signal. The differences of the samples from their neighbours
+    are regressed on those expected from the timestamps: the factor is 1 where the timestamps are right, and 0 where the
+    samples are regular.
     """
     window = 2 * max(round(_SLOPE * rate), 1) + 1
-    believed = weight = 0.0
+    product = weight = 0.0
     for signal in values:
         even = fill_short_gaps(signal, rate)
         if np.isnan(even).any() or even.size < 4 * window:
             continue
-        expected = _unlike_neighbours(off * savgol_filter(even, window, 2, deriv=1, delta=1 / rate))
-        found = _unlike_neighbours(even)
+        expected = _residual_of_neighbours(off * savgol_filter(even, window, 2, deriv=1, delta=1 / rate))
+        found = _residual_of_neighbours(even)
         # Against what is usual around: a landing is rough by itself.
         usual = np.maximum(median_filter(np.abs(found), 2 * window + 1), 1e-3 * np.abs(found).max() + 1e-300)
         expected, found = expected / usual, np.clip(found / usual, -_ROUGH, _ROUGH)
-        told = np.abs(expected) < _ROUGH
-        believed += float(found[told] @ expected[told])
-        weight += float(expected[told] @ expected[told])
-    return weight > _ENOUGH and believed > weight / 2
+        usable = np.abs(expected) < _ROUGH
+        product += float(found[usable] @ expected[usable])
+        weight += float(expected[usable] @ expected[usable])
+    return weight > _ENOUGH and product > weight / 2
 
 
-def _unlike_neighbours(signal: Real) -> Real:
+def _residual_of_neighbours(signal: Real) -> Real:
     """Return the difference of each sample from the cubic through its four neighbours; shape (time - 4,)."""
     return signal[2:-2] - (4 * (signal[1:-3] + signal[3:-1]) - signal[:-4] - signal[4:]) / 6
 
@@ -257,7 +257,7 @@ def _resampled(time: Real, values: Real, step: float, what: str, file: str) -> R
         there = np.isfinite(signal)
         if there.sum() > 3:
             row[:] = interpolate(signal[there], time[there], grid)
-            # What a channel lacks is told of and filled in later, as with any clock.
+            # Missing samples of a channel are reported and filled in later, as with any clock.
             known = np.flatnonzero(there)
             before = np.clip(np.searchsorted(time[known], grid, side="right") - 1, 0, known.size - 2)
             apart = time[known[before + 1]] - time[known[before]] > max(LONGEST_GAP, _JUMP * step)

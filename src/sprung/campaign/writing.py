@@ -176,7 +176,7 @@ def _value(value: Any, indent: int = 0) -> str:
     """Write a value on one line; a list of tables has one line for each."""
     match value:
         case dict():
-            return "{ " + ", ".join(f"{name} = {_value(one)}" for name, one in value.items()) + " }"
+            return "{ " + ", ".join(f"{name} = {_value(entry)}" for name, entry in value.items()) + " }"
         case [dict(), *_]:
             return "[ " + f",\n{' ' * indent}".join(map(_value, value)) + " ]"
         case list() | tuple():

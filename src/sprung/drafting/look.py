@@ -103,7 +103,7 @@ def _refuse(name: str, seen: Survey) -> None:
     if not seen.rate >= MIN_RATE:
         found = f"{seen.rate:.4g} samples per second"
         raise InputError(
-            [Problem(name, found, f"at least {MIN_RATE:g}, to see wheels hop", "Record at 200 Hz or more.")]
+            [Problem(name, found, f"at least {MIN_RATE:g}, to resolve wheel hop", "Record at 200 Hz or more.")]
         )
 
 

@@ -1,20 +1,22 @@
-"""From decays to parameters: the paper's added mass, structured least squares, and the joint likelihood fit."""
+"""Maximum likelihood estimation of a vehicle's parameters from free decays: problem, fit, tests, covariance."""
 
 from sprung.estimation.characteristics import characteristics_of
-from sprung.estimation.closed_form import Likelihood, LikelihoodAt
+from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
-from sprung.estimation.fit import NEAR, STARTS, FitResult, escape_local_optimum, fit_linear, score_linear_term
+from sprung.estimation.fit_result import FitResult
+from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, score_linear_term
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
-from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms, wald_test
+from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
 from sprung.estimation.nonlinear_scores import score_nonlinear_terms
-from sprung.estimation.overdispersion import autocorrelation_inflation, corrections
+from sprung.estimation.objective import HasModalResponse
+from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
-from sprung.estimation.solution import ModalSlopes, respond
+from sprung.estimation.score_test import ScoreTest, score_added, wald_test
 from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, overdispersion_of, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
@@ -28,26 +30,25 @@ __all__ = [
     "UNNAMED",
     "USUAL_ENGINE",
     "USUAL_MOUNTING",
+    "ClosedFormObjective",
     "Coordinates",
     "Correlation",
     "Estimates",
     "FitResult",
     "FitStatistics",
+    "HasModalResponse",
     "Inflater",
-    "Likelihood",
-    "LikelihoodAt",
-    "ModalSlopes",
     "ModeEstimate",
     "Mounting",
     "Prediction",
     "PriorsAndConstraints",
     "Scale",
+    "ScoreTest",
     "Unidentifiable",
     "autocorrelation_inflation",
     "canonical_basis",
     "characteristics_of",
     "clear_of_splines",
-    "corrections",
     "escape_local_optimum",
     "estimate_of",
     "fit_from_contact",
@@ -61,7 +62,7 @@ __all__ = [
     "parameters_from_matrices",
     "predictions",
     "profiled",
-    "respond",
+    "score_added",
     "score_linear_term",
     "score_nonlinear_terms",
     "score_stepped_terms",

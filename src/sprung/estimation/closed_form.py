@@ -1,66 +1,42 @@
-"""The likelihood of all decays at once, with initial states and offsets eliminated, and its exact derivatives.
+"""The closed form: the likelihood of all decays of a linear vehicle, its initial states and offsets eliminated.
 
-Every sum over samples is one of `sums`, so an evaluation touches the records in one matrix product and everything else
-is small. Where modal coordinates do not exist, at critical damping, the evaluation goes `longhand`.
+Every sum over samples is a sum of exponentials, so an evaluation meets the records in one matrix product and everything else is
+small. Where modal coordinates do not exist, at critical damping, `MatrixExponentialAt` takes over.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.expm_likelihood import ExpmLikelihood, evaluate_drop
+from sprung.estimation.matrix_exponential import MatrixExponentialAt
+from sprung.estimation.modal_solution import ModalSolution, differentiate_modes, differentiate_response, solve_modes
+from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
-from sprung.estimation.records import RecordBatch, Records
-from sprung.estimation.solution import ModalSlopes, ModalSolution, differentiate_modes, solve_modes
+from sprung.estimation.records import RecordBatch, batch_records, in_order
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Rows
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-_BEYOND_MEASURE = 100.0
+_UNBOUNDED = 100.0
 """Powers of e by which no motion grows within a record."""
 
 _BACKWARD = 30.0
 """Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
 
 _DEFECTIVE = 300.0
-"""Condition number of a pole from which two modes have all but met in one shape, and the long way is taken."""
-
-
-class Evaluation(NamedTuple):
-    """What one evaluation of the likelihood gives; parameters in SI, drops in the fit's order.
-
-    Attributes
-    ----------
-    residual
-        Residual sum of squares, (m/s²)², shape (drop, channel).
-    leverage
-        How many of the amplitudes each channel pays for, shape (channel,).
-    gradient
-        Σ derivative · residual / σ², shape (parameter,).
-    information
-        Fisher information of the parameters, amplitudes and offsets eliminated; shape (parameter, parameter).
-    penalty
-        What delays of clocks cost that are not as expected, in twice the log-likelihood.
-    """
-
-    residual: Real
-    leverage: Real
-    gradient: Real
-    information: Real
-    penalty: float = 0.0
+"""Condition number of a pole from which two modes have all but met in one shape."""
 
 
 @dataclass(frozen=True, eq=False)
-class Likelihood:
-    """All decays of a campaign, ready to be fitted.
+class ClosedFormObjective:
+    """The likelihood of decays of a linear vehicle.
 
     Attributes
     ----------
@@ -76,280 +52,265 @@ class Likelihood:
     models: Mapping[str, LinearModel]
     sensors: Rows
 
-    def with_decays(self, decays: Sequence[FreeDecay]) -> Likelihood:
-        """Return the likelihood of other decays with the same models and sensors."""
-        return Likelihood(decays, self.models, self.sensors)
+    @cached_property
+    def loads(self) -> tuple[str, ...]:
+        """Names of the loads, sorted."""
+        return tuple(sorted({decay.load for decay in self.decays}))
 
     @cached_property
-    def records(self) -> Records:
+    def batches(self) -> tuple[RecordBatch, ...]:
         """The decays, centred and cut into blocks."""
-        return Records.of(self.decays, next(iter(self.models.values())).names)
-
-    @cached_property
-    def model_of(self) -> tuple[LinearModel, ...]:
-        """Equations of motion by the position of the load in the records."""
-        return tuple(self.models[load] for load in self.records.loads)
+        return batch_records(self.decays, next(iter(self.models.values())).names)
 
     @cached_property
     def observations(self) -> Real:
         """Samples by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
-        return self.records.in_order([run.present * run.samples[:, None] for run in self.records.runs])
+        return in_order(self.batches, [batch.channel_weights * batch.samples[:, None] for batch in self.batches])
 
     @cached_property
     def energy(self) -> Real:
         """Sum of squares of all centred records of each channel, (m/s²)², shape (channel,)."""
-        energy: Real = np.sum([run.present * run.energy.sum(axis=0) for run in self.records.runs], axis=0)
+        energy: Real = np.sum([batch.channel_weights * batch.energy.sum(axis=0) for batch in self.batches], axis=0)
         return energy
 
     @cached_property
-    def loads(self) -> LinearModel:
+    def side_by_side(self) -> LinearModel:
         """The models of all loads side by side."""
-        return LinearModel.stack(self.model_of)
+        return LinearModel.stack([self.models[load] for load in self.loads])
 
     @cached_property
     def span(self) -> float:
         """Length of the longest record, s."""
-        return max(float((run.samples * run.step[run.group]).max()) for run in self.records.runs)
+        return max(batch.duration for batch in self.batches)
 
-    def beginning(self, states: Real) -> Likelihood:
-        """Give itself: initial states, {X, Ẋ}, SI, shape (drop, state), are eliminated, whatever one starts from."""
-        return self
+    @cached_property
+    def _has_clocks(self) -> bool:
+        return any(batch.clock_design.shape[1] for batch in self.batches)
 
-    def at(self, values: Real) -> LikelihoodAt:
-        """Go to parameter values, SI, shape (parameter,)."""
-        return LikelihoodAt(self, values)
+    def with_decays(self, decays: Sequence[FreeDecay]) -> ClosedFormObjective:
+        """Return the objective of other decays with the same models and sensors."""
+        return ClosedFormObjective(decays, self.models, self.sensors)
+
+    def at(self, values: Real, weights: Real) -> ObjectiveAt:
+        """Evaluate at parameter values, SI, shape (parameter,), with 1/σ² of each channel, s⁴/m², shape (channel,)."""
+        modes = solve_modes(self.side_by_side, self.sensors, values)
+        # Rates that may be negative can make a motion that grows beyond all bounds.
+        if float(modes.poles.real.max()) * self.span > _UNBOUNDED:
+            return ClosedFormAt(self, values, weights, modes, ())
+        # Delays turn shapes: they need modal coordinates, and bear with what rounding leaves near a critical damping.
+        if not self._has_clocks and modes.condition > _DEFECTIVE:
+            return MatrixExponentialAt(self, self.models, self.sensors, values, weights)
+        sums = tuple(
+            ExponentialSums.of(batch, values, modes.poles, modes.right, modes.shapes) for batch in self.batches
+        )
+        return ClosedFormAt(self, values, weights, modes, sums)
 
 
 @dataclass(frozen=True, eq=False)
-class LikelihoodAt:
-    """A likelihood at some parameter values. Weights are 1/σ² of each channel, shape (channel,).
+class ClosedFormAt:
+    """The closed form at parameter values and noise levels.
 
     Attributes
     ----------
-    likelihood
-        Of which decays.
+    objective
+        The likelihood.
     values
         Parameters, SI, shape (parameter,).
+    weights
+        1/σ² of each channel, s⁴/m², shape (channel,).
+    modes
+        Poles and shapes of every load.
+    sums
+        Sums over the samples of every batch; none where the motion has no bounds.
     """
 
-    likelihood: Likelihood
+    objective: ClosedFormObjective
     values: Real
+    weights: Real
+    modes: ModalSolution
+    sums: tuple[ExponentialSums, ...]
+
+    is_reversible = True
+
+    def reweighted(self, weights: Real) -> ClosedFormAt:
+        """Return the likelihood with other weights, its sums over the samples being the same."""
+        return replace(self, weights=weights)
+
+    def moved(self, values: Real) -> ObjectiveAt:
+        """Return the likelihood at other parameter values, SI, shape (parameter,)."""
+        return self.objective.at(values, self.weights)
+
+    def with_optimal_states(self) -> ClosedFormAt:
+        """Return the likelihood itself: initial states are eliminated."""
+        return self
+
+    def of_drop(self, drop: int) -> ObjectiveAt:
+        """Return the likelihood of one drop alone, by its position."""
+        return self.objective.with_decays([self.objective.decays[drop]]).at(self.values, self.weights)
 
     @cached_property
-    def modes(self) -> ModalSolution:
-        """Poles and shapes of every load."""
-        return solve_modes(self.likelihood.loads, self.likelihood.sensors, self.values)
+    def _projected(self) -> list[ProjectedResponse]:
+        return [sums.project(self.weights) for sums in self.sums]
 
     @cached_property
-    def _sums(self) -> list[ExponentialSums]:
-        modes = self.modes
-        runs, values = self.likelihood.records.runs, self.values
-        return [ExponentialSums.of(run, values, modes.poles, modes.right, modes.shapes) for run in runs]
-
-    @cached_property
-    def _slopes(self) -> list[Complex]:
-        """σ and τ of every run beside each other, τ per sample; each of shape (group, channel, parameter, 2 mode)."""
-        likelihood = self.likelihood
-        slopes = differentiate_modes(likelihood.loads, likelihood.sensors, self.values, self.modes, likelihood.span)
-        return self._of_runs(slopes)
-
-    def _of_runs(self, slopes: ModalSlopes) -> list[Complex]:
-        return [
-            np.concatenate([slopes.shapes[run.load], slopes.secular[run.load] * run.step[:, None, None, None]], axis=-1)
-            for run in self.likelihood.records.runs
-        ]
-
-    @cached_property
-    def _defective(self) -> bool:
-        # Delays turn shapes: they have no long way, and bear with what rounding leaves near a critical damping.
-        delayed = any(run.late.shape[1] for run in self.likelihood.records.runs)
-        return not delayed and self.modes.condition > _DEFECTIVE
-
-    @property
-    def _runs_away(self) -> bool:
-        """Whether this vehicle's motion grows beyond all measure: rates that may be negative can do that."""
-        longest = max(float((run.step[run.group] * run.samples).max()) for run in self.likelihood.records.runs)
-        return float(self.modes.poles.real.max()) * longest > _BEYOND_MEASURE
-
-    def moved(self, values: Real, weights: Real) -> LikelihoodAt:
-        """Go to other parameter values, SI, shape (parameter,)."""
-        return self.likelihood.at(values)
-
-    def misfit(self, weights: Real) -> tuple[Real, float]:
-        """Give the residual sums of squares alone, (m/s²)², shape (drop, channel), and what delays cost beside them."""
-        if self._runs_away:
-            return np.full_like(self.likelihood.observations, np.inf, dtype=np.float64), 0.0
-        solved = self._solve(weights)
-        return self.likelihood.records.in_order([one.residual for one in solved]), sum(one.penalty for one in solved)
-
-    def evaluate(self, weights: Real) -> Evaluation:
-        """Evaluate fit and derivatives."""
-        if self._defective:
-            drops = self._longhand(weights)
-            return Evaluation(
-                np.array([drop.residual for drop in drops]),
-                np.sum([drop.leverage for drop in drops], axis=0),
-                np.sum([drop.gradient for drop in drops], axis=0),
-                np.sum([drop.information for drop in drops], axis=0),
-            )
-        pairs = self._solve_with(weights, self._slopes)
-        return Evaluation(
-            self.likelihood.records.in_order([one.residual for one, _ in pairs]),
-            np.sum([one.leverage for one, _ in pairs], axis=0),
-            np.concatenate([one.gradient(slopes) for one, slopes in pairs]).sum(axis=0),
-            np.concatenate([one.information(slopes) for one, slopes in pairs]).sum(axis=0),
-            sum(one.penalty for one, _ in pairs),
+    def _derivatives(self) -> list[Complex]:
+        """σ and τ of every batch beside each other, τ per sample; each of shape (group, channel, parameter, 2 mode)."""
+        objective = self.objective
+        _, readings = differentiate_modes(
+            objective.side_by_side, objective.sensors, self.values, self.modes, objective.span
         )
+        return self._of_batches(readings)
 
-    def by_drop(self, weights: Real) -> tuple[Real, Real]:
-        """Give each drop's own gradient and information; shapes (drop, parameter), (drop, parameter, parameter)."""
-        if self._defective:
-            drops = self._longhand(weights)
-            return np.array([drop.gradient for drop in drops]), np.array([drop.information for drop in drops])
-        pairs = self._solve_with(weights, self._slopes)
-        in_order = self.likelihood.records.in_order
-        gradients = in_order([solved.gradient(slopes) for solved, slopes in pairs])
-        return gradients, in_order([solved.information(slopes, apart=True) for solved, slopes in pairs])
-
-    def beside(self, weights: Real, more: ModalSlopes) -> tuple[Real, Real] | None:
-        """Give gradient and information of the parameters and of other changes beside them.
-
-        Parameters
-        ----------
-        weights
-            1/σ², s⁴/m², shape (channel,).
-        more
-            What the other changes do to the response of each load.
-
-        Returns
-        -------
-        gradient, information
-            Shapes (parameter + change,) and its square; None where modal coordinates do not exist.
-        """
-        if self._defective:
-            return None
-        pairs = zip(self._slopes, self._of_runs(more), strict=True)
-        slopes = [np.ascontiguousarray(np.concatenate([own, other], axis=2)) for own, other in pairs]
-        solved = self._solve_with(weights, slopes)
-        gradient = np.sum([one.gradient(those).sum(axis=0) for one, those in solved], axis=0)
-        return gradient, np.sum([one.information(those).sum(axis=0) for one, those in solved], axis=0)
-
-    def noise_bias_of_information(self, weights: Real) -> Real:
-        """Give the information that noise alone feigns.
-
-        A motion that no drop excites has amplitudes too: those that noise fits. The information is quadratic in the
-        amplitudes, so on average it is too large by what their covariance puts in their place. Shape (parameter, parameter).
-        """
-        if self._defective:  # modes of their own cannot be told apart
-            return np.zeros((len(self.values), len(self.values)))
-        pairs = self._solve_with(weights, self._slopes)
-        noise_bias_of_information: Real = np.sum(
-            [solved.noise_bias_of_information(slopes) for solved, slopes in pairs], axis=0
-        )
-        return noise_bias_of_information
-
-    def fitted(self, weights: Real) -> list[Real]:
-        """Give what the model makes of every record, its mean taken off; each of shape (channel, time)."""
-        if self._defective:
-            return [one.fitted for one in self._longhand(weights)]
-        found = {}
-        for solved in self._solve(weights):
-            run = solved.sums.run
-            for position, record in zip(run.order.tolist(), solved.fitted(self.modes.poles), strict=True):
-                found[position] = record
-        return [found[position] for position in range(self.likelihood.records.drops)]
-
-    def delays(self, weights: Real, covariance: Real) -> dict[int, tuple[Real, Real]]:
-        """Give the delays of the drops with several loggers, by the drop's position.
-
-        Parameters
-        ----------
-        weights
-            1/σ², s⁴/m², shape (channel,).
-        covariance
-            Of the parameters, SI, shape (parameter, parameter).
-
-        Returns
-        -------
-        dict
-            How late each logger is, s, shape (logger,), and the covariance of that.
-        """
-        found: dict[int, tuple[Real, Real]] = {}
-        for solved, slopes in self._solve_with(weights, self._slopes):
-            if solved.delays is not None:
-                positions, spreads = solved.sums.run.order.tolist(), solved.delay_covariances(slopes, covariance)
-                found |= dict(zip(positions, zip(solved.delays.values, spreads, strict=True), strict=True))
+    def _of_batches(self, readings: Complex) -> list[Complex]:
+        """Return derivatives by load, τ per second, for every batch and its delays, τ per sample."""
+        m, found = self.modes.poles.shape[-1], []
+        for projected in self._projected:
+            batch = projected.sums.batch
+            own = readings[batch.load]
+            own[..., m:] *= batch.step[:, None, None, None]
+            found.append(projected.turned(own))
         return found
 
-    def align_by_likelihood(self, weights: Real, shifts: Real) -> dict[int, Real]:
-        """Slide the clocks of loggers about, one after the other, to where each drop's records are most likely.
+    def _in_order(self, by_batch: Sequence[Real]) -> Real:
+        return in_order(self.objective.batches, by_batch)
 
-        Parameters
-        ----------
-        weights
-            1/σ², s⁴/m², shape (channel,).
-        shifts
-            s, shape (shift,): what is tried beside what is expected of each clock.
+    @cached_property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); infinite where the motion has no bounds."""
+        if not self.sums:
+            return np.full_like(self.objective.observations, np.inf)
+        return self._in_order([projected.residual_sums for projected in self._projected])
 
-        Returns
-        -------
-        dict
-            By the drop's position how late its loggers are, s, shape (logger,).
-        """
-        return {
-            position: late
-            for sums in self._sums
-            if sums.run.late.shape[1]
-            for position, late in zip(sums.run.order.tolist(), sums.align_by_likelihood(weights, shifts), strict=True)
-        }
+    @cached_property
+    def penalty(self) -> float:
+        """Twice the negative log-likelihood of the clocks' delays under their priors."""
+        return sum(projected.penalty for projected in self._projected)
 
-    def states(self, weights: Real) -> Real:
-        """Give {X, Ẋ} of each drop at its first sample, SI, shape (drop, state)."""
-        if self._defective:
-            return np.array([one.state for one in self._longhand(weights)])
+    @cached_property
+    def leverage(self) -> Real:
+        """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+        leverage: Real = np.sum([projected.leverage for projected in self._projected], axis=0)
+        return leverage
+
+    @cached_property
+    def gradient(self) -> Real:
+        """Of the log-likelihood by the parameters, per SI unit, shape (parameter,)."""
+        return self._gradient(self._derivatives)
+
+    @cached_property
+    def information(self) -> Real:
+        """Fisher information of the parameters, shape (parameter, parameter)."""
+        return self._information(self._derivatives)
+
+    def _gradient(self, derivatives: list[Complex]) -> Real:
+        pairs = zip(self._projected, derivatives, strict=True)
+        gradient: Real = np.sum([projected.gradient(own).sum(axis=0) for projected, own in pairs], axis=0)
+        return gradient
+
+    def _information(self, derivatives: list[Complex]) -> Real:
+        pairs = zip(self._projected, derivatives, strict=True)
+        information: Real = np.sum([projected.information(own).sum(axis=0) for projected, own in pairs], axis=0)
+        return information
+
+    @cached_property
+    def by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
+        pairs = list(zip(self._projected, self._derivatives, strict=True))
+        gradients = self._in_order([projected.gradient(own) for projected, own in pairs])
+        return gradients, self._in_order([projected.information(own, by_record=True) for projected, own in pairs])
+
+    @property
+    def noise_bias_of_information(self) -> Real:
+        """Information that noise alone adds: a motion that no drop excites has amplitudes too, those that noise fits."""
+        pairs = zip(self._projected, self._derivatives, strict=True)
+        bias: Real = np.sum([projected.noise_bias_of_information(own) for projected, own in pairs], axis=0)
+        return bias
+
+    @cached_property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+        found: dict[int, Real] = {}
+        for projected in self._projected:
+            positions = projected.sums.batch.positions.tolist()
+            found |= dict(zip(positions, projected.fitted(self.modes.poles), strict=True))
+        return tuple(found[position] for position in range(len(found)))
+
+    @cached_property
+    def states(self) -> Real:
+        """{X, Ẋ} of each drop at its first sample, SI, shape (drop, state)."""
         found = []
-        for solved in self._solve(weights):
-            right = self.modes.right[solved.sums.run.load][solved.sums.run.group]
-            found.append((right @ solved.amplitudes[:, :, None])[:, :, 0].real)
-        return self.likelihood.records.in_order(found)
+        for projected in self._projected:
+            batch = projected.sums.batch
+            right = self.modes.right[batch.load][batch.group]
+            found.append((right @ projected.amplitudes[:, :, None])[:, :, 0].real)
+        return self._in_order(found)
 
-    def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
-        """Follow the drop at a position, from samples before its first to samples after: {X, Ẋ}, SI, shape (state, time)."""
-        run, group = self.run_of(position)
-        poles, shapes = self.modes.poles[run.load[group]], self.modes.right[run.load[group]]
-        exponent = poles[:, None] * np.arange(-before, after) * run.step[group]
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """{X, Ẋ} of a drop from samples before its first to samples from it on, SI, shape (state, time)."""
+        load, step = self._load(drop)
+        poles, shapes = self.modes.poles[load], self.modes.right[load]
+        exponent = poles[:, None] * np.arange(-before, after) * step
         powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
-        amplitudes = np.linalg.solve(shapes, self.states(weights)[position].astype(np.complex128))
+        amplitudes = np.linalg.solve(shapes, self.states[drop].astype(np.complex128))
         motion: Real = ((shapes * amplitudes) @ powers).real
         return motion
 
-    def run_of(self, position: int) -> tuple[RecordBatch, int]:
-        """Give the run of one drop, by its position in the fit's list, and its group in that."""
-        run = next(run for run in self.likelihood.records.runs if position in run.order)
-        return run, int(run.group[np.flatnonzero(run.order == position)[0]])
+    def _load(self, drop: int) -> tuple[int, float]:
+        """Return the position of a drop's load, and its sampling interval, s."""
+        decay = self.objective.decays[drop]
+        return self.objective.loads.index(decay.load), 1.0 / decay.rate
 
-    def slopes_of(self, position: int) -> Complex:
-        """Give σ and τ of the drop at a position beside each other, τ per sample; shape (channel, parameter, 2 mode)."""
-        run, group = self.run_of(position)
-        slopes: Complex = self._slopes[[one is run for one in self.likelihood.records.runs].index(True)][group]
-        return slopes
+    def clock_delays(self, covariance: Real) -> dict[int, tuple[Real, Real]]:
+        """Return the delays of the loggers' clocks; see `HasClockDelays`."""
+        found: dict[int, tuple[Real, Real]] = {}
+        for projected, derivatives in zip(self._projected, self._derivatives, strict=True):
+            clocks = projected.clocks
+            if clocks is not None:
+                covariances = projected.delay_covariances(clocks, derivatives, covariance)
+                positions = projected.sums.batch.positions.tolist()
+                found |= dict(zip(positions, zip(clocks.values, covariances, strict=True), strict=True))
+        return found
 
-    def _solve(self, weights: Real) -> list[ProjectedResponse]:
-        return [sums.solve(weights) for sums in self._sums]
+    def most_likely_delays(self, shifts: Real) -> dict[int, Real]:
+        """Search for the delays of clocks that are hardly known; see `HasClockDelays`."""
+        return {
+            position: delays
+            for sums in self.sums
+            if sums.batch.clock_design.shape[1]
+            for position, delays in zip(
+                sums.batch.positions.tolist(), sums.most_likely_delays(self.weights, shifts), strict=True
+            )
+        }
 
-    def _solve_with(self, weights: Real, slopes: Sequence[Complex]) -> list[tuple[ProjectedResponse, Complex]]:
-        """Solve every run, and give its slopes where its delays are."""
-        return [(one, one.turned(own)) for one, own in zip(self._solve(weights), slopes, strict=True)]
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """Names of the loads in the order of the modes."""
+        return self.objective.loads
 
-    def _longhand(self, weights: Real) -> list[ExpmLikelihood]:
-        """Evaluate every drop the long way, in the fit's order."""
-        likelihood = self.likelihood
-        found = {}
-        for run in likelihood.records.runs:
-            for i, position in enumerate(run.order.tolist()):
-                group = run.group[i]
-                model, rate = likelihood.model_of[run.load[group]], 1.0 / float(run.step[group])
-                found[position] = evaluate_drop(
-                    model, likelihood.sensors, self.values, run.record(i), rate, run.present * weights
-                )
-        return [found[position] for position in range(likelihood.records.drops)]
+    @property
+    def sensor_rows(self) -> Real:
+        """Rows of the sensors, shape (channel, coordinate)."""
+        return np.asarray(self.objective.sensors.at(self.values))
+
+    def differentiate_response(self, forces: Complex) -> Complex:
+        """Return the derivatives of the readings by changes of the equations of motion; see `HasModalResponse`."""
+        objective = self.objective
+        _, readings = differentiate_response(
+            objective.side_by_side, objective.sensors, self.values, self.modes, forces, objective.span
+        )
+        return readings
+
+    def with_changes(self, readings: Complex) -> tuple[Real, Real]:
+        """Return gradient and information of the parameters and of changes behind them; see `HasModalResponse`."""
+        pairs = zip(self._derivatives, self._of_batches(readings), strict=True)
+        both = [np.ascontiguousarray(np.concatenate([own, added], axis=2)) for own, added in pairs]
+        return self._gradient(both), self._information(both)
+
+    def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
+        """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""
+        load, _ = self._load(drop)
+        batch, group = next(
+            (i, group) for i, batch in enumerate(self.objective.batches) if (group := batch.find(drop)) is not None
+        )
+        modes = self.modes
+        return modes.poles[load], modes.left[load], modes.shapes[load], self._derivatives[batch][group]

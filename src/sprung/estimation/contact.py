@@ -1,4 +1,4 @@
-"""Contact: which samples the tyres were on the ground for, told by the fitted vehicle.
+"""Contact: for which samples the tyres of the fitted vehicle are on the ground.
 
 Before a fit, the accelerometers say roughly when the last tyre has come down for good. A fitted vehicle says it exactly:
 carried backward and forward from its state at the start of a decay, it shows how far each tyre is compressed, and free
@@ -13,8 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import LikelihoodAt
-from sprung.estimation.fit import FitResult
+from sprung.estimation.fit_result import FitResult
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import WHEELS_AT, LinearModel
@@ -27,7 +26,7 @@ _COMPRESSED = 0.01
 _PASSES = 4
 
 _NO_WORSE = 1.1
-"""Noise after moving the starts over noise before, above which the records say that they were not to be moved."""
+"""Noise after moving the starts over noise before, above which they are left where they were."""
 
 _SHOCK, _FAR = 0.03, 5.0
 """s for which a landing may last at most, and times the noise from which a residual is not noise."""
@@ -48,7 +47,7 @@ def fit_from_contact(
     first: FitResult,
     again: Callable[[Sequence[FreeDecay], FitResult, Real], FitResult],
 ) -> tuple[tuple[FreeDecay, ...], FitResult]:
-    """Let the fitted vehicle say where each decay begins, and fit again, until it stays with what it said.
+    """Move the start of each decay to the last contact of its tyres in the fitted vehicle, and fit again until it stays.
 
     Parameters
     ----------
@@ -57,72 +56,64 @@ def fit_from_contact(
     models
         Equations of motion by load name.
     first
-        Where the fit of these decays ended.
+        The fit of these decays.
     again
-        Fits decays that begin elsewhere: from a summit and the {X, Ẋ} that it has where they begin, (drop, state).
+        Fits decays that begin elsewhere: from a fit and the {X, Ẋ} that it has where they begin, (drop, state).
 
     Returns
     -------
     decays
         With starts where the last tyre last touched.
-    summit
-        Where the fit of these decays ends.
+    fit
+        Of these decays.
     """
-    best, found = tuple(decays), first
+    best, fit = tuple(decays), first
     settled = False
-    for _ in range(_PASSES if isinstance(first.point.place, LikelihoodAt) else 1):
-        shifts, states = _shifts(best, models, found)
+    for _ in range(_PASSES if first.is_reversible else 1):
+        shifts, states = _shifts(best, models, fit)
         if not any(shifts):
             break
         moved = tuple(decay.shifted(shift) for decay, shift in zip(best, shifts, strict=True))
-        next_one = again(moved, found, states).after(found)
-        if np.any(next_one.noise > _NO_WORSE * found.noise):
+        refitted = again(moved, fit, states).after(fit)
+        if np.any(refitted.noise > _NO_WORSE * fit.noise):
             break
-        best, found, settled = moved, next_one, True
-    return best, found if settled else again(best, found, found.states).after(found)
+        best, fit, settled = moved, refitted, True
+    return best, fit if settled else again(best, fit, fit.states).after(fit)
 
 
-def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], found: FitResult) -> tuple[list[int], Real]:
-    """Give by how many samples the start of each decay has to be moved, and {X, Ẋ} there, shape (drop, state)."""
-    shifts, states = [], found.states.copy()
-    for i, decay in enumerate(decays):
-        matrices = models[decay.load].matrices(found.values)
+def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit: FitResult) -> tuple[list[int], Real]:
+    """Return the samples by which the start of each decay is to be moved, and {X, Ẋ} there, shape (drop, state)."""
+    shifts, states = [], fit.states.copy()
+    for drop, decay in enumerate(decays):
+        matrices = models[decay.load].matrices(fit.values)
         sag = np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY)
         static = sag[WHEELS_AT, None]  # how far the standing vehicle compresses its tyres
-        # Friction cannot be followed backward.
-        earlier, samples = decay.earlier.shape[1] if isinstance(found.point.place, LikelihoodAt) else 0, decay.samples
-        motion = found.point.place.motion(found.point.weights, i, earlier, min(samples, int(_LONGEST * decay.rate)))
+        earlier, samples = decay.earlier.shape[1] if fit.is_reversible else 0, decay.samples
+        motion = fit.motion(drop, earlier, min(samples, int(_LONGEST * decay.rate)))
         loose = np.flatnonzero((static - motion[WHEELS_AT] < _COMPRESSED * static).any(axis=0))
-        first = int(loose[-1]) + 1 + _wary(decay) if loose.size else 0
-        shocked = _shocked(decay, found, i)
-        first = max(first, earlier + shocked) if shocked else first
+        first = int(loose[-1]) + 1 + _interpolated(decay) if loose.size else 0
+        landing = 0 if fit.is_reversible else _landing(decay, fit, drop)
+        first = max(first, earlier + landing) if landing else first
         shift = first - earlier if first - earlier < _MOST * samples else 0
         shifts.append(shift)
-        states[i] = motion[:, min(earlier + shift, motion.shape[1] - 1)]
+        states[drop] = motion[:, min(earlier + shift, motion.shape[1] - 1)]
     return shifts, states
 
 
-def _shocked(decay: FreeDecay, found: FitResult, position: int) -> int:
-    """Give the samples at the start of a decay in which the landing is not yet over.
-
-    Friction turns round within a millisecond then, and no sampling follows it. Only what is stepped is held to that: elsewhere
-    nothing turns so fast.
-    """
-    place = found.point.place
-    if isinstance(place, LikelihoodAt):
-        return 0
-    left = place.left(position)[:, : int(_SHOCK * decay.rate)]
-    return int(np.max(np.flatnonzero((np.abs(left) > _FAR * found.noise[:, None]).any(axis=0)) + 1, initial=0))
+def _landing(decay: FreeDecay, fit: FitResult, drop: int) -> int:
+    """Return the samples at the start in which the landing is not over: friction reverses too fast for any sampling."""
+    residual = np.nan_to_num(fit.residuals[drop][:, : int(_SHOCK * decay.rate)])
+    return int(np.max(np.flatnonzero((np.abs(residual) > _FAR * fit.noise[:, None]).any(axis=0)) + 1, initial=0))
 
 
-def _wary(decay: FreeDecay) -> int:
-    """Give samples by which to stay away from the last contact where a logger interpolated: they have something of it."""
+def _interpolated(decay: FreeDecay) -> int:
+    """Return the samples after the last contact that a slower logger interpolated with samples from before it."""
     slowest = min(decay.rate_ratios, default=1.0)
     return round(_NEIGHBOURS / slowest) if slowest < 1 else 0
 
 
 def clear_of_splines(decay: FreeDecay) -> FreeDecay:
-    """Let the channels of slower loggers begin later, by as much as their interpolated samples have of earlier ones.
+    """Return a decay in which the channels of slower loggers begin later: their first samples are interpolated.
 
     Parameters
     ----------
@@ -131,8 +122,8 @@ def clear_of_splines(decay: FreeDecay) -> FreeDecay:
 
     Returns
     -------
-    Decay
-        In which these loggers are late by that.
+    FreeDecay
+        In which these loggers are delayed by that.
     """
     skips = [round(_NEIGHBOURS / clock.rate_ratio) if clock.rate_ratio < 1 else 0 for clock in decay.clocks]
     whole = np.concatenate([decay.earlier, decay.values], axis=1)

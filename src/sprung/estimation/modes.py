@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation.solution import differentiate_modes, solve_modes
+from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
 from sprung.vehicle import LinearModel, Rows, Sensor
 from sprung.vibration import Mode, largest_entry, name_modes, paper_name
@@ -78,7 +78,7 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
     """
     rows = Rows.of([sensor.row for sensor in sensors], fit.names)
     modes = solve_modes(model, rows, fit.values)
-    slopes = differentiate_modes(model, rows, fit.values, modes, 1.0).poles * fit.slopes[:, None]
+    slopes = differentiate_modes(model, rows, fit.values, modes, 1.0)[0] * fit.slopes[:, None]
     # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
     away = [
         np.linalg.eigvals(model.matrices(fit.moved(way * direction)).state).astype(np.complex128)

@@ -12,7 +12,6 @@ start that is nearly there.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,43 +42,44 @@ _WHEEL = 0.035  # mass of a wheel as a part of the body's, to make the equations
 
 
 def modulating_function_estimate(
-    runs: Sequence[RecordBatch], models: Sequence[LinearModel], sensors: Sequence[Sensor], outline: VehicleSize
+    batches: Sequence[RecordBatch], models: Sequence[LinearModel], sensors: Sequence[Sensor], size: VehicleSize
 ) -> dict[str, float] | None:
-    """Find parameters from the records in one step.
+    """Estimate the parameters from the records in one linear least squares.
 
     Parameters
     ----------
-    runs
+    batches
         The records.
     models
         Equations of motion by the position of the load.
     sensors
         The sensors.
-    outline
+    size
         Size of the vehicle; its mass is used where it was weighed, or where no load tells the scale.
 
     Returns
     -------
     dict or None
-        Parameters, SI, by name; None where the sensors do not see every coordinate, or no vehicle explains the records.
+        Parameters, SI, by name; None where the sensors do not observe every coordinate, or no vehicle explains the records.
     """
-    wheelbase = outline.wheelbase
+    wheelbase = size.wheelbase
     moved = [model.referred_to_front_axle(wheelbase) for model in models]
     names = moved[0].names
-    seen = Rows.of([sensor.row.referred_to_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
+    rows = Rows.of([sensor.row.referred_to_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
     sprung, ahead = 1 + names.index("m_s"), 1 + names.index("a")
     # m_s a² stands where I_yy does: only their sum can be found.
     keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))
     keys = [key for key in keys if key != _key(sorted((sprung, ahead, ahead)))]
-    motions = [(_Motion.of(run, seen), _terms(moved[run.load[0]], keys, wheelbase)) for run in _sketches(runs, seen)]
+    records = [(batch, _terms(moved[batch.load[0]], keys, wheelbase)) for batch in _decimated(batches, rows)]
+    motions = [(*_coordinates(batch, rows), float(batch.step[0]), terms) for batch, terms in records]
     normal = np.zeros((len(keys), len(keys)))
-    for falling, frequencies in _WINDOWS:
-        tables: dict[tuple[int, float], _Modulating] = {}
-        for motion, terms in motions:
-            kind = motion.coordinates.shape[2], motion.step
-            if kind not in tables:
-                tables[kind] = _Modulating.of(*kind, falling, frequencies)
-            normal += _normal(motion, tables[kind], terms)
+    for decay_rate, frequencies in _WINDOWS:
+        functions: dict[tuple[int, float], tuple[Real, Real, Real]] = {}
+        for accelerations, noise, step, terms in motions:
+            kind = accelerations.shape[2], step
+            if kind not in functions:
+                functions[kind] = _modulating_functions(*kind, decay_rate, frequencies)
+            normal += _normal_equations(accelerations, noise, functions[kind], terms)
     products = _products(normal, keys, (0, 0, sprung))
     if products is None:
         return None
@@ -88,19 +88,19 @@ def modulating_function_estimate(
     per_mass |= {"I_yy": per_mass["I_yy"] - per_mass["a"] ** 2, "b": wheelbase - per_mass["a"]}
     # A known load stands beside the vehicle's own masses as a number.
     load_share = products.get((0, 0, 0), 0.0)
-    mass = 1 / load_share if load_share > 0 and not outline.weighed else outline.sprung_mass
+    mass = 1 / load_share if load_share > 0 and not size.weighed else size.sprung_mass
     values = {name: value * (mass if PARAMETERS[name].scales else 1.0) for name, value in per_mass.items()}
-    sound = all(np.isfinite(value) and (value > 0 or not PARAMETERS[name].positive) for name, value in values.items())
-    return values if sound else None
+    usable = all(np.isfinite(value) and (value > 0 or not PARAMETERS[name].positive) for name, value in values.items())
+    return values if usable else None
 
 
 def _key(key: Sequence[int]) -> Key:
-    one, two, three = key
-    return one, two, three
+    first, second, third = key
+    return first, second, third
 
 
 def _products(normal: Real, keys: Sequence[Key], unit: Key) -> dict[Key, float] | None:
-    """Solve for the products as parts of one of them."""
+    """Solve for the products in units of one of them."""
     size = np.sqrt(np.maximum(np.diag(normal), 0.0))
     others = [i for i, key in enumerate(keys) if key != unit and size[i] > 0]
     if not others or not np.isfinite(normal).all():
@@ -112,7 +112,7 @@ def _products(normal: Real, keys: Sequence[Key], unit: Key) -> dict[Key, float] 
 
 
 def _terms(model: LinearModel, keys: Sequence[Key], wheelbase: float) -> Real:
-    """Give what each product multiplies, equations divided by usual masses; shape (product, 7, 21)."""
+    """Return what each product multiplies, equations divided by usual masses; shape (product, 7, 21)."""
     masses = np.array([1.0, wheelbase**2 / 4, wheelbase**2 / 16, *[_WHEEL] * 4])
     terms = np.zeros((len(keys), 7, 21))
     for key, term in zip(model.products.tolist(), model.terms, strict=True):
@@ -122,98 +122,71 @@ def _terms(model: LinearModel, keys: Sequence[Key], wheelbase: float) -> Real:
     return terms
 
 
-def _sketches(runs: Sequence[RecordBatch], seen: Real) -> list[RecordBatch]:
-    """Thin the records of every load, and cut them to one length as far as they are of a similar one."""
+def _decimated(batches: Sequence[RecordBatch], rows: Real) -> list[RecordBatch]:
+    """Return records of every load decimated, and cut to one length as far as they are of a similar one."""
     groups = [
-        (run, i)
-        for run in runs
-        if np.linalg.matrix_rank(seen[run.present > 0]) == seen.shape[1]
-        for i in range(len(run.load))
+        (batch, group)
+        for batch in batches
+        if np.linalg.matrix_rank(rows[batch.channel_weights > 0]) == rows.shape[1]
+        for group in range(len(batch.load))
     ]
-    first = [run.sketch(group, _RATE, _LONGEST, _MOST) for run, group in groups]
-    durations = np.array([float(one.samples[0] * one.step[0]) for one in first])
+    records = [batch.decimated(group, _RATE, _LONGEST, _MOST) for batch, group in groups]
+    durations = np.array([batch.duration for batch in records])
     common = durations[2 * durations > durations.max(initial=0.0)].min(initial=_LONGEST)
     return [
-        one if duration <= common else one.shortened(common) for one, duration in zip(first, durations, strict=True)
+        batch if duration <= common else batch.shortened(common)
+        for batch, duration in zip(records, durations, strict=True)
     ]
 
 
-class _Motion(NamedTuple):
-    """Accelerations of the coordinates in records of one length.
-
-    Attributes
-    ----------
-    coordinates
-        Shape (record, 7, time).
-    noise
-        Its covariance between the coordinates, shape (7, 7).
-    step
-        Sampling interval, s.
-    """
-
-    coordinates: Real
-    noise: Real
-    step: float
-
-    @classmethod
-    def of(cls, run: RecordBatch, seen: Real) -> _Motion:
-        used = run.present > 0
-        to_coordinates = np.linalg.pinv(seen[used])
-        records = np.array([run.record(i) for i in range(len(run.samples))])[:, used]
-        # From differences of the last third, where hardly anything else is left.
-        late = np.diff(records[:, :, -max(records.shape[2] // 3, 3) :], 2, axis=2)
-        noise = (to_coordinates * (np.mean(late**2, axis=(0, 2)) / 6)) @ to_coordinates.T
-        return cls(to_coordinates @ records, noise, float(run.step[0]))
+def _coordinates(batch: RecordBatch, rows: Real) -> tuple[Real, Real]:
+    """Return accelerations of the coordinates, shape (record, 7, time), and the covariance of their noise, shape (7, 7)."""
+    used = batch.channel_weights > 0
+    to_coordinates = np.linalg.pinv(rows[used])
+    records = np.array([batch.record(i) for i in range(len(batch.samples))])[:, used]
+    # From differences of the last third, where hardly anything but noise is left.
+    differences = np.diff(records[:, :, -max(records.shape[2] // 3, 3) :], 2, axis=2)
+    noise = (to_coordinates * (np.mean(differences**2, axis=(0, 2)) / 6)) @ to_coordinates.T
+    return to_coordinates @ records, noise
 
 
-class _Modulating(NamedTuple):
-    """Modulating functions of one length: p₃, -p₂ and p₁ of ψ = u⁵(1-u)⁵ e^{-st}, u running from 0 to 1.
+def _modulating_functions(samples: int, step: float, decay_rate: float, frequencies: Real) -> tuple[Real, Real, Real]:
+    """Return p₃, -p₂ and p₁ of ψ = u⁵(1-u)⁵ e^{-st}, u running from 0 to 1.
 
-    Attributes
-    ----------
+    Returns
+    -------
     real, imaginary
         Shape (function, 3, time).
     overlap
         Real part of their inner products, shape (function, 3, 3).
     """
-
-    real: Real
-    imaginary: Real
-    overlap: Real
-
-    @classmethod
-    def of(cls, samples: int, step: float, rate: float, frequencies: Real) -> _Modulating:
-        s = np.asarray(rate + 2j * np.pi * frequencies, dtype=np.complex128)
-        duration = (samples - 1) * step
-        powers = np.linspace(0.0, 1.0, samples) ** np.arange(_BUMP.shape[1])[:, None]
-        derivatives = _BUMP @ powers / duration ** np.arange(4)[:, None]
-        # Leibniz: the derivatives of a product with an exponential.
-        one, nothing = np.ones_like(s), np.zeros_like(s)
-        rows = np.array(
-            [[-(s**3), 3 * s**2, -3 * s, one], [-(s**2), 2 * s, -one, nothing], [-s, one, nothing, nothing]]
-        )
-        falling = exponentials(-s * step, samples).T
-        size = np.linalg.norm(derivatives[0] * falling, axis=1)
-        functions = np.moveaxis(rows, 2, 0) @ derivatives
-        functions *= (falling / size[:, None])[:, None]
-        real, imaginary = np.ascontiguousarray(functions.real), np.ascontiguousarray(functions.imag)
-        overlap = real @ np.swapaxes(real, 1, 2) + imaginary @ np.swapaxes(imaginary, 1, 2)
-        return cls(real, imaginary, overlap)
+    s = np.asarray(decay_rate + 2j * np.pi * frequencies, dtype=np.complex128)
+    duration = (samples - 1) * step
+    powers = np.linspace(0.0, 1.0, samples) ** np.arange(_BUMP.shape[1])[:, None]
+    derivatives = _BUMP @ powers / duration ** np.arange(4)[:, None]
+    # Leibniz: the derivatives of a product with an exponential.
+    unit, zero = np.ones_like(s), np.zeros_like(s)
+    leibniz = np.array([[-(s**3), 3 * s**2, -3 * s, unit], [-(s**2), 2 * s, -unit, zero], [-s, unit, zero, zero]])
+    waves = exponentials(-s * step, samples).T
+    size = np.linalg.norm(derivatives[0] * waves, axis=1)
+    functions = np.moveaxis(leibniz, 2, 0) @ derivatives
+    functions *= (waves / size[:, None])[:, None]
+    real, imaginary = np.ascontiguousarray(functions.real), np.ascontiguousarray(functions.imag)
+    return real, imaginary, real @ np.swapaxes(real, 1, 2) + imaginary @ np.swapaxes(imaginary, 1, 2)
 
 
-def _normal(motion: _Motion, table: _Modulating, terms: Real) -> Real:
-    """Give the normal equations of the products, shape (product, product)."""
-    records, _, samples = motion.coordinates.shape
-    flat = motion.coordinates.reshape(-1, samples)
-    parts = [flat @ part.reshape(-1, samples).T for part in (table.real, table.imaginary)]
-    integrals = np.array(parts).reshape(2, records, 7, -1, 3).transpose(4, 2, 0, 1, 3).reshape(21, 2 * records, -1)
+def _normal_equations(accelerations: Real, noise: Real, functions: tuple[Real, Real, Real], terms: Real) -> Real:
+    """Return the normal equations of the products, what noise adds on average subtracted; shape (product, product)."""
+    records, _, samples = accelerations.shape
+    flat = accelerations.reshape(-1, samples)
+    *parts, overlap = functions
+    integrals = np.array([flat @ part.reshape(-1, samples).T for part in parts])
+    integrals = integrals.reshape(2, records, 7, -1, 3).transpose(4, 2, 0, 1, 3).reshape(21, 2 * records, -1)
     normal = np.zeros((len(terms), len(terms)))
     for own in np.unique(_OWN):
-        weights = 1 / (table.overlap[:, 0, 0] + own**4 * table.overlap[:, 2, 2])
+        weights = 1 / (overlap[:, 0, 0] + own**4 * overlap[:, 2, 2])
         weighted = (integrals * np.sqrt(weights)).reshape(21, -1)
-        noise_bias_of_information = records * np.kron(np.tensordot(weights, table.overlap, 1), motion.noise)
+        noise_bias = records * np.kron(np.tensordot(weights, overlap, 1), noise)
         design = terms[:, own == _OWN]
-        normal += np.tensordot(
-            design @ (weighted @ weighted.T - noise_bias_of_information), design, axes=([1, 2], [1, 2])
-        )
+        normal += np.tensordot(design @ (weighted @ weighted.T - noise_bias), design, axes=([1, 2], [1, 2]))
     return normal

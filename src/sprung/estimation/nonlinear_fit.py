@@ -1,4 +1,4 @@
-"""Beyond the linear vehicle: what each extra would gain, told from one place, and the fit with those that were chosen."""
+"""The fit of a vehicle with nonlinear forces, and the score test of more of them."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.fit import NEAR, FitResult
+from sprung.estimation.fit_result import FitResult
+from sprung.estimation.linear_fit import NEAR
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
-from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate, identifiable_subspace
-from sprung.estimation.time_stepping import SteppedLikelihood, SteppedLikelihoodAt
+from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
+from sprung.estimation.score_test import score_test
+from sprung.estimation.time_stepping import TimeSteppingObjective
+from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
@@ -20,19 +23,18 @@ from sprung.vehicle import NonlinearModel, Rows, Sensor
 Real = NDArray[np.float64]
 
 _COARSE, _FINE = 0.0025, 0.00101
-"""s of a step at most: on the way, and where what it errs by must not be taken for anything else."""
+"""s of a step at most: on the way, and where its error must not be taken for anything else."""
 
-_MOST = 100
-"""Steps at the most."""
+_MOST_STEPS = 100
 
-_ANEW = 2
-"""Times that a climb begins anew where a friction has gone astray."""
+_RESTARTS = 2
+"""Times that a fit starts again where the memory of a friction is impossible."""
 
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
 
 _BOUND = 1e-9
-"""Part of a direction, of length one, that exact knowledge forbids, from which it does."""
+"""Part of a direction, of length one, that constraints forbid, from which they do."""
 
 
 def fit_nonlinear(
@@ -46,11 +48,11 @@ def fit_nonlinear(
     enough: float = CONVERGED,
     near: bool = False,
     begun: bool = False,
-    most: int = _MOST,
+    most: int = _MOST_STEPS,
     tilting: bool = False,
     progress: Progress = silent,
 ) -> FitResult:
-    """Maximise the likelihood of all decays under a vehicle with nonlinear forces.
+    """Fit one vehicle with nonlinear forces to all decays by maximum likelihood.
 
     Parameters
     ----------
@@ -70,35 +72,36 @@ def fit_nonlinear(
     enough
         Expected gain in log-likelihood at which to stop.
     near
-        Whether the start is near the summit.
+        Whether the start is near the optimum.
     begun
-        Whether the beginnings of the decays will do.
+        Whether the first second of each decay will do.
     most
         Steps at the most, of each fit on the way.
     tilting
-        Whether the sensors turn with the body, and feel the less of gravity.
+        Whether the sensors turn with the body, and measure the less of gravity.
     progress
         Called with each step that begins.
 
     Returns
     -------
-    Summit
+    FitResult
     """
     laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     steps, values = 0, dict(start)
-    near_it = max(enough, NEAR)
-    stages = [([_begun(decay) for decay in decays], near_it, _COARSE)] if begun or not near else []
+    stages = [([_beginning(decay) for decay in decays], max(enough, NEAR), _COARSE)] if begun or not near else []
     if not begun:
         stages.append((list(decays), enough, _FINE))
-    for part, gain, longest in stages:
-        problem = _climb(part, models, sensors, known, values, states, tilting, longest)
-        point = _to_the_top(problem, values, gain, most)
-        states, steps = point.place.states(point.weights), steps + point.steps
-        # Whoever climbs on starts with the initial states that were found.
-        problem = replace(problem, likelihood=problem.likelihood.beginning(states))
-        values = dict(zip(problem.priors.coordinates.names, point.place.values.tolist(), strict=True))
-    return FitResult(problem, point, steps, 1, 1)
+    for part, tolerance, longest_step in stages:
+        objective = _objective(part, models, sensors, states, tilting, longest_step)
+        problem = _problem(objective, known, values)
+        found = _maximise(problem, objective, values, tolerance, most)
+        states, steps = found.point.at.states, steps + found.steps
+        values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
+    # Whoever goes on from here starts with the initial states that were found.
+    return FitResult(
+        replace(problem, objective=objective.with_states(states)), found.point, steps, found.converged, 1, 1
+    )
 
 
 def score_stepped_terms(
@@ -113,7 +116,7 @@ def score_stepped_terms(
     candidates: Mapping[str, Sequence[Sequence[str]]],
     tilting: bool = False,
 ) -> dict[str, float]:
-    """Score larger models against a smaller one that is fitted already.
+    """Return what larger models would gain over one that is fitted already, by score tests from one evaluation.
 
     Parameters
     ----------
@@ -133,101 +136,78 @@ def score_stepped_terms(
     Returns
     -------
     dict
-        What each would gain in twice the log-likelihood, to second order: score tests, all from one evaluation
-        (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50).
+        In twice the log-likelihood, to second order.
     """
-    problem = _climb(decays, models, sensors, known, values, states, tilting, _COARSE)
-    names = problem.priors.coordinates.names
-    u = _bound(problem, values)
-    point = problem.at(u)
-    slopes, prior = problem.priors.coordinates.slopes(u), problem.priors.prior(u)
-    free = problem.priors.free(u)
-    information = point.evaluation.information * np.outer(slopes, slopes) + prior.slopes.T @ prior.slopes
-    gradient = point.evaluation.gradient * slopes + prior.slopes.T @ prior.residual
+    objective = _objective(decays, models, sensors, states, tilting, _COARSE)
+    problem = _problem(objective, known, values)
+    names, priors = problem.priors.coordinates.names, problem.priors
+    u = priors.project(priors.coordinates.from_parameters(values))
+    information, gradient, null_space = problem.system(problem.start(u))
 
-    def gain(directions: Sequence[Sequence[str]]) -> float:
+    def project(directions: Sequence[Sequence[str]]) -> Real:
+        """Return what constraints leave of directions, in the null space; as columns."""
         basis = np.array([[float(name in direction) for name in names] for direction in directions]).T
-        # Of these, what exact knowledge leaves free.
-        _, bound, ways = np.linalg.svd(basis - free @ (free.T @ basis))
-        basis = basis @ ways[int(np.sum(bound > _BOUND)) :].T
-        system, slope = basis.T @ information @ basis, basis.T @ gradient
-        told = identifiable_subspace(system)
-        return float(slope @ told @ np.linalg.solve(told.T @ system @ told, told.T @ slope))
+        along = null_space.T @ basis
+        _, forbidden, combinations = np.linalg.svd(basis - null_space @ along)
+        unconstrained: Real = along @ combinations[int(np.sum(forbidden > _BOUND)) :].T
+        return unconstrained
 
-    before = gain(together)
-    return {name: gain([*together, *more]) - before for name, more in candidates.items()}
-
-
-def wald_test(optimum: FitResult, constraints: Sequence[tuple[str, str | float]]) -> float:
-    """Say what the likelihood would lose, to second order, if parameters had certain values.
-
-    Parameters
-    ----------
-    summit
-        Where a fit ended.
-    constraints
-        Parameters, and what each would be: a value, SI, or another parameter.
-
-    Returns
-    -------
-    float
-        Of twice the log-likelihood: the test of Wald, Trans. Am. Math. Soc. 54 (1943) 426.
-    """
-    coordinates, u, names = optimum.problem.priors.coordinates, optimum.point.u, optimum.names
-    rows, away = np.zeros((len(constraints), len(names))), np.zeros(len(constraints))
-    for row, (i, (name, other)) in zip(rows, enumerate(constraints), strict=True):
-        own = names.index(name)
-        row[own] = 1.0
-        if isinstance(other, str):
-            row[names.index(other)] = -1.0
-            away[i] = row @ u
-        else:
-            there = np.where(np.arange(len(names)) == own, other, optimum.values)
-            away[i] = u[own] - coordinates.of(there)[own]
-    information, _, free = optimum.problem.system(optimum.point)
-    told = identifiable_subspace(information)
-    seen = rows @ free @ told
-    spread = seen @ np.linalg.solve(told.T @ information @ told, seen.T)
-    return float(away @ np.linalg.pinv(spread) @ away)
+    fitted = project(together)
+    gains = {}
+    for name, directions in candidates.items():
+        basis = np.hstack([fitted, project([*together, *directions])])
+        # Of the larger model's directions those that the smaller one has not.
+        added = (
+            basis[:, fitted.shape[1] :] - fitted @ np.linalg.lstsq(fitted, basis[:, fitted.shape[1] :], rcond=None)[0]
+        )
+        left, sizes, _ = np.linalg.svd(added, full_matrices=False)
+        basis = np.hstack([fitted, left[:, sizes > _BOUND]])
+        gains[name] = score_test(basis.T @ information @ basis, basis.T @ gradient, fitted.shape[1]).gain()
+    return gains
 
 
-def _climb(
+def _objective(
     decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
     sensors: Sequence[Sensor],
-    known: Mapping[str, KnownValue],
-    typical: Mapping[str, float],
     states: Real,
     tilting: bool,
-    longest: float,
+    longest_step: float,
+) -> TimeSteppingObjective:
+    rows = Rows.of([sensor.row for sensor in sensors], next(iter(models.values())).names)
+    return TimeSteppingObjective(tuple(decays), models, rows, states, tilting, longest_step)
+
+
+def _problem(
+    objective: TimeSteppingObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
 ) -> EstimationProblem:
-    names = next(iter(models.values())).names
-    rows = Rows.of([sensor.row for sensor in sensors], names)
-    likelihood = SteppedLikelihood.of(decays, models, rows, states, tilting, longest)
-    return EstimationProblem(likelihood, PriorsAndConstraints(Coordinates.beside(names, typical), known))
+    names = next(iter(objective.models.values())).names
+    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
 
 
-def _to_the_top(problem: EstimationProblem, values: Mapping[str, float], enough: float, most: int) -> Iterate:
-    """Climb, and once more from where no friction remembers what it cannot, as long as that leads higher."""
-    names = problem.priors.coordinates.names
-    point = problem.maximise(_bound(problem, values), None, enough, CLOSE_BY, most)
-    for _ in range(_ANEW):
-        begin = point.place.believable() if isinstance(point.place, SteppedLikelihoodAt) else None
-        if begin is None:
+def _maximise(
+    problem: EstimationProblem,
+    objective: TimeSteppingObjective,
+    values: Mapping[str, float],
+    tolerance: float,
+    most: int,
+) -> Maximum[Iterate]:
+    """Maximise, and once more without impossible memories of friction, as long as that is more likely."""
+    priors = problem.priors
+    u = priors.project(priors.coordinates.from_parameters(values))
+    best = problem.maximise(u, None, tolerance, CLOSE_BY, most)
+    for _ in range(_RESTARTS):
+        states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
+        if states is None:
             break
-        anew = replace(problem, likelihood=point.place.likelihood.beginning(begin))
-        there = dict(zip(names, point.place.values.tolist(), strict=True))
-        found = anew.maximise(_bound(problem, there), None, enough, CLOSE_BY, most)
-        if problem.cost(found) >= problem.cost(point):
+        restarted = replace(problem, objective=objective.with_states(states))
+        found = restarted.maximise(best.point.u, None, tolerance, CLOSE_BY, most)
+        if problem.cost(found.point) >= problem.cost(best.point):
             break
-        point = replace(found, steps=point.steps + found.steps)
-    return point
+        best = found._replace(steps=best.steps + found.steps)
+    return best
 
 
-def _bound(problem: EstimationProblem, values: Mapping[str, float]) -> Real:
-    return problem.priors.bind(problem.priors.coordinates.by_name(values))
-
-
-def _begun(decay: FreeDecay) -> FreeDecay:
-    """Give the beginning of a decay."""
+def _beginning(decay: FreeDecay) -> FreeDecay:
+    """Return the beginning of a decay."""
     return replace(decay, values=decay.values[:, : int(_HORIZON * decay.rate)])

@@ -69,6 +69,25 @@ def autocorrelation_inflation(
     return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
 
 
+def von_neumann_ratio(residuals: Sequence[Real]) -> Real:
+    """Return the variance of residuals over that of white noise with the same differences.
+
+    Parameters
+    ----------
+    residuals
+        One record for each drop, shape (channel, time), NaN in channels that are left out.
+
+    Returns
+    -------
+    ndarray
+        About 1 for white noise, much more where a motion is left, 0 for channels that are left out; shape (channel,).
+        From second differences, which a slow drift does not change (J. von Neumann, Ann. Math. Stat. 12 (1941) 367).
+    """
+    squares = np.nansum([np.mean(record**2, axis=1) for record in residuals], axis=0)
+    differences = np.nansum([np.mean(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in residuals], axis=0) / 6
+    return np.asarray(squares / np.maximum(differences, np.finfo(float).tiny))
+
+
 def birge_ratio(scores: Real, informations: Real) -> float:
     """Estimate by how much the drops differ from each other beyond their noise.
 
@@ -90,7 +109,7 @@ def birge_ratio(scores: Real, informations: Real) -> float:
     A model error that is the same in every drop goes unseen here; one that depends on how far or which way the vehicle
     moved, as geometry and friction do, does not.
     """
-    squares, directions = corrections(scores, informations)
+    squares, directions = drop_corrections(scores, informations)
     freedom = int(directions.sum()) - scores.shape[1]
     if freedom <= 0:
         return 1.0
@@ -98,7 +117,7 @@ def birge_ratio(scores: Real, informations: Real) -> float:
     return ratio if ratio > 1 + _SIGNIFICANT * np.sqrt(2 / freedom) else 1.0
 
 
-def corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np.int64]]:
+def drop_corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np.int64]]:
     """Give each drop's own correction to the joint estimate, in units of its own uncertainty, squared and added up.
 
     Parameters

@@ -1,11 +1,10 @@
-"""What is known beforehand, as the fit uses it: exact statements bind the parameters, uncertain ones pull at them."""
+"""What is known beforehand: exact statements are constraints of the fit, uncertain ones its priors."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,21 +21,6 @@ _FINEST = 1e-6
 
 _TRAVEL = 0.03
 """m of travel at which a spring's force is the size of a friction that is large."""
-
-
-class Prior(NamedTuple):
-    """The uncertain statements at some parameter values.
-
-    Attributes
-    ----------
-    residual
-        (known - value) / std, shape (statement,).
-    slopes
-        Derivative of value / std by the fit's coordinates, shape (statement, coordinate).
-    """
-
-    residual: Real
-    slopes: Real
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +42,8 @@ class Coordinates:
     references: Real
 
     @classmethod
-    def beside(cls, names: tuple[str, ...], typical: Mapping[str, float]) -> Coordinates:
-        """Make coordinates of parameters, those that may be zero in sizes of a typical vehicle's, SI by name."""
+    def scaled_by(cls, names: tuple[str, ...], typical: Mapping[str, float]) -> Coordinates:
+        """Return coordinates of parameters, those that may be zero scaled by a typical vehicle's, SI by name."""
         return cls(names, np.array([_reference(name, typical) for name in names]))
 
     @cached_property
@@ -67,21 +51,21 @@ class Coordinates:
         return np.array([PARAMETERS[name].positive for name in self.names])
 
     def values(self, u: Real) -> Real:
-        """Give parameter values, SI, at coordinates."""
+        """Parameter values, SI, at coordinates."""
         values = self.references * u
         values[self._logarithmic] = np.exp(u[self._logarithmic])
         return values
 
-    def by_name(self, values: Mapping[str, float]) -> Real:
-        """Give coordinates at parameter values, SI, by name."""
-        return self.of(np.array([values[name] for name in self.names]))
+    def from_parameters(self, values: Mapping[str, float]) -> Real:
+        """Coordinates of parameter values, SI, by name."""
+        return self.from_values(np.array([values[name] for name in self.names]))
 
-    def slopes(self, u: Real) -> Real:
-        """Give the derivative of each value by its coordinate; shape (parameter,)."""
+    def derivatives(self, u: Real) -> Real:
+        """Return the derivative of each value by its coordinate, shape (parameter,)."""
         return np.where(self._logarithmic, self.values(u), self.references)
 
-    def of(self, values: Real) -> Real:
-        """Give coordinates at parameter values, SI."""
+    def from_values(self, values: Real) -> Real:
+        """Coordinates of parameter values, SI."""
         u = values / self.references
         u[self._logarithmic] = np.log(values[self._logarithmic])
         return u
@@ -106,7 +90,7 @@ class PriorsAndConstraints:
 
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
-        """Names, values and sizes of error that count as one; of the exact statements, and of the others."""
+        """Names, values and scales of the exact statements, and of the others."""
         chosen = {}
         for exact in (True, False):
             those = {name: known for name, known in self.statements.items() if known.is_exact == exact}
@@ -117,31 +101,39 @@ class PriorsAndConstraints:
         return chosen
 
     def _at(self, u: Real, exact: bool) -> tuple[Real, Real]:
-        """Give what statements differ from what the coordinates make of them, and the slopes of that, in their sizes."""
+        """Residuals of statements at coordinates and their derivatives, both over the statements' scales."""
         names, known, sizes = self._chosen[exact]
         if not names:
             return np.zeros(0), np.zeros((0, len(u)))
-        values, slopes = self.coordinates.values(u), self.coordinates.slopes(u)
+        values, derivatives = self.coordinates.values(u), self.coordinates.derivatives(u)
         found = [evaluate_quantity(name, self.coordinates.names, values) for name in names]
-        rows = np.array([gradient for _, gradient in found]) * slopes
+        rows = np.array([gradient for _, gradient in found]) * derivatives
         sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero
         return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
 
-    def prior(self, u: Real) -> Prior:
-        """Give the uncertain statements as observations in units of their own standard uncertainty."""
-        return Prior(*self._at(u, exact=False))
+    def residuals(self, u: Real) -> tuple[Real, Real]:
+        """Return residuals of the uncertain statements, and their derivatives.
+
+        Returns
+        -------
+        residuals
+            (known - value) / std, shape (statement,).
+        derivatives
+            Of value / std by the coordinates, shape (statement, coordinate).
+        """
+        return self._at(u, exact=False)
 
     def without(self, name: str) -> PriorsAndConstraints:
-        """Give the knowledge without one statement."""
+        """Return the same without one statement."""
         return replace(self, statements={one: known for one, known in self.statements.items() if one != name})
 
     def change(self, name: str, u: Real, step: Real) -> float:
-        """Give by how much a quantity changes with a step of the coordinates, to first order, SI."""
+        """Change of a quantity with a step of the coordinates, to first order, SI."""
         _, gradient = evaluate_quantity(name, self.coordinates.names, self.coordinates.values(u))
-        return float(gradient * self.coordinates.slopes(u) @ step)
+        return float(gradient * self.coordinates.derivatives(u) @ step)
 
-    def bind(self, u: Real) -> Real:
-        """Move coordinates, by the shortest way, to where every exact statement holds."""
+    def project(self, u: Real) -> Real:
+        """Return the nearest coordinates at which every exact statement holds."""
         for _ in range(20):
             residual, rows = self._at(u, exact=True)
             if np.all(np.abs(residual) <= 1e-14):
@@ -149,8 +141,8 @@ class PriorsAndConstraints:
             u = u + np.linalg.pinv(rows) @ residual
         return u
 
-    def free(self, u: Real) -> Real:
-        """Give an orthonormal basis of the directions that the exact statements leave free.
+    def null_space(self, u: Real) -> Real:
+        """Return an orthonormal basis of the directions in which no exact statement changes.
 
         Returns
         -------
@@ -166,9 +158,9 @@ class PriorsAndConstraints:
 
 
 def _reference(name: str, typical: Mapping[str, float]) -> float:
-    """Give the size by which a parameter's coordinate is multiplied, SI; 1 for those that are fitted by their logarithms."""
-    told = PARAMETERS[name]
-    if told.positive or not told.scales:
+    """Scale of a parameter's coordinate, SI; 1 for those that are fitted by their logarithms."""
+    parameter = PARAMETERS[name]
+    if parameter.positive or not parameter.scales:
         return 1.0
     stiffness = typical["k_sf"]
     sizes = {
@@ -178,4 +170,4 @@ def _reference(name: str, typical: Mapping[str, float]) -> float:
         "N s/m": typical["c_sf"],
         "kg": typical["m_uf"],
     }
-    return sizes[told.unit]
+    return sizes[parameter.unit]

@@ -1,4 +1,4 @@
-"""The joint fit: maximise the likelihood of all drops and loads at once, from starts of its own, and say how sure it is."""
+"""The covariance of a joint fit: information, what noise adds to it, and overdispersion."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation.fit import STARTS, FitResult, escape_local_optimum, fit_linear
-from sprung.estimation.overdispersion import autocorrelation_inflation
+from sprung.estimation.fit_result import FitResult
+from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
+from sprung.estimation.objective import HasNoiseBias
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay
@@ -21,13 +22,13 @@ from sprung.vehicle import PARAMETERS, LinearModel, Sensor
 Real = NDArray[np.float64]
 
 Inflater = Literal["nothing", "coloured residuals", "drops that disagree"]
-"""What shows that the records tell less than white residuals would."""
+"""What shows that the records have less information than white residuals would."""
 
 _BEYOND_DOUBT = 1e4
-"""Information that noise never feigns: one percent of uncertainty."""
+"""Information that noise alone never adds: one percent of uncertainty."""
 
-_FEIGNED = 4.0
-"""How many times what noise feigns on average is taken off: more than that it feigns hardly ever."""
+_BIAS_FACTOR = 4.0
+"""How many times what noise adds on average is subtracted: more than that it adds hardly ever."""
 
 _LEAST = 0.01
 """Information that a direction without any is given, so that it hides behind no other: ten powers of e of uncertainty."""
@@ -104,7 +105,7 @@ class FitStatistics:
     most_coloured: int | None = None
 
     def moved(self, step: Real) -> Real:
-        """Give parameter values, SI, a step of the coordinates away, shape (parameter,)."""
+        """Return parameter values, SI, a step of the coordinates away, shape (parameter,)."""
         logarithmic, scales = np.array([(PARAMETERS[name].positive, PARAMETERS[name].scales) for name in self.names]).T
         # What scales everything is taken apart: it multiplies those that are not fitted by their logarithms as well.
         alike = float(step @ self.scaling) / max(float(self.scaling @ self.scaling), np.finfo(float).tiny)
@@ -115,7 +116,7 @@ class FitStatistics:
         return np.where(scales, moved * np.exp(alike), moved)
 
     def only(self, names: Sequence[str]) -> FitStatistics:
-        """Give what the fit says of some of its parameters, whatever the others are."""
+        """Return the marginal statistics of some of the parameters."""
         chosen = [self.names.index(name) for name in names]
         square = np.ix_(chosen, chosen)
         return replace(
@@ -135,13 +136,13 @@ class FitStatistics:
         return np.where(scales, self.values / self.slopes, 0.0)
 
     def size(self, name: str) -> float:
-        """Give what counts as much of a parameter: its value, or, where that may be zero, what would matter beside others."""
+        """Size of a parameter: its value, or, where that may be zero, what would matter beside others."""
         at = self.names.index(name)
         value = abs(float(self.values[at]))
         return value if PARAMETERS[name].positive else max(value, abs(float(self.slopes[at])))
 
     def spread(self, direction: Real, value: float) -> float | None:
-        """Give the standard uncertainty of a function of the coordinates.
+        """Return the standard uncertainty of a function of the coordinates.
 
         Parameters
         ----------
@@ -168,7 +169,7 @@ def fit_jointly(
     start: Mapping[str, float] | None = None,
     starts: int = STARTS,
 ) -> FitStatistics:
-    """Fit one vehicle to all decays: `fit_linear`, and `uncertainty_of` where that ends.
+    """Fit one vehicle to all decays and return its uncertainty: `fit_linear`, then `uncertainty_of`.
 
     Parameters
     ----------
@@ -177,92 +178,76 @@ def fit_jointly(
 
     Returns
     -------
-    Fit
+    FitStatistics
     """
     return uncertainty_of(escape_local_optimum(fit_linear(decays, models, sensors, known, start=start, starts=starts)))
 
 
-def uncertainty_of(optimum: FitResult) -> FitStatistics:
+def uncertainty_of(fit: FitResult) -> FitStatistics:
     """Return the covariance of the estimates, and what it rests on.
 
     Parameters
     ----------
-    optimum
+    fit
         Where the fit ended.
 
     Returns
     -------
-    Fit
+    FitStatistics
     """
-    problem, best, priors = optimum.problem, optimum.point, optimum.problem.priors
-    colours = _colours(optimum)
-    colour = float(colours.max())
-    inflated = max(colour, optimum.disagreement)
-    coloured = 1 < colour == inflated
-
-    eigenvalues, directions = _directions(optimum, inflated)
+    problem, optimum = fit.problem, fit.iterate
+    by_channel = fit.autocorrelation_inflation
+    inflation = fit.overdispersion
+    is_coloured = 1 < float(by_channel.max()) == inflation
+    eigenvalues, directions = _directions(fit, inflation)
     relative = directions @ (directions / np.maximum(eigenvalues, _LEAST)).T
-    slopes = priors.coordinates.slopes(best.u)
+    derivatives = problem.priors.coordinates.derivatives(optimum.u)
     return FitStatistics(
-        names=optimum.names,
-        values=optimum.values,
-        slopes=slopes,
+        names=fit.names,
+        values=fit.values,
+        slopes=derivatives,
         relative_covariance=relative,
-        covariance=relative * np.outer(slopes, slopes),
+        covariance=relative * np.outer(derivatives, derivatives),
         undetermined=canonical_basis(directions[:, eigenvalues < NO_INFORMATION]),
-        noise=optimum.noise,
-        residual=best.evaluation.residual,
-        inflation=inflated,
-        fitted=optimum.fitted,
-        residuals=optimum.residuals,
-        contradictions=problem.contradictions(best, inflated),
-        loglikelihood=optimum.loglikelihood,
-        iterations=optimum.steps,
-        converged=optimum.converged,
-        starts_agreeing=optimum.starts_agreeing,
-        starts=optimum.starts,
-        inflated_by="nothing" if inflated == 1 else "coloured residuals" if coloured else "drops that disagree",
-        most_coloured=int(colours.argmax()) if coloured else None,
+        noise=fit.noise,
+        residual=fit.residual_sums,
+        inflation=inflation,
+        fitted=fit.fitted,
+        residuals=fit.residuals,
+        contradictions=problem.conflicts(optimum, inflation),
+        loglikelihood=fit.loglikelihood,
+        iterations=fit.steps,
+        converged=fit.converged,
+        starts_agreeing=fit.starts_agreeing,
+        starts=fit.starts,
+        inflated_by="nothing" if inflation == 1 else "coloured residuals" if is_coloured else "drops that disagree",
+        most_coloured=int(by_channel.argmax()) if is_coloured else None,
     )
 
 
-def overdispersion_of(optimum: FitResult) -> float:
-    """Return the overdispersion of a fit: by how much less its records tell than white residuals of drops that agree would.
+def overdispersion_of(fit: FitResult) -> float:
+    """Return the overdispersion of a fit: the factor on every variance, 1 where it is not significant.
 
-    Parameters
-    ----------
-    optimum
-        Where the fit ended.
-
-    Returns
-    -------
-    float
-        Factor on every variance, dimensionless; 1 where neither is significant.
+    The larger of what autocorrelated residuals and what drops that contradict each other show.
     """
-    return max(float(_colours(optimum).max()), optimum.disagreement)
+    return fit.overdispersion
 
 
-def _colours(optimum: FitResult) -> Real:
-    """Return by how much the autocorrelation of the residuals inflates variances, shape (channel,)."""
-    decays = optimum.decays
-    # Samples that were interpolated are coloured, but counted for no more than those that were taken.
-    there = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
-    counted = optimum.problem.likelihood.observations.sum(axis=0) / np.maximum(there, 1)
-    rates = [decay.rate for decay in decays]
-    return autocorrelation_inflation(optimum.residuals, rates, counted=counted, least=optimum.problem.least_variance)
+def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
+    """Return the information that is there, and its directions in the coordinates; (direction,), (parameter, direction).
 
-
-def _directions(optimum: FitResult, inflated: float) -> tuple[Real, Real]:
-    """Give the information that is there, and its directions in the coordinates; shapes (direction,), (parameter, direction).
-
-    What noise feigns is taken off, and what is only rounding beside the largest information counts as none.
+    What noise alone adds is subtracted, and what is only rounding beside the largest information counts as none.
     """
-    problem, point = optimum.problem, optimum.point
-    information, _, free = problem.system(point, inflated)
+    problem, optimum = fit.problem, fit.iterate
+    information, _, null_space = problem.system(optimum, inflation)
     eigenvalues, vectors = np.linalg.eigh(information)
     rounding = RANK * eigenvalues.max(initial=0.0)
     if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
-        seen = problem.priors.coordinates.slopes(point.u)[:, None] * free
-        noise_bias_of_information = seen.T @ point.place.noise_bias_of_information(point.weights) @ seen
-        eigenvalues, vectors = np.linalg.eigh(information - _FEIGNED * noise_bias_of_information)
-    return np.where(eigenvalues < rounding, 0.0, eigenvalues), free @ vectors
+        match optimum.at:
+            case HasNoiseBias() as at:
+                basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
+                bias = basis.T @ at.noise_bias_of_information @ basis
+                eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
+            case _:
+                pass  # a stepped motion follows its initial states: nothing is known of a bias
+    return np.where(eigenvalues < rounding, 0.0, eigenvalues), null_space @ vectors

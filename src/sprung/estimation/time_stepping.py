@@ -1,7 +1,7 @@
-"""The likelihood of all decays under a vehicle with nonlinear forces: stepped, all drops and all derivatives in one batch.
+"""Time stepping: the likelihood of all decays of a vehicle with nonlinear forces, all drops and all derivatives in one batch.
 
-Where the linear vehicle's initial states are eliminated in closed form, here they are followed: each place has its own, and
-those of the next place are predicted from what is known at this one. Memories of dry friction are part of them.
+The initial states of a linear vehicle are eliminated in closed form; here each evaluation has its own, and those of the
+next one are predicted from the derivatives at this one. Memories of dry friction are part of them.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import Evaluation
-from sprung.estimation.expm_likelihood import reach
+from sprung.estimation.elimination import eliminate
+from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
@@ -23,246 +23,308 @@ from sprung.vehicle import ElementInput, NonlinearModel, Rows, Stepper, Trajecto
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_MEMORY = 1.0
-"""How far a friction may be from none when a decay begins, in parts of itself."""
+_MEMORY_STD = 1.0
+"""Prior standard uncertainty of a friction's memory when a decay begins, as a part of the friction."""
 
-_MOST = 1.15
+_MOST_MEMORY = 1.15
 """Memory that no friction has: it slides at one, and noise adds little."""
+
+_WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_products")
+"""Cached properties of a `TimeSteppingAt` that do not depend on the weights."""
+
+_STATE_STEPS = 3
+"""Gauss-Newton steps of initial states alone, at the most."""
 
 
 @dataclass(frozen=True, eq=False)
-class SteppedLikelihood:
-    """All decays of a campaign, ready to be stepped.
+class TimeSteppingObjective:
+    """The likelihood of decays of a vehicle with nonlinear forces.
 
     Attributes
     ----------
     decays
         What is fitted.
-    by_load
-        Equations of motion by load name.
-    longest
-        s of a step at most.
     models
-        Equations of motion of each kind of step: a load and a rate.
-    times
-        Length of each of these steps, s.
+        Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters.
-    kind
-        Which kind of step each drop takes, shape (drop,).
-    every
-        Steps from one sample to the next.
-    samples
-        Of each drop, shape (drop,).
-    values
-        Centred records, m/s², zero beyond their end and in channels that are left out; shape (drop, channel, time).
-    present
-        What each channel counts for: 0 where it is left out, shape (drop, channel).
-    tilting
-        Part of gravity's change that the sensors feel when the body turns: 1 where they turn with it, else 0.
-    begin
-        {X, Ẋ} and memories with which every drop starts, as far as is known at first; from where the vehicle rests with its
-        load, as everywhere in the fit; shape (drop, state + memory).
+        The sensors' rows over the fit's parameters, in the order of the decays' channels.
+    states
+        {X, Ẋ} of each drop at its first sample, from which an evaluation starts, and memories where they are known, from where
+        the vehicle rests with its load; shape (drop, state) or (drop, state + memory).
+    sensors_tilt
+        Whether the sensors turn with the body, and measure the less of gravity.
+    longest_step
+        s: over a longer one forces do not run straight.
     """
 
     decays: Sequence[FreeDecay]
-    by_load: Mapping[str, NonlinearModel]
-    longest: float
-    models: tuple[NonlinearModel, ...]
-    times: tuple[float, ...]
+    models: Mapping[str, NonlinearModel]
     sensors: Rows
-    kind: Index
-    every: int
-    samples: Index
-    values: Real
-    present: Real
-    tilting: float
-    begin: Real
+    states: Real
+    sensors_tilt: bool
+    longest_step: float
 
-    @classmethod
-    def of(
-        cls,
-        decays: Sequence[FreeDecay],
-        models: Mapping[str, NonlinearModel],
-        sensors: Rows,
-        states: Real,
-        tilting: bool,
-        longest: float,
-    ) -> SteppedLikelihood:
-        """Take up the records, once.
+    @cached_property
+    def _kinds(self) -> list[tuple[str, float]]:
+        """Kinds of steps: a load and a rate."""
+        return sorted({(decay.load, decay.rate) for decay in self.decays})
 
-        Parameters
-        ----------
-        decays
-            What to fit.
-        models
-            Equations of motion by load name.
-        sensors
-            The sensors' rows, in the order of the decays' channels.
-        states
-            {X, Ẋ} of each drop at its first sample, from which the first climb starts, and memories where they are known;
-            shape (drop, state) or (drop, state + memory).
-        tilting
-            Whether the sensors turn with the body, and feel the less of gravity.
-        longest
-            s of a step at most: over a longer one forces do not run straight.
-        """
-        every = max(int(np.ceil(1.0 / (min(decay.rate for decay in decays) * longest))), 1)
-        kinds = sorted({(decay.load, decay.rate) for decay in decays})
-        values = np.zeros((len(decays), len(decays[0].values), max(decay.samples for decay in decays)))
-        for record, decay in zip(values, decays, strict=True):
+    @cached_property
+    def kind(self) -> Index:
+        """Which kind of step each drop takes, shape (drop,)."""
+        return np.array([self._kinds.index((decay.load, decay.rate)) for decay in self.decays])
+
+    @cached_property
+    def models_by_kind(self) -> tuple[NonlinearModel, ...]:
+        """Equations of motion of each kind of step."""
+        return tuple(self.models[load] for load, _ in self._kinds)
+
+    @cached_property
+    def times(self) -> tuple[float, ...]:
+        """Length of each kind of step, s."""
+        return tuple(1.0 / (rate * self.every) for _, rate in self._kinds)
+
+    @cached_property
+    def every(self) -> int:
+        """Steps from one sample to the next."""
+        return max(int(np.ceil(1.0 / (min(decay.rate for decay in self.decays) * self.longest_step))), 1)
+
+    @cached_property
+    def samples(self) -> Index:
+        """Of each drop, shape (drop,)."""
+        return np.array([decay.samples for decay in self.decays])
+
+    @cached_property
+    def records(self) -> Real:
+        """Centred records, m/s², zero beyond their end and in channels that are left out; shape (drop, channel, time)."""
+        records = np.zeros((len(self.decays), len(self.decays[0].values), int(self.samples.max())))
+        for record, decay in zip(records, self.decays, strict=True):
             centred = decay.values - decay.values.mean(axis=1, keepdims=True)
             record[:, : decay.samples] = np.where(decay.usable[:, None], centred, 0.0)
-        one = next(iter(models.values()))
-        begin = np.zeros((len(decays), one.state_size + len(one.forces.with_memory)))
-        given = min(begin.shape[1], states.shape[1])
-        begin[:, :given] = states[:, :given]
-        return cls(
-            decays=decays,
-            by_load=models,
-            longest=longest,
-            models=tuple(models[load] for load, _ in kinds),
-            times=tuple(1.0 / (rate * every) for _, rate in kinds),
-            sensors=sensors,
-            kind=np.array([kinds.index((decay.load, decay.rate)) for decay in decays]),
-            every=every,
-            samples=np.array([decay.samples for decay in decays]),
-            values=values,
-            present=np.array([decay.usable * channel_rate_ratios(decay) for decay in decays]),
-            tilting=float(tilting),
-            begin=begin,
-        )
+        return records
+
+    @cached_property
+    def channel_weights(self) -> Real:
+        """0 for a channel that is left out, else the samples that were taken for each one; shape (drop, channel)."""
+        return np.array([decay.usable * channel_rate_ratios(decay) for decay in self.decays])
 
     @cached_property
     def observations(self) -> Real:
         """Samples by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
-        return self.present * self.samples[:, None]
+        return self.channel_weights * self.samples[:, None]
 
     @cached_property
     def energy(self) -> Real:
         """Sum of squares of all centred records of each channel, (m/s²)², shape (channel,)."""
-        energy: Real = (self.present * np.einsum("dct,dct->dc", self.values, self.values)).sum(axis=0)
+        squares = np.einsum("dct,dct->dc", self.records, self.records)
+        energy: Real = (self.channel_weights * squares).sum(axis=0)
         return energy
 
     @cached_property
-    def there(self) -> Real:
+    def is_sample(self) -> Real:
         """1 where a drop has a sample, shape (drop, time)."""
-        there: Real = (np.arange(self.values.shape[2]) < self.samples[:, None]).astype(float)
-        return there
+        is_sample: Real = (np.arange(self.records.shape[2]) < self.samples[:, None]).astype(float)
+        return is_sample
+
+    @property
+    def state_size(self) -> int:
+        """How many numbers {X, Ẋ} has."""
+        return self.models_by_kind[0].state_size
 
     @cached_property
-    def reach(self) -> Real:
-        """How far from rest a decay may begin, in standard deviations; shape (state + memory,)."""
-        state = self.models[0].state_size
-        return np.concatenate([reach(state), np.full(self.begin.shape[1] - state, _MEMORY)])
+    def prior_std(self) -> Real:
+        """Prior standard uncertainty of initial states and memories, shape (state + memory,)."""
+        memories = len(self.models_by_kind[0].forces.with_memory)
+        return np.concatenate([initial_state_prior_std(self.state_size), np.full(memories, _MEMORY_STD)])
 
-    def with_decays(self, decays: Sequence[FreeDecay]) -> SteppedLikelihood:
-        """Return the likelihood of other decays, their initial states being those of the vehicle without nonlinear forces."""
-        one = next(iter(self.by_load.values()))
-        begin = np.zeros((len(decays), one.state_size + len(one.forces.with_memory)))
-        return SteppedLikelihood.of(decays, self.by_load, self.sensors, begin, bool(self.tilting), self.longest)
+    def with_decays(self, decays: Sequence[FreeDecay]) -> TimeSteppingObjective:
+        """Return the objective of other decays; those of the same recordings start from the same states, others from rest."""
+        known = {decay.file: state for decay, state in zip(self.decays, self.states, strict=True)}
+        rest = np.zeros(self.states.shape[1])
+        return replace(self, decays=decays, states=np.array([known.get(decay.file, rest) for decay in decays]))
 
-    def beginning(self, states: Real) -> SteppedLikelihood:
-        """Give the same with other initial states and memories to start from, shape (drop, state + memory)."""
-        return replace(self, begin=states)
+    def with_states(self, states: Real) -> TimeSteppingObjective:
+        """Return the objective with other initial states and memories to start from, shape (drop, state + memory)."""
+        return replace(self, states=states)
 
-    def at(self, values: Real) -> SteppedLikelihoodAt:
-        """Go to parameter values, SI, shape (parameter,)."""
-        return SteppedLikelihoodAt(self, values, self.begin + self.sag(values))
+    def at(self, values: Real, weights: Real) -> TimeSteppingAt:
+        """Evaluate at parameter values, SI, shape (parameter,), with 1/σ² of each channel, s⁴/m², shape (channel,)."""
+        begin = self.sag(values)
+        begin[:, : self.states.shape[1]] += self.states[:, : begin.shape[1]]
+        return self.at_states(values, weights, begin)
+
+    def at_states(self, values: Real, weights: Real, begin: Real) -> TimeSteppingAt:
+        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory)."""
+        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values)
+        states, memories = np.split(begin, [self.state_size], axis=1)
+        trajectory = stepper.integrate(states, memories, self.every * (self.records.shape[2] - 1))
+        return TimeSteppingAt(self, values, weights, begin, stepper, trajectory)
 
     def sag(self, values: Real) -> Real:
-        """Give by how much the load of each drop lets it down where it rests; (drop, state + memory), X alone not zero."""
-        sag = np.zeros_like(self.begin)
-        of_each = np.array([model.sag(values) for model in self.models])[self.kind]
-        sag[:, : of_each.shape[1]] = of_each
+        """Displacement of each drop's resting point under its load; (drop, state + memory), only X is not zero."""
+        sag = np.zeros((len(self.decays), len(self.prior_std)))
+        by_kind = np.array([model.sag(values) for model in self.models_by_kind])[self.kind]
+        sag[:, : by_kind.shape[1]] = by_kind
         return sag
+
+    def without_impossible_memories(self, values: Real, states: Real) -> Real | None:
+        """Return initial states without memories that no friction can have, None where there are none such.
+
+        Accelerations do not tell a friction's force from a spring's while neither changes: a drop may be explained for a
+        while by a friction that holds against where the vehicle stands. Its memory is set to zero, and the vehicle to where
+        all forces are what they were.
+
+        Parameters
+        ----------
+        values
+            Parameters, SI, shape (parameter,).
+        states
+            {X, Ẋ} and memories, shape (drop, state + memory).
+        """
+        forces, size = self.models_by_kind[0].forces, self.state_size
+        X, V, memories = np.split(states + self.sag(values), [size // 2, size], axis=1)
+        impossible = np.abs(memories) > _MOST_MEMORY
+        if not impossible.any():
+            return None
+        rows = forces.rows.at(values)
+        memory = np.zeros((len(memories), forces.number))
+        memory[:, forces.with_memory] = memories
+        travel = X @ rows.T
+        answer = forces.evaluate(values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
+        by_memory = answer.by_memory[:, forces.with_memory]
+        lost = np.where(impossible, memories, 0.0) * by_memory @ rows[forces.with_memory]
+        stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
+        X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
+        return np.hstack([X, V, np.where(impossible, 0.0, memories)]) - self.sag(values)
 
 
 @dataclass(frozen=True, eq=False)
-class SteppedLikelihoodAt:
-    """A likelihood at some parameter values. Weights are 1/σ² of each channel, shape (channel,).
+class TimeSteppingAt:
+    """Time stepping at parameter values and noise levels.
 
     Attributes
     ----------
-    likelihood
-        Of which decays.
+    objective
+        The likelihood.
     values
         Parameters, SI, shape (parameter,).
+    weights
+        1/σ² of each channel, s⁴/m², shape (channel,).
     begin
         {X, Ẋ} and memories of each drop at its first sample, from where the empty vehicle rests, shape (drop, state + memory).
+    stepper
+        What steps.
+    trajectory
+        The motion of every drop.
     """
 
-    likelihood: SteppedLikelihood
+    objective: TimeSteppingObjective
     values: Real
+    weights: Real
     begin: Real
+    stepper: Stepper
+    trajectory: Trajectory
+
+    is_reversible = False
+
+    def reweighted(self, weights: Real) -> TimeSteppingAt:
+        """Return the likelihood with other weights; motion and derivatives are the same, and are not computed again."""
+        reweighted = replace(self, weights=weights)
+        vars(reweighted).update({name: value for name, value in vars(self).items() if name in _WITHOUT_WEIGHTS})
+        return reweighted
+
+    def moved(self, values: Real) -> TimeSteppingAt:
+        """Return the likelihood at other parameter values, with the initial states that should explain the records there."""
+        information, gradient = self._normal_equations
+        parameters = len(self.values)
+        right = gradient[:, parameters:] - np.einsum(
+            "dzp,p->dz", information[:, parameters:, :parameters], values - self.values
+        )
+        step = np.linalg.solve(information[:, parameters:, parameters:], right[:, :, None])[:, :, 0]
+        return self.objective.at_states(values, self.weights, self.begin + step)
+
+    def with_optimal_states(self) -> TimeSteppingAt:
+        """Return the likelihood with the initial states that maximise it at these parameters."""
+        best = self
+        for _ in range(_STATE_STEPS):
+            tried = best.moved(self.values)
+            if not tried._cost < best._cost:
+                break
+            best = tried
+        return best
+
+    @property
+    def _cost(self) -> float:
+        return float(self.residual_sums.sum(axis=0) @ self.weights) + self.penalty
+
+    def of_drop(self, drop: int) -> TimeSteppingAt:
+        """Return the likelihood of one drop alone, by its position."""
+        alone = self.objective.with_decays([self.objective.decays[drop]])
+        return alone.at_states(self.values, self.weights, self.begin[[drop]])
 
     @cached_property
-    def _stepper(self) -> Stepper:
-        likelihood = self.likelihood
-        return Stepper.of(likelihood.models, likelihood.times, likelihood.kind, self.values)
-
-    @cached_property
-    def _path(self) -> Trajectory:
-        steps = self.likelihood.every * (self.likelihood.values.shape[2] - 1)
-        states, memories = np.split(self.begin, [self.likelihood.models[0].state_size], axis=1)
-        return self._stepper.integrate(states, memories, steps)
-
-    @cached_property
-    def _accelerations(self) -> tuple[Real, Real]:
+    def _acceleration_rows(self) -> tuple[Real, Real]:
         """Accelerations from {X, Ẋ, u, 1} of every drop, (drop, coordinate, input), and by parameter, next to it."""
-        made = [model.accelerations(self.values) for model in self.likelihood.models]
-        rows, slopes = (np.stack(each)[self.likelihood.kind] for each in zip(*made, strict=True))
-        return rows, slopes
+        by_kind = [model.accelerations(self.values) for model in self.objective.models_by_kind]
+        rows, derivatives = (np.stack(part)[self.objective.kind] for part in zip(*by_kind, strict=True))
+        return rows, derivatives
 
     @cached_property
     def _inputs(self) -> Real:
         """{X, Ẋ, u, 1} at every sample, shape (time, drop, input)."""
-        path, every = self._path, self.likelihood.every
-        states, forces = path.states[::every], path.forces[::every]
+        every = self.objective.every
+        states, forces = self.trajectory.states[::every], self.trajectory.forces[::every]
         return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
 
     @cached_property
-    def _motion(self) -> Real:
+    def _accelerations(self) -> Real:
         """Accelerations of the coordinates at every sample, shape (time, drop, coordinate)."""
-        motion: Real = np.einsum("dij,kdj->kdi", self._accelerations[0], self._inputs, optimize=True)
-        return motion
+        accelerations: Real = np.einsum("dij,kdj->kdi", self._acceleration_rows[0], self._inputs, optimize=True)
+        return accelerations
+
+    @property
+    def _gravity(self) -> float:
+        """What the sensors measure less of where they turn, m/s²."""
+        return STANDARD_GRAVITY if self.objective.sensors_tilt else 0.0
 
     @cached_property
-    def _left(self) -> Real:
+    def _residuals(self) -> Real:
         """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
-        likelihood = self.likelihood
+        objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            left = likelihood.values - likelihood.sensors.at(self.values) @ self._motion.transpose(1, 2, 0)
+            residuals = objective.records - objective.sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
             angles = self._inputs[:, :, 1:3]
-            left += 0.5 * likelihood.tilting * STANDARD_GRAVITY * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
-            left -= (left @ likelihood.there[:, :, None]) / likelihood.samples[:, None, None]
-            left *= likelihood.there[:, None, :]
-        counted: Real = left * (likelihood.present > 0)[:, :, None]
+            residuals += 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+            residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
+            residuals *= objective.is_sample[:, None, :]
+        counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
         return counted
 
     @cached_property
-    def _residual(self) -> Real:
-        residual: Real = self.likelihood.present * np.einsum("dct,dct->dc", self._left, self._left)
-        return residual
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); infinite where the motion has no bounds."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            sums = self.objective.channel_weights * np.einsum("dct,dct->dc", self._residuals, self._residuals)
+        return np.where(np.isfinite(sums), sums, np.inf)
 
     @property
-    def _pull(self) -> float:
-        """What it costs that decays begin away from rest, in twice the log-likelihood."""
-        return float(np.sum((self.begin / self.likelihood.reach) ** 2))
+    def penalty(self) -> float:
+        """Twice the negative log-likelihood of the initial states under their prior."""
+        return float(np.sum((self.begin / self.objective.prior_std) ** 2))
 
     @cached_property
     def _products(self) -> Real:
         """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
 
-        Shape (drop, channel, unknown + 1, unknown + 1); what offsets take up is taken off.
+        Shape (drop, channel, unknown + 1, unknown + 1); what offsets explain is subtracted.
         """
-        likelihood, every = self.likelihood, self.likelihood.every
-        rows, slopes = self._accelerations
-        S, by_S = likelihood.sensors.at(self.values), np.swapaxes(likelihood.sensors.slopes, 1, 2)
-        drops, channels, _ = likelihood.values.shape
+        objective, every = self.objective, self.objective.every
+        rows, derivatives = self._acceleration_rows
+        S, by_S = objective.sensors.at(self.values), np.swapaxes(objective.sensors.slopes, 1, 2)
+        drops, channels, _ = objective.records.shape
         parameters, unknown = len(self.values), len(self.values) + self.begin.shape[1]
         total, squares = np.zeros((drops, channels, unknown + 1)), np.zeros((drops, channels, unknown + 1, unknown + 1))
-        for step, states, forces in self._stepper.sensitivities(self._path):
+        for step, states, forces in self.stepper.sensitivities(self.trajectory):
             chosen = slice(-step % every, None, every)
             first = (step + (-step % every)) // every
             driven = np.concatenate([states[chosen], forces[chosen]], axis=2)
@@ -271,119 +333,77 @@ class SteppedLikelihoodAt:
             last = first + len(driven)
             inputs = self._inputs[first:last]
             moved = rows[:, :, :-1] @ driven
-            moved[..., :parameters] += np.einsum("dpij,kdj->kdip", slopes, inputs, optimize=True)
-            all_of = np.empty((drops, channels, last - first, unknown + 1))
+            moved[..., :parameters] += np.einsum("dpij,kdj->kdip", derivatives, inputs, optimize=True)
+            columns = np.empty((drops, channels, last - first, unknown + 1))
             readings = S @ moved
-            readings[..., :parameters] += np.einsum("kdi,cip->kdcp", self._motion[first:last], by_S, optimize=True)
+            by_sensor = np.einsum("kdi,cip->kdcp", self._accelerations[first:last], by_S, optimize=True)
+            readings[..., :parameters] += by_sensor
             turned = inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3]
-            readings -= likelihood.tilting * STANDARD_GRAVITY * turned
-            all_of[..., :unknown] = readings.transpose(1, 2, 0, 3)
-            all_of[..., :unknown] *= likelihood.there[:, None, first:last, None]
-            all_of[..., unknown] = self._left[:, :, first:last]
-            total += all_of.sum(axis=2)
-            squares += np.swapaxes(all_of, 2, 3) @ all_of
-        squares -= total[..., :, None] * total[..., None, :] / likelihood.samples[:, None, None, None]
-        return squares * likelihood.present[:, :, None, None]
+            readings -= self._gravity * turned
+            columns[..., :unknown] = readings.transpose(1, 2, 0, 3)
+            columns[..., :unknown] *= objective.is_sample[:, None, first:last, None]
+            columns[..., unknown] = self._residuals[:, :, first:last]
+            total += columns.sum(axis=2)
+            squares += np.swapaxes(columns, 2, 3) @ columns
+        squares -= total[..., :, None] * total[..., None, :] / objective.samples[:, None, None, None]
+        return squares * objective.channel_weights[:, :, None, None]
 
-    def _system(self, weights: Real) -> _System:
+    @cached_property
+    def _normal_equations(self) -> tuple[Real, Real]:
+        """Information and gradient of parameters and initial states of each drop, the prior of the states included."""
         parameters = len(self.values)
-        whole = np.einsum("c,dcij->dij", weights, self._products, optimize=True)
-        reach = self.likelihood.reach
-        within = whole[:, parameters:-1, parameters:-1] + np.diag(reach**-2)
-        own = whole[:, parameters:-1, -1] - self.begin / reach**2
-        across = whole[:, :parameters, parameters:-1]
-        return _System(whole[:, :parameters, :parameters], across, within, whole[:, :parameters, -1], own)
+        whole = np.einsum("c,dcij->dij", self.weights, self._products, optimize=True)
+        information, gradient = whole[:, :-1, :-1], whole[:, :-1, -1]
+        precision = self.objective.prior_std**-2
+        information[:, parameters:, parameters:] += np.diag(precision)
+        gradient[:, parameters:] -= self.begin * precision
+        return information, gradient
 
-    def misfit(self, weights: Real) -> tuple[Real, float]:
-        """Give the residual sums of squares alone, (m/s²)², shape (drop, channel), and what is to be added for the starts."""
-        residual = self._residual
-        return np.where(np.isfinite(residual), residual, np.inf), self._pull
+    @cached_property
+    def by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
+        information, gradient, _ = eliminate(*self._normal_equations, len(self.values))
+        return gradient, information
 
-    def evaluate(self, weights: Real) -> Evaluation:
-        """Evaluate fit and derivatives."""
-        gradients, informations = self.by_drop(weights)
-        system, parameters = self._system(weights), len(self.values)
-        seen = self._products[:, :, parameters:-1, parameters:-1]
-        leverage = weights * np.einsum("dij,dcji->c", np.linalg.inv(system.within), seen, optimize=True)
-        return Evaluation(self._residual, leverage, gradients.sum(axis=0), informations.sum(axis=0), self._pull)
+    @property
+    def gradient(self) -> Real:
+        """Of the log-likelihood by the parameters, per SI unit, shape (parameter,)."""
+        return np.asarray(self.by_drop[0].sum(axis=0))
 
-    def by_drop(self, weights: Real) -> tuple[Real, Real]:
-        """Give each drop's own gradient and information; shapes (drop, parameter), (drop, parameter, parameter)."""
-        system = self._system(weights)
-        carried = system.across @ np.linalg.inv(system.within)
-        gradients = system.gradient - (carried @ system.own[:, :, None])[:, :, 0]
-        return gradients, system.information - carried @ np.swapaxes(system.across, 1, 2)
+    @property
+    def information(self) -> Real:
+        """Fisher information of the parameters, shape (parameter, parameter)."""
+        return np.asarray(self.by_drop[1].sum(axis=0))
 
-    def moved(self, values: Real, weights: Real) -> SteppedLikelihoodAt:
-        """Go to other parameter values, with the initial states that should explain the records there."""
-        system = self._system(weights)
-        pull = system.own - np.einsum("dpz,p->dz", system.across, values - self.values)
-        step = np.linalg.solve(system.within, pull[:, :, None])[:, :, 0]
-        return SteppedLikelihoodAt(self.likelihood, values, self.begin + step)
+    @cached_property
+    def leverage(self) -> Real:
+        """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+        parameters = len(self.values)
+        products = self._products[:, :, parameters:-1, parameters:-1]
+        inverse = np.linalg.inv(self._normal_equations[0][:, parameters:, parameters:])
+        leverage: Real = self.weights * np.einsum("dij,dcji->c", inverse, products, optimize=True)
+        return leverage
 
-    def believable(self) -> Real | None:
-        """Give beginnings without memories that no friction can have, or None where there are none such.
+    @property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+        objective = self.objective
+        whole = objective.records - self._residuals
+        return tuple(record[:, :samples] for record, samples in zip(whole, objective.samples, strict=True))
 
-        Accelerations do not tell a friction's force from a spring's while neither changes: a drop may be explained for a
-        while by a friction that holds against where the vehicle stands. It then begins anew from none, and stands where
-        all forces are what they were.
-        """
-        forces, likelihood = self._stepper.forces, self.likelihood
-        state = likelihood.models[0].state_size
-        X, V, remembered = np.split(self.begin, [state // 2, state], axis=1)
-        gone = np.abs(remembered) > _MOST
-        if not gone.any():
-            return None
-        rows = forces.rows.at(self.values)
-        memory = np.zeros((len(remembered), forces.number))
-        memory[:, forces.with_memory] = remembered
-        travel = X @ rows.T
-        answer = forces.evaluate(self.values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
-        lost = np.where(gone, remembered, 0.0) * answer.by_memory[:, forces.with_memory] @ rows[forces.with_memory]
-        stiffness = np.array([model.linear.matrices(self.values).K for model in likelihood.models])[likelihood.kind]
-        X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
-        return np.hstack([X, V, np.where(gone, 0.0, remembered)]) - likelihood.sag(self.values)
-
-    def noise_bias_of_information(self, weights: Real) -> Real:
-        """Give the information that noise alone feigns: none is known of, shape (parameter, parameter)."""
-        return np.zeros((len(self.values), len(self.values)))
-
-    def left(self, position: int) -> Real:
-        """Give what the model leaves of one drop's centred record, shape (channel, time)."""
-        return self._left[position, :, : self.likelihood.samples[position]]
-
-    def fitted(self, weights: Real) -> list[Real]:
-        """Give what the model makes of every record, its mean taken off; each of shape (channel, time)."""
-        whole = self.likelihood.values - self._left
-        return [record[:, :samples] for record, samples in zip(whole, self.likelihood.samples, strict=True)]
-
-    def motion(self, weights: Real, position: int, before: int, after: int) -> Real:
-        """Follow one drop from its first sample on: {X, Ẋ} and memories, SI, shape (state + memory, time).
-
-        What was before nobody knows: friction cannot be followed backward in time.
-        """
-        path, chosen = self._path, slice(None, self.likelihood.every * after, self.likelihood.every)
-        memories = path.memories[chosen, position][:, self._stepper.forces.with_memory]
-        whole = np.hstack([path.states[chosen, position], memories])
-        motion: Real = (whole - self.likelihood.sag(self.values)[position]).T
-        return motion
-
-    def delays(self, weights: Real, covariance: Real) -> dict[int, tuple[Real, Real]]:
-        """Give the delays of the drops with several loggers: none are stepped."""
-        return {}
-
-    def states(self, weights: Real) -> Real:
-        """Give {X, Ẋ} and memories of each drop at its first sample, SI, shape (drop, state + memory)."""
-        states: Real = self.begin - self.likelihood.sag(self.values)
+    @property
+    def states(self) -> Real:
+        """{X, Ẋ} and memories of each drop at its first sample, SI, shape (drop, state + memory)."""
+        states: Real = self.begin - self.objective.sag(self.values)
         return states
 
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """{X, Ẋ} and memories of a drop, SI, shape (state + memory, time).
 
-@dataclass(frozen=True, eq=False)
-class _System:
-    """Normal equations of each drop: of the parameters, across, of its start, and the gradients of both."""
-
-    information: Real
-    across: Real
-    within: Real
-    gradient: Real
-    own: Real
+        NaN for the samples before its first: friction cannot be followed backward in time.
+        """
+        chosen = slice(None, self.objective.every * after, self.objective.every)
+        memories = self.trajectory.memories[chosen, drop][:, self.stepper.forces.with_memory]
+        whole = np.hstack([self.trajectory.states[chosen, drop], memories]) - self.objective.sag(self.values)[drop]
+        unknown = np.full((whole.shape[1], before), np.nan)
+        return np.hstack([unknown, whole.T])

@@ -13,7 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FitResult, LikelihoodAt, ModalSlopes, identifiable_subspace, respond
+from sprung.estimation import FitResult, HasModalResponse, score_added
 from sprung.vehicle import Heights, LinearModel, Load, Rows, Sensor
 
 Real = NDArray[np.float64]
@@ -64,93 +64,67 @@ class FaultScore(NamedTuple):
 
 
 def score_faults(
-    optimum: FitResult, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
+    fit: FitResult, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
 ) -> tuple[FaultScore, ...]:
-    """List everything that may be otherwise, what would gain most first.
+    """Return everything that may be otherwise, what would gain most first.
 
     Parameters
     ----------
-    summit
+    fit
         Where the fit ended.
     sensors
         The sensors.
     loads
         The loads by name.
     heights
-        How high things are, as far as it is known.
+        Heights, as far as they are known.
 
     Returns
     -------
-    tuple of Suspect
-        Those of which the records say anything; none where modal coordinates do not exist, as with nonlinear forces.
+    tuple of FaultScore
+        Those that the records determine; none where modal coordinates do not exist, as with nonlinear forces.
     """
-    place, problem = optimum.point.place, optimum.problem
-    if not isinstance(place, LikelihoodAt):
-        return ()
-    changes = list(_changes(optimum, place, sensors, loads, heights))
-    accused, slopes = [who for who, _ in changes], [slope for _, slope in changes]
-    more = ModalSlopes(
-        np.stack([one.poles[:, 0] for one in slopes], axis=1),
-        np.stack([one.shapes[:, :, 0] for one in slopes], axis=2),
-        np.stack([one.secular[:, :, 0] for one in slopes], axis=2),
-    )
-    found = place.beside(optimum.point.weights, more)
-    if found is None:
-        return ()
-    gradient, information = found
-    parameters = len(optimum.names)
-    system, own, free = problem.system(optimum.point)
-    told = identifiable_subspace(system)
-    seen = (problem.priors.coordinates.slopes(optimum.point.u)[:, None] * free) @ told
-    inverse = np.linalg.inv(told.T @ system @ told)
-    across = seen.T @ information[:parameters, parameters:]
-    left = np.diag(information)[parameters:] - np.einsum("pe,pq,qe->e", across, inverse, across)
-    score = gradient[parameters:] - across.T @ inverse @ (told.T @ own)
-    directions = told @ inverse
-    spreads = np.sqrt(np.maximum(np.einsum("ij,ij->i", directions, told), np.finfo(float).tiny))
-    shifts = np.abs(directions @ across / spreads[:, None]).max(axis=0, initial=0.0)
-    alone = np.diag(information)[parameters:]
-    known = left > 1e-9 * np.maximum(alone, np.finfo(float).tiny)
-    named = [
-        FaultScore(kind, where, axis, item, *_estimate(float(score[i]), float(left[i]), float(shifts[i])))
-        for i, (kind, where, axis, item) in enumerate(accused)
-        if known[i]
-    ]
-    return tuple(sorted(named, key=lambda one: one.gain, reverse=True))
+    match fit.iterate.at:
+        case HasModalResponse() as at:
+            changes = list(_changes(fit, at, sensors, loads, heights))
+            test = score_added(fit, *at.with_changes(np.concatenate([readings for _, readings in changes], axis=2)))
+            numbers = zip(test.values.tolist(), test.stds.tolist(), test.max_shifts.tolist(), strict=True)
+            scores = [
+                FaultScore(*labels, *estimate)
+                for (labels, _), estimate, determined in zip(changes, numbers, test.determined, strict=True)
+                if determined
+            ]
+            return tuple(sorted(scores, key=lambda score: score.gain, reverse=True))
+        case _:
+            return ()
 
 
-def _estimate(score: float, left: float, max_parameter_shift: float) -> tuple[float, float, float]:
-    """Return value, standard uncertainty and shift, from the score and its information beside the parameters."""
-    return score / left, left**-0.5, max_parameter_shift * left**-0.5
-
-
-_Who = tuple[Kind, str, int, int]
+_Labels = tuple[Kind, str, int, int]
 
 
 def _changes(
-    optimum: FitResult, place: LikelihoodAt, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
-) -> Iterator[tuple[_Who, ModalSlopes]]:
-    """Give what each change does to the response of every load."""
-    modes, likelihood = place.modes, place.likelihood
-    nothing, no_poles = np.zeros_like(modes.shapes[:, :, None]), np.zeros_like(modes.poles[:, None])
+    fit: FitResult, at: HasModalResponse, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
+) -> Iterator[tuple[_Labels, Complex]]:
+    """Yield what each change is, and its derivatives of the readings, (load, channel, 1, 2 mode)."""
+    modes, m = at.modes, at.modes.poles.shape[-1]
     for channel, sensor in enumerate(sensors):
-        more: tuple[tuple[Kind, Complex], ...] = (("gain", np.ones_like(modes.poles)), ("late", -modes.poles))
-        for kind, factor in more:
-            shapes = nothing.copy()
-            shapes[:, channel, 0] = modes.shapes[:, channel] * factor
-            yield (kind, sensor.channel, 0, 0), ModalSlopes(no_poles, shapes, nothing)
+
+        def of_channel(shapes: Complex, channel: int = channel) -> Complex:
+            readings = np.zeros((*modes.shapes.shape[:2], 1, 2 * m), dtype=np.complex128)
+            readings[:, channel, 0, :m] = shapes
+            return readings
+
+        yield ("gain", sensor.channel, 0, 0), of_channel(modes.shapes[:, channel])
+        yield ("late", sensor.channel, 0, 0), of_channel(-modes.poles * modes.shapes[:, channel])
         if sensor.position is not None:
-            for axis, row in enumerate(_along(sensor, optimum.names)):
-                shapes = nothing.copy()
-                shapes[:, channel, 0] = row @ modes.accelerations
-                yield ("position", sensor.channel, axis, 0), ModalSlopes(no_poles, shapes, nothing)
-    for number, name in enumerate(likelihood.records.loads):
+            for axis, row in enumerate(_along(sensor, fit.names)):
+                yield ("position", sensor.channel, axis, 0), of_channel(row @ modes.accelerations)
+    for number, name in enumerate(at.loads):
         for item, piece in enumerate(loads[name].items):
             for axis in (0, 1) if piece.position is not None else ():
                 forces = np.zeros_like(modes.accelerations[:, :, None])
-                forces[number, :, 0] = _moved(loads[name], item, axis, heights, optimum) @ modes.accelerations[number]
-                changed = respond(likelihood.loads, likelihood.sensors, place.values, modes, forces, likelihood.span)
-                yield ("load-position", name, axis, item), changed
+                forces[number, :, 0] = _moved(loads[name], item, axis, heights, fit) @ modes.accelerations[number]
+                yield ("load-position", name, axis, item), at.differentiate_response(forces)
 
 
 def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
@@ -162,13 +136,13 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
     return rows[1] - rows[0], rows[2] - rows[0]
 
 
-def _moved(load: Load, item: int, axis: int, heights: Heights, optimum: FitResult) -> Real:
+def _moved(load: Load, item: int, axis: int, heights: Heights, fit: FitResult) -> Real:
     """Give what M changes by, per metre that an item is moved; shape (coordinate, coordinate)."""
     sides = []
     for step in (-_NUDGE, _NUDGE):
         x, y, z = load.items[item].position or (0.0, 0.0, 0.0)
         place = (x + step * (axis == 0), y + step * (axis == 1), z + step * (axis == 2))
         there = replace(load.items[item], position=place)
-        model = LinearModel.of(list(there.elements(heights)), optimum.names)
-        sides.append(model.matrices(optimum.values).M)
+        model = LinearModel.of(list(there.elements(heights)), fit.names)
+        sides.append(model.matrices(fit.values).M)
     return (sides[1] - sides[0]) / (2 * _NUDGE)

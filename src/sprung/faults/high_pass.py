@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.estimation import FitResult, LikelihoodAt, identifiable_subspace
+from sprung.estimation import FitResult, score_added
 from sprung.faults.fault_scores import FaultScore
 from sprung.preprocess import FreeDecay, differentiate_by_cutoff
 from sprung.uncertainty import round_by_uncertainty
@@ -151,44 +151,33 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
     CornerScores or None
         None where no sensor may be AC-coupled, or where the vehicle has forces that are not linear.
     """
-    place, point, problem = optimum.point.place, optimum.point, optimum.problem
-    if not isinstance(place, LikelihoodAt):
-        return None
     changes = [differentiate_by_cutoff(decay) for decay in decays]
     open_ = np.flatnonzero(np.any([change.any(axis=1) for change in changes], axis=0)).tolist()
-    if not open_:
+    if not open_ or not optimum.is_reversible:
         return None
-    weights, likelihood = point.weights, place.likelihood
-    left = optimum.residuals
-    across = np.zeros((len(optimum.names), len(open_)))
-    scores, alone = np.zeros((len(decays), len(open_))), np.zeros((len(decays), len(open_), len(open_)))
+    at, weights = optimum.iterate.at, optimum.weights
+    parameters, drops, count = len(optimum.names), len(decays), len(open_)
+    information, gradient = np.zeros((parameters + count,) * 2), np.zeros(parameters + count)
+    information[:parameters, :parameters], gradient[:parameters] = at.information, at.gradient
+    scores, alone = np.zeros((drops, count)), np.zeros((drops, count, count))
     for i, channel in enumerate(open_):
         changed = [_changed(decay, change, channel) for decay, change in zip(decays, changes, strict=True)]
-        there = likelihood.with_decays(changed).at(place.values)
-        across[:, i] = there.evaluate(weights).gradient - point.evaluation.gradient
-        moved = zip(changed, there.fitted(weights), strict=True)
-        for drop, (one, (decay, record), change) in enumerate(zip(left, moved, changes, strict=True)):
-            other = decay.values - record
-            grown = np.nan_to_num(other - other.mean(axis=1, keepdims=True) - one)
+        there = optimum.problem.objective.with_decays(changed).at(optimum.values, weights)
+        # A corner changes the records, not the model: its derivative of the residual has the other sign.
+        information[:parameters, parameters + i] = at.gradient - there.gradient
+        for drop, (decay, record, residual, change) in enumerate(
+            zip(changed, there.fitted, optimum.residuals, changes, strict=True)
+        ):
+            moved = decay.values - record
+            grown = np.nan_to_num(moved - moved.mean(axis=1, keepdims=True) - residual)
             alone[drop, i] = weights[open_] * np.einsum("ct,ct->c", grown[open_], change[open_])
-            scores[drop, i] = -weights[channel] * np.nan_to_num(one[channel]) @ change[channel]
-    system, own, free = problem.system(point)
-    told = identifiable_subspace(system)
-    seen = (problem.priors.coordinates.slopes(point.u)[:, None] * free) @ told
-    inverse = np.linalg.inv(told.T @ system @ told)
-    carried = inverse @ (seen.T @ across)
-    spreads = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", told, inverse, told), np.finfo(float).tiny))
-    score, information = determined(
-        scores.sum(axis=0) + carried.T @ (told.T @ own), alone.sum(axis=0) - (seen.T @ across).T @ carried
-    )
-    return CornerScores(
-        tuple(sensors[channel].channel for channel in open_),
-        scores,
-        alone,
-        score,
-        information,
-        told @ carried / spreads[:, None],
-    )
+            scores[drop, i] = -weights[channel] * np.nan_to_num(residual[channel]) @ change[channel]
+    information[parameters:, :parameters] = information[:parameters, parameters:].T
+    information[parameters:, parameters:], gradient[parameters:] = alone.sum(axis=0), scores.sum(axis=0)
+    test = score_added(optimum, gradient, information)
+    score, left = determined(test.score, test.information)
+    channels = tuple(sensors[channel].channel for channel in open_)
+    return CornerScores(channels, scores, alone, score, left, test.shifts)
 
 
 def determined(score: Real, information: Real) -> tuple[Real, Real]:

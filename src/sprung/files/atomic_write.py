@@ -144,7 +144,7 @@ class _Transaction:
         for place in self.places:
             place.take()
         gone = {str(place.target.relative_to(self.folder)) for place in self.stale}
-        kept = {name: one for name, one in read_manifest(self.folder).items() if name not in gone}
+        kept = {name: entry for name, entry in read_manifest(self.folder).items() if name not in gone}
         _replace(self.folder / MANIFEST, manifest_text(kept | dict(checksums)).encode(), self.token)
         for place in everything:
             with suppress(OSError):

@@ -33,7 +33,7 @@ def read_manifest(folder: Path) -> dict[str, str]:
     """Return the checksum of every file that sprung wrote into a folder, by name; empty where there is no readable list."""
     try:
         files = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"]
-        return {name: one for name, one in files.items() if isinstance(one, str)}
+        return {name: entry for name, entry in files.items() if isinstance(entry, str)}
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return {}  # what is not listed is taken for the user's, which is safe
 

@@ -97,7 +97,7 @@ def _finish(folder: Path, path: Path, token: str) -> None:
             written[name] = files[name]
         for left in (new, old):
             left.unlink(missing_ok=True)
-    kept = {name: one for name, one in read_manifest(folder).items() if name in files or name not in before}
+    kept = {name: entry for name, entry in read_manifest(folder).items() if name in files or name not in before}
     manifest = hidden(folder / MANIFEST, token, "new")
     manifest.write_text(manifest_text(kept | written), encoding="utf-8")
     manifest.replace(folder / MANIFEST)

@@ -17,7 +17,7 @@ from sprung.formats.sample_store import Samples, join_samples, missing_samples
 from sprung.formats.table import SampleTable
 
 AGREE = 1e-3
-"""By how much of a step the times of two clocks, or of a clock and an even one, may differ to be the same."""
+"""Fraction of a step up to which the times of two clocks, or of a clock and a regular one, are equal."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,20 +70,20 @@ class ChannelClock:
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """One channel of a file, still unread.
+    """One channel of a file, not yet read.
 
     Attributes
     ----------
     name
-        As the file has it.
+        As written in the file.
     otherwise
-        What to call it where another channel has the same name, or where it has none.
+        Its name where another channel has the same name, or where it has none.
     unit
-        What the file says it is measured in; None where it says nothing.
+        Unit stated in the file; None without one.
     clock
         When its samples were taken.
     samples
-        They themselves; None if they are no numbers.
+        Its samples; None where they are not numbers.
     """
 
     name: str
@@ -105,14 +105,14 @@ def regular_clock(start: float, step: float, count: int, uncertainty: float, whe
     count
         How many there are.
     uncertainty
-        How far the step may be rounded, s: within it, a rate in whole hertz is taken to be the one that was meant.
+        Rounding error of the step, s: within it, a rate in whole hertz is preferred.
     where
         File and channel, for the message.
 
     Raises
     ------
     InputError
-        If the start or the step is none.
+        If the start or the step is not a possible number.
     """
     if not (1e-9 <= step <= 1e6 and abs(start) <= 1e12):
         found, do = f"a step of {step:g} s between samples from {start:g} s on", "Export the recording again."
@@ -167,9 +167,9 @@ def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: 
     file
         Its name.
     largest
-        Bytes that the table may take, see `refusals.allowance`.
+        Bytes that the table may take, see `reading_errors.memory_limit`.
     notes
-        What the format has to say.
+        Notes of the format.
 
     Raises
     ------
@@ -221,7 +221,7 @@ def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: 
 
 
 def _at_times_of(clock: ChannelClock, column: Column) -> tuple[Samples, ResampledChannel] | None:
-    """Read a column at the times of another clock; None where that is no acceleration of the same drop any more."""
+    """Read a column at the times of another clock; None where its rate is too low or its time span another."""
     own = column.clock
     if column.samples is None or own.count < 2 or (own.count - 1) < MIN_RATE * (own.end - own.start):
         return None

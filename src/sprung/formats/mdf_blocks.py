@@ -62,7 +62,7 @@ def check_blocks(content: Content, file: str) -> None:
     content
         The file.
     file
-        Its name, for messages.
+        Name of the file, for messages.
 
     Raises
     ------

@@ -1,8 +1,8 @@
-"""What a word or a number in a file of nested names is about: which vectors it speaks for, and what it says of them.
+"""Names, units and rates in a file of nested names: to which vectors a text or a number applies.
 
-A word or a number speaks for the innermost struct or group around it that holds vectors, and for everything in there,
-unless something nearer speaks: ``car.axle.unit`` for the vectors of ``car.axle``, ``car.Properties.SampleRate``, beside
-which no vector stands, for all of ``car``.
+A text or a number applies to the vectors in the innermost struct or group around it that holds any, unless a nearer one
+applies: ``car.axle.unit`` to the vectors of ``car.axle``; ``car.Properties.SampleRate``, beside which no vector stands, to all
+of ``car``.
 """
 
 from __future__ import annotations
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
 
     from sprung.formats.nested import Content, Number, Path, Text
 
-Said = TypeVar("Said", "Text", "Number")
+Entry = TypeVar("Entry", "Text", "Number")
 
 NAMES = frozenset(("name", "label", "channel", "channelname", "column", "columnname", "signal", "signalname"))
 NAMES |= {"variable", "variablename", "title", "longname"}
 UNITS = frozenset(("unit", "unitstr", "unitstring", "unitsymbol", "unitlabel", "einheit", "einheiten", "engunit"))
 UNITS |= {"variableunit", "channelunit", "yunit"}
 GENERIC = frozenset(("", "data", "value", "values", "sample", "samples", "raw", "y", "signal"))
-"""Names that say that something is the content of what they lie in, and no more."""
+"""Generic names: of the content of the group in which they stand."""
 
 
 def normalise_name(name: str) -> str:
-    """Strip a name of capitals and separators, so that ``Sample_Rate`` and ``sampleRate`` are one.
+    """Return a name in small letters without separators, so that ``Sample_Rate`` and ``sampleRate`` are equal.
 
     Parameters
     ----------
     name
-        As the file has it.
+        As written in the file.
 
     Returns
     -------
@@ -46,7 +46,7 @@ def matches_any(name: str, words: Collection[str]) -> bool:
     Parameters
     ----------
     name
-        As the file has it.
+        As written in the file.
     words
         In the singular.
     """
@@ -54,33 +54,37 @@ def matches_any(name: str, words: Collection[str]) -> bool:
 
 
 class MetadataScope:
-    """Who speaks for whom in one file.
+    """Scopes of the texts and numbers of one file.
 
     Parameters
     ----------
     content
-        What the file holds.
+        Content of the file.
     """
 
     def __init__(self, content: Content) -> None:
         self._texts = content.texts
         held = [number.path for number in content.numbers if normalise_name(number.path[-1]) in GENERIC]
-        self._homes = {block.path[:depth] for block in content.blocks for depth in range(len(block.path))}
-        self._homes |= {path[:-1] for path in held}
+        self._groups = {block.path[:depth] for block in content.blocks for depth in range(len(block.path))}
+        self._groups |= {path[:-1] for path in held}
 
-    def home(self, path: Path) -> Path:
+    def innermost_group(self, path: Path) -> Path:
         """Return the path of the innermost group around a name that holds vectors."""
         depth = len(path) - 1
-        while depth > 0 and path[:depth] not in self._homes:
+        while depth > 0 and path[:depth] not in self._groups:
             depth -= 1
         return path[:depth]
 
-    def nearest(self, said: Collection[Said], to: Path) -> Said | None:
+    def nearest(self, entries: Collection[Entry], to: Path) -> Entry | None:
         """Return the nearest of the entries whose scope contains the vector of that path; None where there is none."""
-        speaking = [one for one in said if to[: len(self.home(one.path))] == self.home(one.path)]
-        return min(speaking, key=lambda one: (-len(self.home(one.path)), len(one.path)), default=None)
+        applying = [
+            entry
+            for entry in entries
+            if to[: len(self.innermost_group(entry.path))] == self.innermost_group(entry.path)
+        ]
+        return min(applying, key=lambda entry: (-len(self.innermost_group(entry.path)), len(entry.path)), default=None)
 
-    def called(self, path: Path) -> Path:
+    def named_path(self, path: Path) -> Path:
         """Return the path that ends with a vector's name: ``ch1`` for ``ch1.data``, or what ``ch1.name`` states."""
         if not path or normalise_name(path[-1]) not in GENERIC:
             return path
@@ -125,7 +129,7 @@ def split_list(text: Text) -> tuple[str, ...]:
     Parameters
     ----------
     text
-        What the file says.
+        As written in the file.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What formats of nested names hold, structs in structs or groups in groups, brought into one plain form."""
+"""The content of formats with nested names, structs in structs or groups in groups, in one flat form."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 DEEPEST = 32
-"""How many names may lie within each other; recordings need a handful."""
+"""Deepest nesting that is read."""
 
 Node: TypeAlias = "Mapping[str, Node] | Sequence[Node] | NDArray[Any] | Numbers | Foreign | str"
 """Something that stands in a file: more names, a list, numbers that were read or are still unread, or text. Values of a
@@ -26,7 +26,7 @@ Path: TypeAlias = tuple[str, ...]
 
 @dataclass(frozen=True, eq=False)
 class Numbers:
-    """Real numbers, still unread.
+    """Real numbers that are not yet read.
 
     Attributes
     ----------
@@ -118,20 +118,20 @@ def flatten_nested(node: Node) -> Content:
     -------
     Content
     """
-    gathered = _Gathered([], [], [], [])
+    collected = _Collector([], [], [], [])
     waiting: list[tuple[Path, Node]] = [((), node)]
     while waiting:
         path, here = waiting.pop()
         if len(path) > DEEPEST:
-            gathered.foreign.append(f"{'.'.join(path[:3])}...: nested too deeply")
+            collected.foreign.append(f"{'.'.join(path[:3])}...: nested too deeply")
         else:
-            waiting.extend(reversed(gathered.take(path, here)))
-    blocks, texts, numbers, foreign = gathered
+            waiting.extend(reversed(collected.take(path, here)))
+    blocks, texts, numbers, foreign = collected
     return Content(tuple(blocks), tuple(texts), tuple(numbers), tuple(foreign))
 
 
-class _Gathered(NamedTuple):
-    """What was met so far."""
+class _Collector(NamedTuple):
+    """What was collected so far."""
 
     blocks: list[NumberBlock]
     texts: list[Text]

@@ -1,4 +1,4 @@
-"""One registry of file formats: every format is asked whether a file is its own, and exactly one must say yes."""
+"""The registry of file formats: exactly one of them must claim a file."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
     path
         The file.
     others
-        Names of files beside it that are wanted elsewhere: a file that is missing was hardly meant to be one of them.
+        Names of files beside it that are used elsewhere: they are not suggested where the file is missing.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Channels of one file that another clock kept: read at the times of the others."""
+"""Channels of one file with a clock of their own, interpolated to the times of the others."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from sprung.formats.interpolation import interpolate
 from sprung.formats.sample_store import Samples, Store, store_by_ranges
 
 _BESIDE = 64
-"""Samples on either side of a stretch that are read with it: a cubic spline forgets what is farther away."""
+"""Samples on either side of a stretch that are read with it: more distant ones do not influence a cubic spline."""
 
 _GAP = 1.5
-"""Steps between two samples from which one is missing there."""
+"""Steps between two samples from which a sample is missing between them."""
 
 _FEW = 4
 """Samples that a cubic spline needs."""
 
 
 class ResampledChannel(NamedTuple):
-    """A column that another clock kept.
+    """A column sampled by another clock, interpolated to the times of the table.
 
     Attributes
     ----------
     rate_ratio
-        Samples that were taken for each one that is there now: below 1 where its clock was slower.
+        Ratio of its sampling rate to that of the table; at most 1.
     first, last
-        From which sample up to which, last apart, it reaches.
+        First and last sample of the table, last excluded, within its time span.
     """
 
     rate_ratio: float
@@ -55,7 +55,7 @@ def resample(
     length
         Samples of the other clock.
     times
-        Gives the times of the other clock from one sample up to another, last apart.
+        Gives the times of the other clock from one sample up to another, last excluded.
 
     Returns
     -------

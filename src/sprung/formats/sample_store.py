@@ -1,4 +1,4 @@
-"""Columns of numbers that stay in their file until somebody asks for some of them."""
+"""Columns of numbers that stay in their file until they are read."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from sprung.errors import Problem
 
 Read: TypeAlias = Callable[[Sequence[int], int, int, int], Iterator[NDArray[np.float64]]]
-"""``read(columns, first, last, step)``: the samples from first up to last, last apart, of some columns in any order,
+"""``read(columns, first, last, step)``: the samples from first up to last, last excluded, of some columns in any order,
 in pieces of step samples that follow one another, the last one shorter; each of shape (column, time)."""
 
 BUDGET = 1 << 25
-"""Bytes that the pieces may take of which a whole is put together: large against what a read costs, and small."""
+"""Bytes of the pieces in which a whole is read."""
 
 
 def _nothing_spoilt(column: int, first: int, last: int) -> None:

@@ -42,7 +42,7 @@ class Rate:
     line
         Where it stands.
     written
-        As the file has it.
+        As written in the file.
     """
 
     hertz: float

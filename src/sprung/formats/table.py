@@ -1,4 +1,4 @@
-"""What a file format hands over: columns of numbers, their names and units, and a clock."""
+"""What every file format returns: columns of numbers, their names and units, and a clock."""
 
 from __future__ import annotations
 
@@ -27,30 +27,30 @@ def sample_number(sample: int) -> str:
 @shown
 @dataclass(frozen=True, eq=False)
 class SampleTable:
-    """The columns of one file, as the file has them. Their samples stay there until `take` or `pieces` ask for them.
+    """The columns of one file. Their samples stay in the file until `take` or `pieces` read them.
 
     `take` reads some columns at once, all of them or those of a range; `pieces` goes through the file from its beginning
     to its end, and holds no more than a piece at a time. Both give float64 in the units of the file, NaN where it
-    holds no number; `find_non_number` then says what stands there instead. Damage to the file is met when it is read: all three
-    raise an InputError over it.
+    holds no number; `find_non_number` returns what stands there instead. All three raise an InputError where the
+    file is damaged.
 
     Attributes
     ----------
     channels
         Names of the columns other than time, without their units.
     units
-        What the file says each channel is measured in; None where it says nothing.
+        Unit of each channel as stated in the file; None without one.
     store
         Reads their samples: `store.store_in_memory(values)` where a format has them in memory, shape (channel, time).
     clock
         Time of every sample on the file's clock, s, shape (time,); or one number, the samples per second of a format
         that keeps no times, whose clock then starts at 0.
     place
-        Says where in the file a sample stands: ``line 57``.
+        Returns where in the file a sample stands: ``line 57``.
     notes
-        What the format had to do to read the file, in words.
+        What was done to read the file, in words.
     resampled
-        Columns that another clock kept, by their positions; they were read at the times of this one.
+        Columns sampled by another clock, by their positions; they were interpolated to the times of this one.
 
     Examples
     --------
@@ -88,9 +88,9 @@ class SampleTable:
         Parameters
         ----------
         columns
-            Which, in any order; None for all.
+            Indices of the columns, in any order; None for all.
         first, last
-            From which sample up to which, last apart; None for the end.
+            From which sample up to which, last excluded; None for the end.
 
         Returns
         -------
@@ -119,7 +119,7 @@ class SampleTable:
         Parameters
         ----------
         columns
-            Which, in any order; None for all.
+            Indices of the columns, in any order; None for all.
         samples
             How many a piece has; the last one has fewer.
 
@@ -167,9 +167,9 @@ class SampleTable:
         Parameters
         ----------
         column
-            Which.
+            Index of the column.
         first, last
-            From which sample up to which, last apart; None for the end.
+            From which sample up to which, last excluded; None for the end.
 
         Raises
         ------

@@ -33,7 +33,7 @@ class Cells:
     Attributes
     ----------
     file
-        Its name, for messages.
+        Name of the file, for messages.
     layout
         How it is written.
     columns
@@ -41,7 +41,7 @@ class Cells:
     size
         Bytes of the file: with many more cells missing it is no table.
     first, last
-        From which line with samples up to which, last apart, to look for what is no number, and where to stop.
+        From which line with samples up to which, last excluded, to look for what is no number, and where to stop.
     numbers
         Of all columns, line by line; NaN where there is none.
     count

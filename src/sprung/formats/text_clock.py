@@ -32,7 +32,7 @@ CLOCK = re.compile(
 """A time of day, with or without its date and time zone: 14:03:22.125, 2025-04-11T14:03:22,125Z, 03:22.125."""
 
 WRAP = 2.0**32
-"""Where counters of 32 bits begin again."""
+"""Period of counters of 32 bits."""
 
 _DAY = 86400.0
 _OWN_UNIT = {"sampletimefine": 1e-6}  # names that say their unit without naming it: Movella's sensors count µs
@@ -42,20 +42,20 @@ _LOOSE_UNIT = re.compile(r"(?i)(.{1,200}?)(?:[_/,]|\s{1,20}|\s?in\s)\s?(s|sec|ms
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """What a table has to say of its time.
+    """The columns of a table among which its time is found.
 
     Attributes
     ----------
     names, units
-        Of all columns; what the header and a row of units say.
+        Of all columns, from the header and a row of units.
     values
         By column that may be the time: its numbers, NaN where the file holds none, shape (time,).
     clocks
         By such a column that holds clock times: seconds since midnight, NaN where there is none, shape (time,).
     wrong
-        By such a column, what stands there that is neither a number nor a clock time.
+        By such a column, a problem for text that is neither a number nor a clock time.
     line
-        Gives the line of the file in which a sample stands.
+        Returns the line of the file in which a sample stands.
     """
 
     names: tuple[str, ...]
@@ -128,9 +128,9 @@ def find_text_clock(columns: Columns, rate: Rate | None, file: str) -> TextClock
     columns
         The table.
     rate
-        What stands above it.
+        Rate stated above it.
     file
-        Its name, for messages.
+        Name of the file, for messages.
 
     Returns
     -------
@@ -232,7 +232,7 @@ def _unit_meant(unit: str) -> str:
 
 
 def _unwrapped(time: NDArray[np.float64], line: Callable[[int], int]) -> tuple[NDArray[np.float64], tuple[str, ...]]:
-    """Join the parts of a counter of 32 bits that began again."""
+    """Unwrap a counter of 32 bits."""
     if len(time) < 3 or not (np.abs(time) < WRAP).all():
         return time, ()
     steps = np.diff(time)

@@ -41,9 +41,9 @@ class Vector:
     called
         The same, ending with what it is called, without the unit.
     samples
-        They themselves, in its own unit.
+        Its samples, in its own unit.
     unit
-        What the file says; None where it says nothing.
+        Unit stated in the file; None without one.
     moments
         Whether the file declares it to be times in s.
     """
@@ -79,16 +79,16 @@ class Vector:
 
 @dataclass(frozen=True, eq=False)
 class VectorClock:
-    """What keeps the time.
+    """The clock of a recording.
 
     Attributes
     ----------
     time
         Seconds of every sample, shape (time,), or samples per second.
     taken
-        The vectors that are none of the channels.
+        Vectors that are not channels.
     notes
-        What was a guess, in words.
+        Assumptions, in words.
     """
 
     time: NDArray[np.float64] | float
@@ -102,7 +102,7 @@ def time_name_unit(name: str) -> str | None:
     Parameters
     ----------
     name
-        As the file has it.
+        As written in the file.
     """
     if name.strip().lower() in TIME_NAMES:
         return ""
@@ -119,11 +119,11 @@ def find_vector_clock(vectors: Sequence[Vector], content: Content, scope: Metada
     Parameters
     ----------
     vectors
-        All of them, in the file's order.
+        All vectors, in the file's order.
     content
         What else the file holds.
     belonging
-        Who speaks for whom in it.
+        Scopes of its texts and numbers.
     file
         Its name.
 
@@ -190,7 +190,7 @@ def _said_rates(content: Content, scope: MetadataScope) -> dict[Number, str | No
     units = {text.path[:-1]: text.words[0] for text in scope.unit_lists()}
     said: dict[Number, str | None] = {}
     for number in content.numbers:
-        called = scope.called(number.path)
+        called = scope.named_path(number.path)
         said[Number(called, number.value)] = units.get(number.path[:-1]) if called != number.path else None
     for text in content.texts:
         match = re.fullmatch(r"\s*([+-]?\d+\.?\d*(?:[eE][+-]?\d+)?)\s*(\D*)", text.words[0])

@@ -1,4 +1,4 @@
-"""From named vectors, matrices, words and numbers to one table, the same way for every format that holds such things."""
+"""From named vectors, matrices, texts and numbers to one table, for every format with such content."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def table_from_nested(node: Node, file: File, do: str) -> SampleTable:
-    """Find the recording in what a file holds.
+    """Return the recording in the content of a file as a table.
 
     It is made of the vectors of one length: of those with a time, or with a rate in the file, the ones that hold most
     samples together. Matrices count as so many vectors along their longer side, or along the time.
@@ -45,7 +45,7 @@ def table_from_nested(node: Node, file: File, do: str) -> SampleTable:
     Returns
     -------
     SampleTable
-        Its notes say what was a guess, and what was left out.
+        Its notes state what was assumed, and what was left out.
 
     Raises
     ------
@@ -121,10 +121,10 @@ def _on_other_clocks(
 def _vectors(content: Content, scope: MetadataScope, notes: list[str]) -> list[Vector]:
     """Return the vectors of all blocks with their names."""
     lengths = {shape[0] for block in content.blocks if len(shape := _shape(block)) == 1}
-    called = Counter(scope.called(block.path) for block in content.blocks)
+    called = Counter(scope.named_path(block.path) for block in content.blocks)
     vectors: list[Vector] = []
     for block in content.blocks:
-        path = scope.called(block.path)
+        path = scope.named_path(block.path)
         path = path if called[path] == 1 else block.path
         columns = _columns(block, lengths, notes)
         if len(columns) == 1:
@@ -174,7 +174,7 @@ def _recording(every: Sequence[Vector]) -> list[Vector]:
 
 
 def _with_units(vectors: Sequence[Vector], scope: MetadataScope, notes: list[str]) -> list[Vector]:
-    """Add the units that the file says beside the vectors, not in their names."""
+    """Add the units that the file states beside the vectors, not in their names."""
     lists = scope.unit_lists()
     units: list[str | None] = []
     members: dict[Text, list[int]] = {}

@@ -1,12 +1,15 @@
-"""Poles and shapes that make the records likeliest, by Gauss-Newton steps with Levenberg and Marquardt's damping."""
+"""Poles and shapes that make the records likeliest, by the method of Levenberg and Marquardt."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.modal.decays import Decays
 from sprung.modal.likelihood import ModalObjective, Poles, unit_scales
+from sprung.optimisation import NormalEquations, maximise
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -18,14 +21,17 @@ _SETTLED = 1e-6
 _GROWTH = 5.0
 """Powers of e by which a motion may grow over the longest record: beyond, it is none of a free decay."""
 
-_FIRMEST = 1e8
-"""Damping of the steps at which there is nothing more to be gained."""
+_DAMPING = 1e-4
+"""Of the first step, as a part of the information."""
+
+_ROUNDING = 1e-14
+"""Part of the information that is added to it: rounding must not make it indefinite."""
 
 
 def climb(
     decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _SETTLED, only: int | None = None
 ) -> ModalObjective:
-    """Climb from given poles and shapes to the nearest summit of the likelihood.
+    """Maximise the likelihood of poles and shapes from given ones.
 
     Parameters
     ----------
@@ -36,44 +42,52 @@ def climb(
     steps
         How many to take at the most.
     settled
-        Gain in twice the log-likelihood below which a step is not taken any more.
+        Expected gain in twice the log-likelihood at which to stop.
     only
         The one mode whose pole is free, everything else being as given; unless given, all poles and shapes are free.
 
     Returns
     -------
-    Stand
-        At the summit, channels weighted by the noise found there.
+    ModalObjective
+        At the maximum, channels weighted by the noise found there.
     """
-    objective = _weighted(ModalObjective.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
-    damping = 1e-4
-    for _ in range(steps):
-        free = objective.free if only is None else objective.pole_of(only)
-        information = objective.information[np.ix_(free, free)]
-        gradient = objective.gradient.ravel()[free]
+    start = _weighted(ModalObjective.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
+    problem = ModalProblem(decays, only)
+    return maximise(problem, start, tolerance=settled, damping=_DAMPING, most_steps=steps).point
+
+
+class ModalProblem(NamedTuple):
+    """The likelihood of records as a function of the poles and shapes of their modes.
+
+    Attributes
+    ----------
+    decays
+        The records.
+    only
+        The one mode whose pole is free; None where everything is.
+    """
+
+    decays: Decays
+    only: int | None
+
+    def normal_equations(self, point: ModalObjective) -> NormalEquations:
+        """Return information and gradient in what is free, each direction scaled to an information of one."""
+        free = point.free if self.only is None else point.pole_of(self.only)
+        information = point.information[np.ix_(free, free)]
         scale = unit_scales(np.diagonal(information).real)
-        scaled = information * scale[:, None] * scale
-        better = None
-        while better is None and damping < _FIRMEST:
-            step = scale * np.linalg.solve(scaled + (damping + 1e-14) * np.eye(len(free)), scale * gradient)
-            promised = float((step.conj() @ gradient).real)
-            if promised < settled:
-                return objective
-            whole = np.zeros(objective.gradient.size, dtype=np.complex128)
-            whole[free] = step
-            moved = objective.moved(whole.reshape(objective.gradient.shape))
-            tried = None
-            if _allowed(moved, decays):
-                tried = ModalObjective.at(decays, moved, objective.weights)
-            if tried is not None and tried.cost < objective.cost:
-                better = tried
-                damping = max(damping / 10, 1e-12)
-            else:
-                damping *= 10
-        if better is None:
-            return objective
-        objective = _weighted(better)
-    return objective
+        directions = np.zeros((point.gradient.size, len(free)))
+        directions[free, np.arange(len(free))] = scale
+        unit = np.eye(len(free))
+        scaled = information * scale[:, None] * scale + _ROUNDING * unit
+        return NormalEquations(scaled, scale * point.gradient.ravel()[free], unit, directions)
+
+    def trial(self, point: ModalObjective, step: Complex) -> tuple[ModalObjective, float]:
+        """Return the likelihood a step away, and what it gains."""
+        moved = point.moved(step.reshape(point.gradient.shape))
+        if not _allowed(moved, self.decays):
+            return point, -np.inf
+        tried = ModalObjective.at(self.decays, moved, point.weights)
+        return _weighted(tried), point.cost - tried.cost
 
 
 def _weighted(objective: ModalObjective) -> ModalObjective:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.errors import InputError, Problem
-from sprung.estimation import Coordinates, Likelihood, PriorsAndConstraints
+from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints
 from sprung.preprocess import FreeDecay, unknown_baseline
 from sprung.simulation import drop_from_blocks
 from sprung.uncertainty import KnownValue
@@ -121,26 +121,27 @@ class MeasurementSetup:
     @cached_property
     def priors(self) -> PriorsAndConstraints:
         """What is known beforehand, in the coordinates of the fit: an extra counts in parts of a spring or damper rate."""
-        return PriorsAndConstraints(Coordinates.beside(self.names, self.vehicle.parameters), self.known)
+        return PriorsAndConstraints(Coordinates.scaled_by(self.names, self.vehicle.parameters), self.known)
 
     @cached_property
     def u(self) -> Real:
         """The coordinates, shape (parameter,)."""
-        return self.priors.coordinates.of(self.values)
+        return self.priors.coordinates.from_values(self.values)
 
     @cached_property
     def slopes(self) -> Real:
         """Derivative of each value by its coordinate, shape (parameter,)."""
-        return self.priors.coordinates.slopes(self.u)
+        return self.priors.coordinates.derivatives(self.u)
 
     @cached_property
     def free(self) -> Real:
         """Directions of the coordinates that exact knowledge leaves free, shape (parameter, direction)."""
-        return self.priors.free(self.u)
+        return self.priors.null_space(self.u)
 
     def of_statements(self, statements: Mapping[str, KnownValue]) -> Real:
         """Give the information in uncertain statements; shape (direction, direction)."""
-        slopes = PriorsAndConstraints(self.priors.coordinates, statements).prior(self.u).slopes @ self.free
+        _, by_coordinate = PriorsAndConstraints(self.priors.coordinates, statements).residuals(self.u)
+        slopes = by_coordinate @ self.free
         return slopes.T @ slopes
 
     def of_drops(self, drops: Sequence[PlannedDrop], rate: float | None = None) -> Real:
@@ -174,9 +175,9 @@ class MeasurementSetup:
             name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
             for load, name in names.items()
         }
-        likelihood = Likelihood(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
+        objective = ClosedFormObjective(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
         weights = self.rate / sampling / self.noise**2
-        told = likelihood.at(self.values).evaluate(weights).information
+        told = objective.at(self.values, weights).information
         seen = self.slopes[:, None] * self.free
         information: Real = seen.T @ told @ seen / self.inflation
         return information

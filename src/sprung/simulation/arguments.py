@@ -61,8 +61,8 @@ def records(
     model: type[Record], kind: str, given: Sequence[Record | Mapping[str, Any]], problems: Problems
 ) -> tuple[Record, ...]:
     """Return records of one kind; invalid ones are left out and added to the problems."""
-    made = [record(model, f"{kind}[{i}]", one, problems) for i, one in enumerate(given)]
-    return tuple(one for one in made if one is not None)
+    made = [record(model, f"{kind}[{i}]", entry, problems) for i, entry in enumerate(given)]
+    return tuple(entry for entry in made if entry is not None)
 
 
 def record(model: type[Record], where: str, given: Record | Mapping[str, Any], problems: Problems) -> Record | None:

@@ -1,12 +1,13 @@
-"""Many identifications: results compared, the paper reproduced, the example of `sprung demo`."""
+"""Studies with identifications: comparison of results, cross-validation, test planning, the example of `sprung demo`."""
 
-from sprung.study.comparison import ComparedResult, Comparison, Difference, QuantityComparison, ResultValue, compare
+from sprung.study.comparison import ComparedResult, Comparison, Difference, QuantityComparison, ResultValue
+from sprung.study.cross_validation import Validation, validate
 from sprung.study.demo import DEMO_VEHICLE, demo_campaign
-from sprung.study.plan import plan
+from sprung.study.differences import compare
 from sprung.study.scatter import ScatterEstimate
 from sprung.study.significance import JointTest
+from sprung.study.test_planning import plan
 from sprung.study.truth import TrueValue, true_values
-from sprung.study.validate import Validation, validate
 
 __all__ = [
     "DEMO_VEHICLE",

@@ -1,4 +1,4 @@
-"""The example that `sprung demo` writes: the paper's school bus, as a test engineer would have recorded it."""
+"""The example campaign of `sprung demo`: the paper's school bus."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import SCHOOL_BUS, WHEELS, Sensor, Wheel
 
 DEMO_VEHICLE = SCHOOL_BUS
-"""The vehicle that is dropped: its parameters are the true values of the example."""
+"""The vehicle of the example; its parameters are the true values."""
 
-_BODY_RANGE, _WHEEL_RANGE = 4.0, 50.0  # g: the wheels see ten times what the body sees
-_STEPS = 2**16  # of a 16-bit recorder over the full range
+_BODY_RANGE, _WHEEL_RANGE = 4.0, 50.0  # g: wheel accelerations are about ten times those of the body
+_STEPS = 2**16  # of a 16-bit recorder
 
 _LOAD = {
     "name": "sandbags",
@@ -23,14 +23,14 @@ _LOAD = {
         {"mass": 235.0, "position": (-2.4, -0.4, 1.1), "inertia": (12.0, 20.0)},
     ],
 }
-"""The paper's 470 kg, as two items whose places were measured with a tape."""
+"""The paper's 470 kg, as two items at measured positions."""
 
 
 def demo_campaign(seed: int = 1) -> Campaign:
-    """Simulate the example: bounce, front, rear, left and right drops, empty and with 470 kg.
+    """Return the example: bounce, front, rear, left and right drops, empty and with 470 kg.
 
-    Eight sensors in g, 500 Hz, noise of 0.02 m/s², 16 bit; known beforehand is what the paper knew (Table 4): total mass, a,
-    b, t_f2 and t_r2.
+    Eight sensors in g, 500 Hz, noise of 0.02 m/s², 16 bit; known beforehand as in the paper (Table 4): total mass, a, b,
+    t_f2 and t_r2.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""How sure a difference is: of one quantity, of many at once, and of all together."""
+"""Significance of differences: of one quantity, corrected for many, and joint."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,25 +15,24 @@ from sprung.results import Result
 Real = NDArray[np.float64]
 
 _RANK = 1e-6
-"""Eigenvalue of a correlation matrix below which what was known beforehand fixes a direction, not the recordings."""
+"""Eigenvalue of a correlation matrix below which a direction is fixed by prior knowledge."""
 
 
 @shown
 @dataclass(frozen=True, slots=True)
 class JointTest:
-    """All quantities that two results have estimated, compared at once.
+    """Joint test of all quantities that two results have estimated.
 
     Attributes
     ----------
     names
-        Which.
+        Of the quantities.
     chi_square
-        Squared length of the differences in standard uncertainties, correlations counted; dimensionless.
+        Squared Mahalanobis distance of the differences; dimensionless.
     freedom
-        Independent directions among them: fewer than names where something known beforehand, such as an exact wheelbase, ties
-        several together.
+        Degrees of freedom: fewer than names where prior knowledge, such as an exact wheelbase, constrains several.
     p
-        Chance of a larger one between two results of the same vehicle.
+        Probability of a larger distance between two results of the same vehicle.
     """
 
     names: tuple[str, ...]
@@ -43,22 +42,22 @@ class JointTest:
 
 
 def two_sided(z: float) -> float:
-    """Give the chance that a standard normal number is further from 0.
+    """Return the two-sided probability of a standard normal variable.
 
     Parameters
     ----------
     z
-        The number, in standard uncertainties.
+        In standard uncertainties.
     """
     return float(2 * norm.sf(abs(z)))
 
 
-def holm(chances: Sequence[float]) -> list[float]:
-    """Correct the chances of many comparisons, so that any one below 0.05 is wrong in at most 5 % of tables.
+def holm(probabilities: Sequence[float]) -> list[float]:
+    """Return the probabilities of many comparisons, corrected so that at most 5 % of tables have any wrong one below 0.05.
 
     Parameters
     ----------
-    chances
+    probabilities
         Each between 0 and 1.
 
     Returns
@@ -68,48 +67,48 @@ def holm(chances: Sequence[float]) -> list[float]:
 
     Notes
     -----
-    S. Holm, A simple sequentially rejective multiple test procedure, Scand. J. Statist. 6 (1979) 65. It asks nothing about how
-    the comparisons depend on each other.
+    S. Holm, A simple sequentially rejective multiple test procedure, Scand. J. Statist. 6 (1979) 65. It makes no
+    assumption about the dependence of the comparisons.
 
     Examples
     --------
     >>> holm([0.01, 0.04, 0.03])
     [0.03, 0.06, 0.06]
     """
-    order = np.argsort(chances, kind="stable")
-    steps = np.asarray(chances, dtype=float)[order] * (len(chances) - np.arange(len(chances)))
-    corrected = np.empty(len(chances))
+    order = np.argsort(probabilities, kind="stable")
+    steps = np.asarray(probabilities, dtype=float)[order] * (len(probabilities) - np.arange(len(probabilities)))
+    corrected = np.empty(len(probabilities))
     corrected[order] = np.minimum(np.maximum.accumulate(steps), 1.0)
-    return [float(one) for one in corrected]
+    return corrected.tolist()
 
 
 def joint_test(first: Result, second: Result, among: Sequence[str]) -> JointTest | None:
-    """Compare what two results both estimated, with the correlations that they tell.
+    """Test all parameters that two results have estimated, with their correlations.
 
     Parameters
     ----------
     first, second
-        The results, whose errors are taken to be independent.
+        Results with independent errors.
     among
-        Names of the parameters that can be compared.
+        Names of the comparable parameters.
 
     Returns
     -------
     Joint or None
-        None where they have nothing in common.
+        None where they have no estimated parameter in common.
     """
-    told = [set(result.correlation.names) for result in (first, second)]
-    names = tuple(name for name in among if name in told[0] & told[1])
+    common = set(first.correlation.names) & set(second.correlation.names)
+    names = tuple(name for name in among if name in common)
     if not names:
         return None
     covariance = _covariance(first, names) + _covariance(second, names)
-    spread = np.sqrt(np.diag(covariance))
-    apart = np.array([_value(second, name) - _value(first, name) for name in names]) / spread
-    sizes, directions = np.linalg.eigh(covariance / np.outer(spread, spread))
+    std = np.sqrt(np.diag(covariance))
+    z = np.array([_value(second, name) - _value(first, name) for name in names]) / std
+    sizes, directions = np.linalg.eigh(covariance / np.outer(std, std))
     free = sizes > _RANK
-    size = float(np.sum((directions[:, free].T @ apart) ** 2 / sizes[free]))
+    chi_square = float(np.sum((directions[:, free].T @ z) ** 2 / sizes[free]))
     freedom = int(free.sum())
-    return JointTest(names, size, freedom, float(chi2.sf(size, freedom)))
+    return JointTest(names, chi_square, freedom, float(chi2.sf(chi_square, freedom)))
 
 
 def _value(result: Result, name: str) -> float:
@@ -117,8 +116,7 @@ def _value(result: Result, name: str) -> float:
 
 
 def _covariance(result: Result, names: Sequence[str]) -> Real:
-    places: Mapping[str, int] = {name: i for i, name in enumerate(result.correlation.names)}
-    chosen = [places[name] for name in names]
-    matrix = np.array(result.correlation.matrix)[np.ix_(chosen, chosen)]
-    spread = np.array([result.parameters[name].std or 0.0 for name in names])
-    return np.asarray(matrix * np.outer(spread, spread))
+    indices = [result.correlation.names.index(name) for name in names]
+    matrix = np.array(result.correlation.matrix)[np.ix_(indices, indices)]
+    std = np.array([result.parameters[name].std or 0.0 for name in names])
+    return np.asarray(matrix * np.outer(std, std))

@@ -1,4 +1,4 @@
-"""Estimates beside true values, where the vehicle is a simulated one."""
+"""Estimates and true values of a simulated vehicle."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from sprung.vehicle import Vehicle
 @shown
 @dataclass(frozen=True, slots=True)
 class TrueValue:
-    """A parameter whose true value is known because it was simulated.
+    """A parameter of a simulated vehicle and its estimate.
 
     Attributes
     ----------
     true
         SI.
     estimate
-        What was identified; it has a value and a standard uncertainty above 0.
+        Estimate, with a value and a standard uncertainty above 0.
     """
 
     true: float
@@ -29,12 +29,12 @@ class TrueValue:
 
     @property
     def percent(self) -> float:
-        """Estimate less true value, % of the true value."""
+        """Estimate minus true value, % of the true value."""
         return 100 * self._difference / self.true
 
     @property
     def standard_errors(self) -> float:
-        """Estimate less true value, in standard uncertainties of the estimate."""
+        """Estimate minus true value, in standard uncertainties of the estimate."""
         assert self.estimate.std is not None  # noqa: S101 (for the type checker: see `true_values`)
         return self._difference / self.estimate.std
 
@@ -45,22 +45,25 @@ class TrueValue:
 
 
 def true_values(result: Result, vehicle: Vehicle) -> Mapping[str, TrueValue]:
-    """Set the estimates of a result beside the vehicle that was simulated.
+    """Return the estimates of a result with the true values.
 
     Parameters
     ----------
     result
-        The result.
+        Of an identification.
     vehicle
-        The vehicle that was simulated.
+        The simulated vehicle.
 
     Returns
     -------
     mapping
-        By parameter: those that were estimated and that the vehicle has, other than zero. Known ones have no error to show.
+        By parameter: those that were estimated and are not zero in the simulated vehicle.
     """
     return {
-        name: TrueValue(vehicle.parameters[name], found)
-        for name, found in result.parameters.items()
-        if found.status == "estimated" and found.value is not None and found.std and vehicle.parameters.get(name)
+        name: TrueValue(vehicle.parameters[name], estimate)
+        for name, estimate in result.parameters.items()
+        if estimate.status == "estimated"
+        and estimate.value is not None
+        and estimate.std
+        and vehicle.parameters.get(name)
     }

@@ -41,7 +41,7 @@ def comparison_view(comparison: Comparison) -> RenderableType:
     parts: list[RenderableType] = [*_verdicts(comparison), Text()]
     labels = tuple(result.name for result in comparison.results)
     for title, rows in _tables(comparison).items():
-        cells = [[name, unit_text(row.unit), *map(_cell, row.told)] for name, row in rows.items()]
+        cells = [[name, unit_text(row.unit), *map(_cell, row.values)] for name, row in rows.items()]
         headers = ("", "unit", *labels)
         parts += [render_rows(f"{title}, value ± standard uncertainty", headers, cells, labels, heads=2), Text()]
     for i in range(len(labels) - 1):

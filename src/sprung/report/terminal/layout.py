@@ -116,7 +116,7 @@ def significant_figures(number: float, count: int) -> str:
 
     Examples
     --------
-    >>> figures(0.0201, 2), figures(111.96, 3), figures(2e7, 3)
+    >>> significant_figures(0.0201, 2), significant_figures(111.96, 3), significant_figures(2e7, 3)
     ('0.020', '112', '2e+07')
     """
     return f"{number:#.{count}g}".rstrip(".") if 1e-3 <= abs(number) < 10.0**count else f"{number:.{count}g}"

@@ -1,4 +1,4 @@
-"""From a vehicle, or a campaign that is done, to the table of what could be measured next."""
+"""Planning of a test of a vehicle, or of the next measurement after a campaign."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
 
 RATE, NOISE, DURATION = 500.0, 0.02, 3.2
-"""Samples per second, m/s² root-mean-square, and s after the release where nobody says."""
+"""Default sampling rate, Hz, noise, m/s² root-mean-square, and duration after the release, s."""
 
 
 def plan(
@@ -50,20 +50,20 @@ def plan(
     model: ModelChoice | Mapping[str, Any] | None = None,
     progress: Progress = silent,
 ) -> Plan:
-    """Say what a test would tell, what its alternatives would, and which of them is enough.
+    """Return the expected uncertainties of a test and of its alternatives, and the smallest sufficient one.
 
     Parameters
     ----------
     source
-        A vehicle as it is thought to be, or the path of its vehicle file: then a test of it is planned. Or a campaign, or the
-        path of one: then it is identified, and the plan says what to measure next; its first row is what the campaign has told.
+        An assumed vehicle, or the path of its vehicle file: a test of it is planned. Or a campaign, or its path: it is
+        identified, and the plan says what to measure next; its first row is the campaign itself.
     wanted
-        Percent that the standard uncertainty of no parameter is to exceed.
+        Largest acceptable standard uncertainty of any parameter, %.
     sensors, loads, drops, rate, noise, duration, known, model
-        Of the planned test of a vehicle, as for `sprung.simulate`; a vehicle file's own where none are given, else 500 samples
-        per second, 0.02 m/s² and 3.2 s. A campaign has its own.
+        Of the planned test of a vehicle, as for `sprung.simulate`; by default those of the vehicle file, else 500 Hz,
+        0.02 m/s² and 3.2 s. Not for a campaign, which has its own.
     progress
-        Told in words what is being done.
+        Called with each step that begins.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def plan(
     Raises
     ------
     InputError
-        If a file cannot be used, something does not fit together, or the vehicle cannot be dropped so; all faults at once.
+        If a file is not usable, arguments are inconsistent, or the vehicle cannot be dropped so; with all faults.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def plan(
             if value is not None:
                 found = f"{value:g}" if isinstance(value, float | int) else type(value).__name__
                 do = f"Leave {name} out, or plan from a vehicle."
-                problems.add(f"plan: {name}", found, "nothing: a campaign brings its own along", do)
+                problems.add(f"plan: {name}", found, "nothing, because a campaign has its own", do)
         problems.raise_if_any()
         return _plan_further(resolve_campaign(source, progress), wanted, progress)
     if isinstance(source, Vehicle):
@@ -120,12 +120,12 @@ def plan(
     )
     levels = setup.sensing.noise
     if not (levels > 0).all() and not any("noise" in problem.where for problem in problems):
-        do = "Without noise every uncertainty would be zero: give the noise of your sensors."
+        do = "Without noise every uncertainty is zero: give the noise of your sensors."
         problems.add("plan: noise", f"{float(levels.min())} m/s^2", "more than 0", do)
     if not (math.isfinite(duration) and duration > 0):
         problems.add("plan: duration", f"{duration} s", "a positive number", "Correct it.")
     if setup.model.tracks == "shared" and vehicle.tracks == "separate":
-        found = "half-distances of springs and dampers apart"
+        found = "separate half-distances of springs and dampers"
         problems.add("plan: vehicle", f'{found} with tracks = "shared"', "one half-distance per axle", "Remove one.")
     _raise_as_plan(problems)
 
@@ -156,7 +156,7 @@ def plan(
 
 
 def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
-    """Identify a vehicle, and say what to measure next."""
+    """Identify a vehicle, and return the plan of the next measurement."""
     run = analyse(campaign, AnalysisOptions(), progress)
     result = result_of(run)
     if result.verdict.state == "reject":
@@ -167,7 +167,7 @@ def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan
 
 
 def _describes_vehicle(path: str | os.PathLike[str]) -> bool:
-    """Tell a vehicle file, which has the section ``[parameters]``; what cannot be read is left to who reads it."""
+    """Whether a path is a vehicle file, with the section ``[parameters]``; an unreadable file is reported when it is read."""
     try:
         return "parameters" in tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
     except (OSError, ValueError):
@@ -180,6 +180,6 @@ def _check_wanted(wanted: float, problems: Problems) -> None:
 
 
 def _raise_as_plan(problems: Problems) -> None:
-    """Raise what was found, naming the arguments of `simulate` as those of `plan`."""
+    """Raise the problems, with the arguments of `simulate` named as those of `plan`."""
     if problems:
-        raise InputError(replace(one, where=re.sub(r"^simulate:", "plan:", one.where)) for one in problems)
+        raise InputError(replace(problem, where=re.sub(r"^simulate:", "plan:", problem.where)) for problem in problems)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,7 @@ _CLOSE = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class ModalSolution:
-    """Poles and shapes.
+    """Poles and shapes of a linear vehicle at its sensors.
 
     Attributes
     ----------
@@ -69,24 +68,6 @@ class ModalSolution:
         return float((right * _sizes(self.left / balance, axis=-1)).max())
 
 
-class ModalSlopes(NamedTuple):
-    """Derivatives of poles and readings by the parameters.
-
-    Attributes
-    ----------
-    poles
-        Shape (..., parameter, mode).
-    shapes
-        σ, what multiplies q e^{λt} in the derivative of a channel; shape (..., channel, parameter, mode).
-    secular
-        τ, what multiplies q t e^{λt}; shape (..., channel, parameter, mode).
-    """
-
-    poles: Complex
-    shapes: Complex
-    secular: Complex
-
-
 def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolution:
     """Solve the eigenvalue problem.
 
@@ -114,8 +95,8 @@ def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolutio
 
 def differentiate_modes(
     model: LinearModel, sensors: Rows, values: Real, modes: ModalSolution, span: float
-) -> ModalSlopes:
-    """Differentiate the response by the parameters.
+) -> tuple[Complex, Complex]:
+    """Return the derivatives of poles and readings by the parameters.
 
     Parameters
     ----------
@@ -126,35 +107,41 @@ def differentiate_modes(
     modes
         Poles and shapes there.
     span
-        Length of the longest record, s: decides which poles are too close to be told apart.
+        Length of the longest record, s: decides which poles count as equal.
 
     Returns
     -------
-    ModalSlopes
+    poles
+        Shape (..., parameter, mode).
+    readings
+        σ and τ, what multiplies q e^{λt} and q t e^{λt} in the derivative of a channel, beside each other; shape (..., channel,
+        parameter, 2 mode).
 
     Notes
     -----
     The derivative of e^{At} in modal coordinates has the entries D_kj (e^{λ_j t} - e^{λ_k t})/(λ_j - λ_k), with
-    D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What is left is
+    D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What remains is
     D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones.
 
     With motions v, λv, λ²v of a mode, dA V is -M⁻¹ (dM λ²v + dC λv + dK v).
     """
     motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
     # The rows of dM, dC and dK beside each other: (..., the rows of every parameter, 3 coordinate).
-    slopes = np.moveaxis(np.concatenate(model.slopes(values), axis=-1), 0, -2)
+    derivatives = np.moveaxis(np.concatenate(model.slopes(values), axis=-1), 0, -2)
     lead = modes.poles.shape[:-1]
-    by_coordinate = (*lead, slopes.shape[-3], len(values), modes.poles.shape[-1])
-    forces = (slopes.reshape(*lead, -1, slopes.shape[-1]) @ motions).reshape(by_coordinate)
-    changed = respond(model, sensors, values, modes, forces, span)
-    moved = (sensors.slopes.reshape(-1, sensors.slopes.shape[-1]) @ modes.accelerations).reshape(*changed.shapes.shape)
-    return changed._replace(shapes=changed.shapes + moved)
+    by_coordinate = (*lead, derivatives.shape[-3], len(values), modes.poles.shape[-1])
+    forces = (derivatives.reshape(*lead, -1, derivatives.shape[-1]) @ motions).reshape(by_coordinate)
+    poles, readings = differentiate_response(model, sensors, values, modes, forces, span)
+    of_sensors = sensors.slopes.reshape(-1, sensors.slopes.shape[-1]) @ modes.accelerations
+    m = modes.poles.shape[-1]
+    readings[..., :m] += of_sensors.reshape(*readings.shape[:-1], m)
+    return poles, readings
 
 
-def respond(
+def differentiate_response(
     model: LinearModel, sensors: Rows, values: Real, modes: ModalSolution, forces: Complex, span: float
-) -> ModalSlopes:
-    """Give what forces that grow with the motion change in the response.
+) -> tuple[Complex, Complex]:
+    """Return the derivatives of poles and readings by changes of the equations of motion.
 
     Parameters
     ----------
@@ -165,8 +152,8 @@ def respond(
 
     Returns
     -------
-    ModalSlopes
-        By change instead of by parameter.
+    poles, readings
+        As from `differentiate_modes`, by change instead of by parameter.
     """
     *lead, n, changes, m = forces.shape
     channels = len(sensors.affine)
@@ -179,15 +166,14 @@ def respond(
     close = np.abs(difference) * span < _CLOSE
     mixing = np.where(close, 0.0, 1.0 / np.where(close, 1.0, difference))
 
-    def seen(mixed: Complex) -> Complex:
+    def at_sensors(mixed: Complex) -> Complex:
         by_channel: Complex = modes.shapes @ mixed.reshape(*lead, m, -1)
         return by_channel.reshape(*lead, channels, changes, m)
 
-    return ModalSlopes(
-        np.diagonal(D, axis1=-3, axis2=-1),
-        of_sensors + seen(D * mixing[..., :, None, :]),
-        seen(D * close[..., :, None, :]),
-    )
+    readings = np.empty((*lead, channels, changes, 2 * m), dtype=np.complex128)
+    readings[..., :m] = of_sensors + at_sensors(D * mixing[..., :, None, :])
+    readings[..., m:] = at_sensors(D * close[..., :, None, :])
+    return np.diagonal(D, axis1=-3, axis2=-1), readings
 
 
 def _sizes(vectors: Complex, axis: int) -> Real:

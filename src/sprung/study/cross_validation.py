@@ -1,4 +1,4 @@
-"""Does the identified vehicle do what was measured? Drop by drop, in coordinates of the body, and against amplitude."""
+"""Cross-validation: the identified vehicle against each drop, in the body's motion and against amplitude."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from sprung.vehicle import EMPTY, Tracks
 @shown
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """What a validation shows.
+    """Result of a cross-validation.
 
     Attributes
     ----------
     result
-        The identification, its verdict and numbers drop by drop among it.
+        Of the identification, with verdict and errors drop by drop.
     motions
         Measured and simulated motion of the body in each drop.
     load
-        Of the drops from which `amplitudes` are.
+        Load of the drops that `amplitudes` are from.
     amplitudes
         Frequency and damping of each mode of the body against amplitude; empty where the verdict is reject.
     """
@@ -44,24 +44,24 @@ class Validation:
     amplitudes: tuple[ModeAmplitude, ...]
 
     def document(self) -> dict[str, Any]:
-        """Give vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
+        """Return vehicle, verdict, validation by drop and amplitudes by mode as plain values, for JSON."""
         result = self.result.document()
         kept = ("sprung", "vehicle", "verdict", "validation", "faults", "omissions")
         return {**{name: result[name] for name in kept}, "amplitude": amplitude_document(self.amplitudes)}
 
     def files(self) -> dict[str, bytes]:
-        """Give validation.json, and validation.npz with every series that a drawing shows."""
+        """Return validation.json, and validation.npz with the series of the drawings."""
         arrays: dict[str, NDArray[Any]] = {}
         for motion in self.motions:
             arrays[f"{motion.name}/time"] = motion.time
             arrays[f"{motion.name}/measured"] = motion.measured
             arrays[f"{motion.name}/simulated"] = motion.simulated
-        for one in self.amplitudes:
-            named = {f"records/{trace.name}": trace for trace in one.records}
-            named |= {f"simulated/{trace.name}": trace for trace in one.simulated} | {"model": one.model}
-            for where, trace in named.items():
-                series = curve_document(trace).items()
-                arrays |= {f"amplitude/{one.mode}/{where}/{name}": np.array(values) for name, values in series}
+        for mode in self.amplitudes:
+            curves = {f"records/{curve.name}": curve for curve in mode.records}
+            curves |= {f"simulated/{curve.name}": curve for curve in mode.simulated} | {"model": mode.model}
+            for where, curve in curves.items():
+                columns = curve_document(curve).items()
+                arrays |= {f"amplitude/{mode.mode}/{where}/{name}": np.array(values) for name, values in columns}
         text = json.dumps(self.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
         return {"validation.npz": npz_bytes(arrays), "validation.json": text.encode()}
 
@@ -96,7 +96,7 @@ def validate(
     extras: str | Sequence[str] | None = None,
     progress: Progress = silent,
 ) -> Validation:
-    """Identify a vehicle, and hold what it does against what was measured.
+    """Identify a vehicle, and validate it against each drop.
 
     Parameters
     ----------

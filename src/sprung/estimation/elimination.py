@@ -1,0 +1,33 @@
+"""Elimination of nuisance unknowns from normal equations: the Schur complement."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+
+
+def eliminate(information: Real, gradient: Real, kept: int) -> tuple[Real, Real, Real]:
+    """Eliminate the last unknowns from normal equations.
+
+    Parameters
+    ----------
+    information, gradient
+        Of all unknowns, shapes (..., unknown, unknown) and (..., unknown).
+    kept
+        How many of the first unknowns are kept.
+
+    Returns
+    -------
+    information, gradient
+        Of those kept, whatever the others are: the Schur complement; shapes (..., kept, kept) and (..., kept).
+    response
+        Change of each of the others with those kept, at the maximum over them, shape (..., other, kept).
+    """
+    across, others = information[..., kept:, :kept], information[..., kept:, kept:]
+    solved = np.linalg.solve(others, np.concatenate([across, gradient[..., kept:, None]], axis=-1))
+    response, moved = -solved[..., :kept], solved[..., kept]
+    transposed = np.swapaxes(across, -1, -2)
+    reduced = information[..., :kept, :kept] + transposed @ response
+    return reduced, gradient[..., :kept] - (transposed @ moved[..., None])[..., 0], response

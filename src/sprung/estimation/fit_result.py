@@ -1,0 +1,231 @@
+"""Where the fit of some decays ended, and everything that follows from it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.objective import HasClockDelays, ObjectiveAt
+from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
+from sprung.estimation.problem import EstimationProblem, Iterate
+from sprung.preprocess import FreeDecay
+
+Real = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FitResult:
+    """Where the fit of some decays ended.
+
+    Attributes
+    ----------
+    problem
+        The likelihood, and what is known beforehand.
+    iterate
+        The last point.
+    steps
+        Steps taken from the winning start.
+    converged
+        Whether no further gain is expected.
+    starts, starts_agreeing
+        How many starts were refined, and how many of them ended here.
+    """
+
+    problem: EstimationProblem
+    iterate: Iterate
+    steps: int
+    converged: bool
+    starts: int
+    starts_agreeing: int
+
+    @property
+    def decays(self) -> Sequence[FreeDecay]:
+        """What was fitted."""
+        return self.problem.objective.decays
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The parameters."""
+        return self.problem.priors.coordinates.names
+
+    @cached_property
+    def values(self) -> Real:
+        """Parameter values, SI, shape (parameter,)."""
+        return self.problem.priors.coordinates.values(self.iterate.u)
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Parameter values, SI, by name."""
+        return dict(zip(self.names, self.values.tolist(), strict=True))
+
+    @property
+    def weights(self) -> Real:
+        """1/σ² of each channel with which the states and the derivatives were computed, s⁴/m², shape (channel,)."""
+        return self.iterate.at.weights
+
+    @property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); 0 for channels that are left out."""
+        return self.iterate.at.residual_sums
+
+    @cached_property
+    def noise(self) -> Real:
+        """Noise level of each channel, m/s², shape (channel,)."""
+        noise: Real = np.sqrt(self.problem.noise_variance(self.residual_sums, self.iterate.at.leverage))
+        return noise
+
+    @cached_property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+        return self.iterate.at.fitted
+
+    @cached_property
+    def residuals(self) -> tuple[Real, ...]:
+        """Measured minus modelled, m/s²: one array of shape (channel, time) per drop, NaN for channels that are left out."""
+        return tuple(_centred(decay.values - record) for decay, record in zip(self.decays, self.fitted, strict=True))
+
+    @cached_property
+    def loglikelihood(self) -> float:
+        """Up to a constant."""
+        return -0.5 * self.problem.cost(self.iterate)
+
+    @property
+    def absolute_loglikelihood(self) -> float:
+        """Natural logarithm of the likelihood, with its constant: -½ Σ (ln 2πσ² + r²/σ²), and the priors."""
+        observations = self.problem.objective.observations.sum(axis=0)
+        squares = self.residual_sums.sum(axis=0) / self.noise**2
+        return self.loglikelihood - 0.5 * float(
+            observations.sum() * np.log(2 * np.pi) + squares[observations > 0].sum()
+        )
+
+    @property
+    def unknowns(self) -> int:
+        """Numbers that the samples had to determine: parameters, noise levels, initial states, offsets and clocks."""
+        observations = self.problem.objective.observations > 0
+        directions = self.problem.priors.null_space(self.iterate.u).shape[1]
+        eliminated = round(float(self.iterate.at.leverage.sum()))
+        counted: int = directions + int(observations.any(axis=0).sum()) + int(observations.sum()) + eliminated
+        return counted
+
+    @cached_property
+    def autocorrelation_inflation(self) -> Real:
+        """Factor by which autocorrelated residuals inflate variances, shape (channel,); 1 where not significantly."""
+        decays = self.decays
+        # Samples that were interpolated are correlated, but counted for no more than those that were taken.
+        samples = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
+        counted = self.problem.objective.observations.sum(axis=0) / np.maximum(samples, 1)
+        rates = [decay.rate for decay in decays]
+        return autocorrelation_inflation(self.residuals, rates, counted=counted, least=self.problem.least_variance)
+
+    @cached_property
+    def disagreement(self) -> float:
+        """Factor by which drops that contradict each other inflate variances; 1 where not significantly."""
+        return birge_ratio(*self.problem.by_drop(self.iterate))
+
+    @cached_property
+    def overdispersion(self) -> float:
+        """Factor on every variance: the larger of the two, 1 where neither is significant."""
+        return max(float(self.autocorrelation_inflation.max()), self.disagreement)
+
+    @property
+    def drop_corrections(self) -> tuple[Real, NDArray[np.int64]]:
+        """Each drop's own correction to the joint estimate.
+
+        In units of its standard errors, squared and summed, shape (drop,); and in how many directions it has information.
+        """
+        return drop_corrections(*self.problem.by_drop(self.iterate))
+
+    @cached_property
+    def states(self) -> Real:
+        """{X, Ẋ} of each drop at the start of its decay, SI, shape (drop, state)."""
+        return self.iterate.at.states
+
+    @property
+    def is_reversible(self) -> bool:
+        """Whether the motion can be followed backward in time."""
+        return self.iterate.at.is_reversible
+
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """Return the motion of a drop around the start of its decay.
+
+        Parameters
+        ----------
+        drop
+            Its position.
+        before, after
+            How many samples before the first one, and how many from it on.
+
+        Returns
+        -------
+        ndarray
+            {X, Ẋ}, with forces that have a memory their memories too, SI, shape (state, time); NaN before the first sample
+            where motion cannot be followed backward.
+        """
+        return self.iterate.at.motion(drop, before, after)
+
+    def residual_sums_of(self, decays: Sequence[FreeDecay]) -> Real:
+        """Residual sums of squares of this vehicle on other decays, their initial states eliminated; as `residual_sums`."""
+        return self._of(decays).residual_sums
+
+    def states_of(self, decays: Sequence[FreeDecay]) -> Real:
+        """{X, Ẋ} of this vehicle at the start of other decays, SI, shape (drop, state)."""
+        return self._of(decays).states
+
+    def _of(self, decays: Sequence[FreeDecay]) -> ObjectiveAt:
+        objective = self.problem.objective.with_decays(decays)
+        return objective.at(self.values, self.weights).with_optimal_states()
+
+    def clock_delays(self, covariance: Real) -> dict[int, tuple[Real, Real]]:
+        """Return the estimated delays of the loggers' clocks.
+
+        Parameters
+        ----------
+        covariance
+            Of the parameters, SI, shape (parameter, parameter).
+
+        Returns
+        -------
+        dict
+            By the position of the drop the delays, s, shape (logger,), and their covariance; drops of one logger are not
+            in it.
+        """
+        match self.iterate.at:
+            case HasClockDelays() as at:
+                return at.clock_delays(covariance)
+            case _:
+                return {}
+
+    def most_likely_delays(self, decays: Sequence[FreeDecay], shifts: Real) -> dict[int, Real]:
+        """Search for the delays of clocks that are hardly known, of decays with more channels than were fitted.
+
+        Parameters
+        ----------
+        decays
+            Of several loggers.
+        shifts
+            What is tried beside what is expected of each clock, s, shape (shift,).
+
+        Returns
+        -------
+        dict
+            By the position of the drop the delays of its loggers, s, shape (logger,).
+        """
+        match self.problem.objective.with_decays(decays).at(self.values, 1 / self.noise**2):
+            case HasClockDelays() as at:
+                return at.most_likely_delays(shifts)
+            case _:
+                return {}
+
+    def after(self, before: FitResult) -> FitResult:
+        """Return this fit with the history of the one before, from which it was reached."""
+        steps = before.steps + self.steps
+        return replace(self, steps=steps, starts=before.starts, starts_agreeing=before.starts_agreeing)
+
+
+def _centred(record: Real) -> Real:
+    centred: Real = record - record.mean(axis=1, keepdims=True)
+    return centred

@@ -1,0 +1,249 @@
+"""The fit of a linear vehicle, from starts of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.fit_result import FitResult
+from sprung.estimation.modulating_functions import modulating_function_estimate
+from sprung.estimation.overdispersion import von_neumann_ratio
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.problem import (
+    CLOSE_BY,
+    CONVERGED,
+    FAR,
+    NEARER,
+    NOISE_FLOOR,
+    EstimationProblem,
+    Iterate,
+    least_information,
+)
+from sprung.estimation.score_test import score_test
+from sprung.estimation.start_ranking import rank_starts
+from sprung.estimation.starts import VehicleSize, start_grid
+from sprung.optimisation import Maximum
+from sprung.preprocess import FreeDecay
+from sprung.progress import Progress, Step, silent
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
+
+Real = NDArray[np.float64]
+
+NEAR = 0.01
+"""Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
+
+STARTS = 3
+"""How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
+
+_WHITE = 1.2
+"""Residual variance over that of white noise with the same differences, up to which nothing but noise is left."""
+
+_WELL_KNOWN = 1e4
+"""Information of a logarithm from which a direction has no second optimum nearby: one percent of uncertainty."""
+
+_DISTANCES, _FARTHEST, _PROBED = (4.0, 8.0), 0.5, 2
+"""How far to probe, in standard errors and in logarithms, and along how many directions."""
+
+_SHALLOW = 0.5
+"""Part of the fall that the curvature says, below which another fit starts there."""
+
+
+def fit_linear(
+    decays: Sequence[FreeDecay],
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, KnownValue],
+    *,
+    start: Mapping[str, float] | None = None,
+    guess: Mapping[str, float] = MappingProxyType({}),
+    starts: int = STARTS,
+    enough: float = CONVERGED,
+    progress: Progress = silent,
+) -> FitResult:
+    """Fit one linear vehicle to all decays by maximum likelihood.
+
+    Parameters
+    ----------
+    decays
+        The decays, their channels in the order of `sensors`.
+    models
+        Equations of motion by load name, all over the same parameters.
+    sensors
+        The sensors.
+    known
+        Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
+    start
+        Parameter values, SI, to start from; where it is left out, a direct start and a grid of usual vehicles.
+    guess
+        Values of some parameters, SI, where `start` is left out: the vehicle with them competes with those of the grid.
+    starts
+        How many are refined at the most: the direct one, by modulating functions, and those of the grid that explain the
+        records best as they are. The best end wins. Where the direct one ends at an optimum whose residuals are white noise, no
+        other is refined: a wrong optimum leaves a motion, and a motion is not white.
+    enough
+        Expected gain in log-likelihood at which to stop.
+    progress
+        Called with each step that begins.
+
+    Returns
+    -------
+    FitResult
+    """
+    if start is None and any(decay.clocks for decay in decays):
+        # As far as the release shows, all clocks agree: near enough for a start.
+        together = [replace(decay, clocks=()) for decay in decays]
+        first = fit_linear(together, models, sensors, known, guess=guess, starts=starts, enough=NEAR, progress=progress)
+        progress(Step("setting the loggers' clocks"))
+        apart = fit_linear(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
+        return apart.after(first)
+    masses = {name: known_value.value for name, known_value in known.items() if name.startswith(LOAD_MASS)}
+    objective = _objective(decays, models, sensors)
+    if start is not None:
+        values = masses | dict(start)
+        problem = _problem(objective, known, values)
+        return _fit_from(problem, values, enough)
+    size = VehicleSize.of(known, sensors)
+    has_engine = "m_e" in next(iter(models.values())).names
+    usual = [vehicle | masses for vehicle in start_grid(size, known, has_engine)]
+    problem = _problem(objective, known, usual[0])
+    coordinates = problem.priors.coordinates
+    nominal = {load: model.with_known(masses) if masses else model for load, model in models.items()}
+    by_load = [nominal[load] for load in objective.loads]
+    direct = modulating_function_estimate(objective.batches, by_load, sensors, size)
+    ends: list[Maximum[Iterate]] = []
+    if direct is not None:
+        progress(Step("fitting from a direct start"))
+        u = problem.priors.project(coordinates.from_parameters(direct | masses))
+        ends.append(problem.maximise(u, None, enough, NEARER))
+        fit = _best(problem, ends, enough)
+        if len(ends) == starts or (fit.converged and _leaves_white_noise(fit)):
+            return fit
+    if guess:
+        usual.insert(0, _completed(guess, {**usual[0], **(direct or {})}))
+    progress(Step(f"rating {len(usual)} usual vehicles as starts"))
+    more = [coordinates.from_parameters(vehicle) for vehicle in usual]
+    order = np.argsort(_costs_as_they_are(problem, objective, more), kind="stable")[: starts - len(ends)]
+    for number, which in enumerate(order.tolist(), start=len(ends) + 1):
+        progress(Step("fitting from a start", number, starts))
+        best = min(ends, key=lambda end: problem.cost(end.point), default=None)
+        ends.append(problem.maximise(problem.priors.project(more[which]), best, enough, FAR))
+    return _best(problem, ends, enough)
+
+
+def _objective(
+    decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Sequence[Sensor]
+) -> ClosedFormObjective:
+    names = next(iter(models.values())).names
+    return ClosedFormObjective(tuple(decays), models, Rows.of([sensor.row for sensor in sensors], names))
+
+
+def _problem(
+    objective: ClosedFormObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
+) -> EstimationProblem:
+    names = next(iter(objective.models.values())).names
+    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+
+
+def _fit_from(problem: EstimationProblem, values: Mapping[str, float], enough: float) -> FitResult:
+    u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
+    return _best(problem, [problem.maximise(u, None, enough, CLOSE_BY)], enough)
+
+
+def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: float) -> FitResult:
+    costs = [problem.cost(end.point) for end in ends]
+    best = ends[int(np.argmin(costs))]
+    agreeing = sum(cost - min(costs) < max(1e-3, 4 * enough) for cost in costs)
+    return FitResult(problem, best.point, best.steps, best.converged, len(ends), agreeing)
+
+
+def _leaves_white_noise(fit: FitResult) -> bool:
+    """Whether the residuals of every channel are white noise, or rounding."""
+    variance = fit.noise**2
+    rounding = variance < 2 * fit.problem.least_variance
+    return bool(np.all(rounding | (von_neumann_ratio(fit.residuals) < _WHITE)))
+
+
+def _costs_as_they_are(problem: EstimationProblem, objective: ClosedFormObjective, starts: Sequence[Real]) -> Real:
+    """Cost of starts on decimated records, channels weighted by their energy; shape (start,)."""
+    values = np.array([problem.priors.coordinates.values(u) for u in starts])
+    # In two halves, for the sake of memory.
+    halves = np.array_split(values, 2)
+    parts = np.concatenate([rank_starts(objective, half, problem.signal_weights) for half in halves])
+    costs: Real = np.log(parts + NOISE_FLOOR**2) @ objective.observations.sum(axis=0)
+    return costs
+
+
+def _completed(guess: Mapping[str, float], usual: Mapping[str, float]) -> dict[str, float]:
+    """Return a guess completed by a usual vehicle; half-distances that it shares hold for springs and dampers apart too."""
+    shared = {own: value for name, value in guess.items() for own in separate_track_names(name)}
+    apart = {name: guess[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in guess}
+    return {**usual, **shared, **apart, **guess}
+
+
+def escape_local_optimum(fit: FitResult) -> FitResult:
+    """Fit once more from both sides of an optimum, along the directions that are known least.
+
+    Where the records say little of a direction, the likelihood may have two optima a few standard errors apart, and every
+    start may have ended at the lower one. It shows in a likelihood that falls less on that side than its curvature says.
+
+    Parameters
+    ----------
+    fit
+        Where the fit has ended.
+
+    Returns
+    -------
+    FitResult
+        The best that was found.
+    """
+    problem, optimum = fit.problem, fit.iterate
+    information, _, null_space = problem.system(optimum)
+    eigenvalues, vectors = np.linalg.eigh(information)
+    weak = np.flatnonzero((eigenvalues > least_information(eigenvalues)) & (eigenvalues < _WELL_KNOWN))[:_PROBED]
+    found: list[Maximum[Iterate]] = []
+    for which in weak:
+        direction = null_space @ vectors[:, which]
+        for distance in _DISTANCES:
+            step = min(distance / eigenvalues[which] ** 0.5, _FARTHEST / np.abs(direction).max())
+            for side in (-step, step):
+                u = problem.priors.project(optimum.u + side * direction)
+                fall = problem.cost(problem.start(u)) - problem.cost(optimum)
+                if fall < _SHALLOW * eigenvalues[which] * step**2:
+                    found.append(problem.maximise(u, None, CONVERGED, NEARER))
+    best = min(found, key=lambda end: problem.cost(end.point), default=None)
+    if best is None or problem.cost(best.point) >= problem.cost(optimum):
+        return fit
+    return replace(fit, iterate=best.point, steps=fit.steps + best.steps, converged=best.converged)
+
+
+def score_linear_term(
+    decays: Sequence[FreeDecay],
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, KnownValue],
+    values: Mapping[str, float],
+) -> float:
+    """Return what a model with more parameters would gain over one that is fitted already, by the score test.
+
+    Parameters
+    ----------
+    decays, models, sensors, known
+        As for `fit_linear`, of the larger model.
+    values
+        Its parameters, SI, where it equals the fitted smaller one.
+
+    Returns
+    -------
+    float
+        In twice the log-likelihood, to second order.
+    """
+    problem = _problem(_objective(decays, models, sensors), known, values)
+    u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
+    information, gradient, _ = problem.system(problem.start(u))
+    return score_test(information, gradient, 0).gain()

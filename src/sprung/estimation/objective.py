@@ -1,0 +1,197 @@
+"""What is maximised: the likelihood of free decays under equations of motion, whichever way these are solved.
+
+There are two: the closed form for linear vehicles, time stepping for those with nonlinear forces. What only one of them can
+do is a protocol of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, Self, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.modal_solution import ModalSolution
+from sprung.preprocess import FreeDecay
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+class Objective(Protocol):
+    """The likelihood of some decays as a function of the parameters."""
+
+    @property
+    def decays(self) -> Sequence[FreeDecay]:
+        """What is fitted."""
+
+    @property
+    def observations(self) -> Real:
+        """Samples by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
+
+    @property
+    def energy(self) -> Real:
+        """Sum of squares of all centred records of each channel, (m/s²)², shape (channel,)."""
+
+    def at(self, values: Real, weights: Real) -> ObjectiveAt:
+        """Evaluate at parameter values, SI, shape (parameter,), with 1/σ² of each channel, s⁴/m², shape (channel,)."""
+
+    def with_decays(self, decays: Sequence[FreeDecay]) -> Self:
+        """Return the objective of other decays with the same models and sensors."""
+
+
+class ObjectiveAt(Protocol):
+    """A likelihood at parameter values and noise levels, initial states and offsets of all drops eliminated."""
+
+    @property
+    def values(self) -> Real:
+        """Parameters, SI, shape (parameter,)."""
+
+    @property
+    def weights(self) -> Real:
+        """1/σ² of each channel, s⁴/m², shape (channel,)."""
+
+    @property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); infinite where the motion has no bounds."""
+
+    @property
+    def penalty(self) -> float:
+        """Twice the negative log-likelihood of eliminated unknowns that have a prior."""
+
+    @property
+    def leverage(self) -> Real:
+        """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+
+    @property
+    def gradient(self) -> Real:
+        """Of the log-likelihood by the parameters, per SI unit, shape (parameter,)."""
+
+    @property
+    def information(self) -> Real:
+        """Fisher information of the parameters, shape (parameter, parameter)."""
+
+    @property
+    def by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
+
+    @property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+
+    @property
+    def states(self) -> Real:
+        """{X, Ẋ} of each drop at its first sample, and memories of forces that have one, SI, shape (drop, state)."""
+
+    @property
+    def is_reversible(self) -> bool:
+        """Whether the motion can be followed backward in time: friction cannot."""
+
+    def reweighted(self, weights: Real) -> Self:
+        """Return the likelihood with other weights; what does not depend on them is not computed again."""
+
+    def moved(self, values: Real) -> ObjectiveAt:
+        """Return the likelihood at other parameter values, initial states predicted where they are not eliminated."""
+
+    def with_optimal_states(self) -> ObjectiveAt:
+        """Return the likelihood with the initial states that maximise it at these parameters."""
+
+    def of_drop(self, drop: int) -> ObjectiveAt:
+        """Return the likelihood of one drop alone, by its position."""
+
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """Motion of a drop from so many samples before its first to so many from it on, shape (state, time).
+
+        {X, Ẋ}, and memories of forces that have one, SI; NaN before the first sample where motion cannot be followed backward.
+        """
+
+
+@runtime_checkable
+class HasClockDelays(Protocol):
+    """An objective in which the clocks of several loggers may be unknown."""
+
+    def clock_delays(self, covariance: Real) -> dict[int, tuple[Real, Real]]:
+        """Return the delays of the loggers' clocks.
+
+        Parameters
+        ----------
+        covariance
+            Of the parameters, SI, shape (parameter, parameter).
+
+        Returns
+        -------
+        dict
+            By the position of the drop the delays, s, shape (logger,), and their covariance, s²; without drops of one logger.
+        """
+
+    def most_likely_delays(self, shifts: Real) -> dict[int, Real]:
+        """Search for the delays of clocks that are hardly known.
+
+        Parameters
+        ----------
+        shifts
+            What is tried beside what is expected of each clock, s, shape (shift,).
+
+        Returns
+        -------
+        dict
+            By the position of the drop the delays of its loggers, s, shape (logger,).
+        """
+
+
+@runtime_checkable
+class HasNoiseBias(Protocol):
+    """An objective that knows how much noise alone adds to its information."""
+
+    @property
+    def noise_bias_of_information(self) -> Real:
+        """Information that noise alone adds on average, shape (parameter, parameter)."""
+
+
+@runtime_checkable
+class HasModalResponse(Protocol):
+    """An objective that has modal coordinates, in which changes of the response are sums of exponentials."""
+
+    @property
+    def modes(self) -> ModalSolution:
+        """Poles and shapes of every load."""
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """Names of the loads in their order there."""
+
+    @property
+    def sensor_rows(self) -> Real:
+        """Rows of the sensors, shape (channel, coordinate)."""
+
+    def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
+        """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""
+
+    def differentiate_response(self, forces: Complex) -> Complex:
+        """Return the derivatives of the readings by changes of the equations of motion.
+
+        Parameters
+        ----------
+        forces
+            (dM λ² + dC λ + dK) v of every mode v, shape (load, coordinate, change, mode).
+
+        Returns
+        -------
+        ndarray
+            σ and τ, τ per second, as from `differentiate_modes`; shape (load, channel, change, 2 mode).
+        """
+
+    def with_changes(self, readings: Complex) -> tuple[Real, Real]:
+        """Return gradient and information of the parameters and of changes of the readings behind them.
+
+        Parameters
+        ----------
+        readings
+            Derivatives by the changes, shape (load, channel, change, 2 mode).
+
+        Returns
+        -------
+        gradient, information
+            Shapes (parameter + change,) and its square.
+        """

@@ -1,0 +1,159 @@
+"""Tests of hypotheses from one place: the score test of more unknowns, and Wald's test of fewer.
+
+Both follow from information and gradient where a model was fitted, without any further fit (Rao, Proc. Camb. Phil. Soc. 44
+(1948) 50; Wald, Trans. Am. Math. Soc. 54 (1943) 426).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.elimination import eliminate
+from sprung.estimation.fit_result import FitResult
+from sprung.estimation.problem import identifiable_subspace
+
+Real = NDArray[np.float64]
+
+_DETERMINED = 1e-9
+"""Part of an unknown's own information, above rounding, that nuisance parameters must leave for it to be tested."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScoreTest:
+    """Score test of unknowns that a fitted model does not have, its own parameters being nuisance parameters.
+
+    Attributes
+    ----------
+    score
+        Gradient of the log-likelihood by the unknowns, the parameters eliminated, shape (unknown,).
+    information
+        Fisher information of them, the same, shape (unknown, unknown).
+    own_information
+        Information of each if the parameters were known, shape (unknown,).
+    shifts
+        Change of each direction of the parameters with each unknown, in standard errors of that direction; shape (direction,
+        unknown).
+    """
+
+    score: Real
+    information: Real
+    own_information: Real
+    shifts: Real
+
+    @cached_property
+    def determined(self) -> NDArray[np.bool_]:
+        """Of which unknowns the records have information beside the parameters, shape (unknown,)."""
+        least = _DETERMINED * np.maximum(self.own_information, np.finfo(float).tiny)
+        return np.asarray(np.diag(self.information) > least)
+
+    @property
+    def values(self) -> Real:
+        """Estimate of each unknown if it were the only one, shape (unknown,); NaN where it is not determined."""
+        return np.where(self.determined, self.score, np.nan) / np.where(self.determined, np.diag(self.information), 1.0)
+
+    @property
+    def stds(self) -> Real:
+        """Standard uncertainty of these in white noise, shape (unknown,); NaN where it is not determined."""
+        return np.where(self.determined, np.where(self.determined, np.diag(self.information), 1.0) ** -0.5, np.nan)
+
+    @property
+    def max_shifts(self) -> Real:
+        """Largest change of a parameter with one standard uncertainty of each unknown, in its own; shape (unknown,)."""
+        return np.asarray(np.abs(self.shifts).max(axis=0, initial=0.0) * self.stds)
+
+    def gain(self, chosen: Sequence[int] | slice = slice(None)) -> float:
+        """Return what twice the log-likelihood would gain with some of the unknowns together, to second order.
+
+        Parameters
+        ----------
+        chosen
+            Which; all unless given. Those that are not determined add nothing.
+        """
+        own = np.arange(len(self.score))[chosen]
+        own = own[self.determined[own]]
+        scale = self.own_information[own] ** -0.5
+        eigenvalues, vectors = np.linalg.eigh(self.information[np.ix_(own, own)] * np.outer(scale, scale))
+        along = vectors.T @ (scale * self.score[own])
+        kept = eigenvalues > _DETERMINED
+        return float(np.sum(along[kept] ** 2 / eigenvalues[kept]))
+
+
+def score_test(information: Real, gradient: Real, nuisance: int) -> ScoreTest:
+    """Test unknowns beside nuisance parameters.
+
+    Parameters
+    ----------
+    information, gradient
+        Of the nuisance parameters in their coordinates and then of the unknowns, priors included; shapes (all, all) and (all,).
+    nuisance
+        How many of them are nuisance parameters.
+
+    Returns
+    -------
+    ScoreTest
+    """
+    # The unknowns first, and of the nuisance parameters only the directions that are identifiable.
+    subspace = identifiable_subspace(information[:nuisance, :nuisance])
+    tested = len(gradient) - nuisance
+    basis = np.zeros((len(gradient), tested + subspace.shape[1]))
+    basis[nuisance:, :tested], basis[:nuisance, tested:] = np.eye(tested), subspace
+    system = basis.T @ information @ basis
+    reduced, score, response = eliminate(system, basis.T @ gradient, tested)
+    covariance = subspace @ np.linalg.solve(system[tested:, tested:], subspace.T)
+    stds = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
+    return ScoreTest(score, reduced, np.diag(system)[:tested].copy(), subspace @ response / stds[:, None])
+
+
+def score_added(fit: FitResult, gradient: Real, information: Real) -> ScoreTest:
+    """Test unknowns beside the parameters of a fit.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    gradient, information
+        Of the records, by the parameters of the fit in SI and then by the unknowns; shapes (all,) and (all, all).
+
+    Returns
+    -------
+    ScoreTest
+        What is known of the parameters beforehand is taken into account.
+    """
+    system, slope, null_space = fit.problem.joint_system(fit.iterate, information, gradient)
+    return score_test(system, slope, null_space.shape[1])
+
+
+def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) -> float:
+    """Return what twice the log-likelihood would lose, to second order, if parameters had certain values.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    constraints
+        Parameters, and what each would be: a value, SI, or another parameter.
+
+    Returns
+    -------
+    float
+    """
+    coordinates, u, names = fit.problem.priors.coordinates, fit.iterate.u, fit.names
+    rows, away = np.zeros((len(constraints), len(names))), np.zeros(len(constraints))
+    for row, (i, (name, value)) in zip(rows, enumerate(constraints), strict=True):
+        own = names.index(name)
+        row[own] = 1.0
+        if isinstance(value, str):
+            row[names.index(value)] = -1.0
+            away[i] = row @ u
+        else:
+            constrained = np.where(np.arange(len(names)) == own, value, fit.values)
+            away[i] = u[own] - coordinates.from_values(constrained)[own]
+    equations = fit.problem.normal_equations(fit.iterate)
+    along = rows @ equations.directions
+    covariance = along @ np.linalg.solve(equations.information, along.T)
+    return float(away @ np.linalg.pinv(covariance) @ away)

@@ -1,0 +1,173 @@
+"""The method of Levenberg and Marquardt: Gauss-Newton steps on a log-likelihood, damped until they gain.
+
+Every maximum likelihood fit of the program takes its steps here: parameters of a vehicle, profiles of single quantities, poles
+and shapes of modes. What is maximised says at each point how it rises (`NormalEquations`) and what a step gains.
+
+References
+----------
+D. W. Marquardt, J. SIAM 11 (1963) 431; the watchdog after R. M. Chamberlain and others, Math. Prog. Study 16 (1982) 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float64]
+Array = NDArray[Any]
+
+_LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
+_SLOWEST = 0.9  # ratio of successive gains that is assumed where only one is known, and at the most
+_STALLED = 1e-3  # expected gain above which a point from which no step gains is not an optimum
+
+Point = TypeVar("Point")
+
+
+class NormalEquations(NamedTuple):
+    """Quadratic model of twice the log-likelihood around a point, in directions that may be taken.
+
+    Attributes
+    ----------
+    information
+        Fisher information, real symmetric or complex Hermitian, positive definite; shape (direction, direction).
+    gradient
+        Of the log-likelihood, shape (direction,).
+    scaling
+        What damping multiplies: Marquardt's scaling, shape (direction, direction).
+    directions
+        In the coordinates, as columns, shape (coordinate, direction).
+    """
+
+    information: Array
+    gradient: Array
+    scaling: Array
+    directions: Array
+
+    def step(self, damping: float = 0.0) -> tuple[Array, float]:
+        """Return a damped step in the coordinates, the Newton step without damping, and its expected gain.
+
+        The gain is that of twice the log-likelihood.
+        """
+        if not self.gradient.size:
+            return np.zeros(len(self.directions)), 0.0
+        along = np.linalg.solve(self.information + damping * self.scaling, self.gradient)
+        return self.directions @ along, float((along.conj() @ self.gradient).real)
+
+
+class Maximisable(Protocol[Point]):
+    """A log-likelihood that can be maximised."""
+
+    def normal_equations(self, point: Point, /) -> NormalEquations:
+        """Return how twice the log-likelihood rises from a point."""
+
+    def trial(self, point: Point, step: Array, /) -> tuple[Point, float]:
+        """Return the point a step away, and the gain in twice the log-likelihood: minus infinity where it does not exist."""
+
+
+class Maximum(NamedTuple, Generic[Point]):
+    """Where a maximisation ended.
+
+    Attributes
+    ----------
+    point
+        The last point.
+    steps
+        How many were taken.
+    converged
+        Whether no further gain is expected.
+    """
+
+    point: Point
+    steps: int
+    converged: bool
+
+
+def maximise(
+    problem: Maximisable[Point],
+    start: Point,
+    *,
+    tolerance: float,
+    damping: float,
+    most_steps: int,
+    longest_step: float = np.inf,
+    stop: Callable[[Point, NormalEquations], bool] | None = None,
+) -> Maximum[Point]:
+    """Maximise a log-likelihood from a start.
+
+    Parameters
+    ----------
+    problem
+        What is maximised.
+    start
+        The first point.
+    tolerance
+        Expected gain in twice the log-likelihood at which to stop.
+    damping
+        Of the first step, as a part of each coordinate's own information.
+    most_steps
+        Steps at the most.
+    longest_step
+        Largest change of a coordinate in one step.
+    stop
+        Asked at every point; where it holds, the maximisation ends there, without having converged.
+
+    Returns
+    -------
+    Maximum
+    """
+    point, before = start, np.inf
+    for steps in range(most_steps):
+        equations = problem.normal_equations(point)
+        if stop is not None and stop(point, equations):
+            return Maximum(point, steps, converged=False)
+        # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
+        if equations.step(damping)[1] < tolerance and equations.step()[1] < tolerance:
+            return Maximum(point, steps, converged=True)
+        point, has_gained, damping, gain = _gaining_step(problem, point, equations, damping, longest_step)
+        if not has_gained:
+            return Maximum(point, steps, converged=gain < _STALLED)
+        # What the steps to come will gain, if they go on shrinking as the last two did.
+        ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
+        before = gain
+        if gain * min(ratio / (1 - ratio), 1.0) < tolerance:
+            return Maximum(point, steps + 1, converged=True)
+    return Maximum(point, most_steps, converged=False)
+
+
+def _gaining_step(
+    problem: Maximisable[Point], point: Point, equations: NormalEquations, damping: float, longest: float
+) -> tuple[Point, bool, float, float]:
+    """Return the point a step further that does not lose, whether there is one, the next damping and the expected gain.
+
+    In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
+    step loses, one more is tried from there (the watchdog).
+    """
+    first, expected = True, 0.0
+    while damping < _MOST_DAMPING:
+        step, expected = equations.step(damping)
+        tried, gain = problem.trial(point, _limited(step, longest))
+        if gain >= 0:
+            return tried, True, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
+        if first and np.isfinite(gain):
+            back, _ = problem.normal_equations(tried).step(damping)
+            beyond, further = problem.trial(tried, _limited(back, longest))
+            if gain + further > 0:
+                return beyond, True, damping, max(expected, gain + further)
+            first = False
+        damping = max(damping, 1e-8) * 8
+    return point, False, damping, expected
+
+
+def _next_damping(damping: float, ratio: float) -> float:
+    """Return the damping after a step that gained so much of what was expected."""
+    if ratio <= 0.25:
+        return 8 * damping
+    return max(damping / (100 if ratio > 0.75 else 10), _LEAST_DAMPING)
+
+
+def _limited(step: Array, longest: float) -> Array:
+    shortened: Array = step * min(1.0, longest / np.abs(step).max(initial=1e-300))
+    return shortened
