@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.campaign import Campaign
+from sprung.estimation import NEAR
 from sprung.faults import (
     Consistency,
     FaultIsolation,
@@ -74,9 +73,7 @@ def _explaining_term(run: Analysis) -> tuple[str | None, float]:
     term = max(scores, key=scores.__getitem__, default=None)
     if term is None or scores[term] < run.model.asked(term):
         return None, 0.0
-    structure, fit = run.model.larger([term]), run.fit
-    for _ in range(_STEPS):
-        fit = fit_structure(structure, run.decays, fit, np.inf, silent)
+    fit = fit_structure(run.model.larger([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
     recordings = [decay.file for decay in run.decays]
     table, noise = residual_table(recordings, run.decays, run.fit), reference_noise(run.decays, run.fit)
     gain = table.cost - residual_table(recordings, run.decays, fit).cost

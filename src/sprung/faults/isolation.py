@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
-from sprung.estimation import NEAR, FitResult, fit_linear, overdispersion_of
+from sprung.estimation import MOST_STEPS, NEAR, FitResult, fit_linear, overdispersion_of
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
 from sprung.preprocess import FreeDecay, prepare
@@ -24,6 +24,9 @@ Real = NDArray[np.float64]
 
 _DRIFT_SPAN, _DRIFT_SHARE = 0.5, 0.75
 """s over which a drift is constant, unlike a vibration; and the share of a residual's energy that means over it then keep."""
+
+_STEPS = 3
+"""Gauss-Newton steps of a deletion where the fit of everything may be far away."""
 
 _STARTS = 2
 """Starts of a fit without a channel or drop, of which no vehicle is known."""
@@ -159,14 +162,14 @@ class FaultIsolation:
         start
             A fit near by; without one the search begins anew.
         """
-        return self._fit(correction, start, NEAR)
+        return self._fit(correction, start, MOST_STEPS)
 
     def step(self, correction: Correction, start: FitResult | None = None) -> CandidateFit:
         """Fit the corrected campaign by one Gauss-Newton step from a fit, or without one from the direct estimate.
 
         One step tells which of many deletions changes a fit most (Pregibon, Ann. Stat. 9 (1981) 705).
         """
-        return self._fit(correction, start, np.inf)
+        return self._fit(correction, start, 1)
 
     def delete(self, correction: Correction) -> CandidateFit:
         """Estimate the fit without a channel or drop, by a few Gauss-Newton steps.
@@ -174,18 +177,16 @@ class FaultIsolation:
         Where the campaign is described but for a small fault, one step from its fit tells what the deletion gains. Where it is
         not, the fit may be far away: then the better one of that and the direct estimate goes on for another step.
         """
-        near = self.step(correction, self.base.fit)
         if self.base.is_explained:
-            return near
-        anew = self.step(correction)
-        best = min(near, anew, key=lambda candidate: candidate.table.cost)
-        return self.step(correction, best.fit)
+            return self.step(correction, self.base.fit)
+        near, anew = self._fit(correction, self.base.fit, _STEPS), self._fit(correction, None, 1)
+        return min(near, anew, key=lambda candidate: candidate.table.cost)
 
     def after(self, candidate: CandidateFit) -> FaultIsolation:
         """Return the isolation of what is still wrong with a corrected campaign."""
         return replace(self, base=candidate)
 
-    def _fit(self, correction: Correction, start: FitResult | None, enough: float) -> CandidateFit:
+    def _fit(self, correction: Correction, start: FitResult | None, most: int) -> CandidateFit:
         campaign = correction.of_campaign(self.campaign)
         decays = correction.of_decays(campaign, self.decays)
         structure = choose_structure(campaign, self.tracks, self.extras)
@@ -195,8 +196,9 @@ class FaultIsolation:
             campaign.sensors,
             structure.known,
             start=None if start is None else start.parameters,
-            starts=_STARTS if np.isfinite(enough) else 1,
-            enough=enough,
+            starts=_STARTS if most > 1 else 1,
+            enough=NEAR,
+            most=most,
         )
         table = residual_table(self.recordings, decays, fit)
         is_same = correction.samples is None and not correction.corners

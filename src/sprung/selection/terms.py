@@ -98,7 +98,7 @@ def fit_structure(
     sensors, known = choice.campaign.sensors, choice.known
     start = start_of(choice, before.parameters)
     if not choice.is_time_stepped:
-        found = fit_linear(decays, choice.linear_models, sensors, known, start=start, enough=enough)
+        found = fit_linear(decays, choice.linear_models, sensors, known, start=start, enough=enough, most=most)
     else:
         found = fit_nonlinear(
             decays,
