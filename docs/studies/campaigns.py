@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
-from sprung.planning import Bound, MeasurementSetup, PlannedDrop, PlannedTest
+from sprung.planning import CramerRaoBound, MeasurementSetup, PlannedDrop, PlannedTest
 from sprung.uncertainty import NORMAL_95, KnownValue
 from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity
 
@@ -211,7 +211,7 @@ class Trial(NamedTuple):
     drops: int
 
 
-def _subject(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> MeasurementSetup:
+def _measurement_setup(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> MeasurementSetup:
     sensors = _without_noise(vehicle, False).sensors
     everything = {"wheelbase": KnownValue(vehicle.wheelbase), **known}
     return MeasurementSetup(
@@ -225,18 +225,18 @@ def _information(vehicle: Vehicle, loaded: bool, noise: float, used: tuple[int, 
     clean = _without_noise(vehicle, loaded)
     drops = (clean.drops[i] for i in used)
     planned = tuple(PlannedDrop(clean.load(one.load), one.wheels, float(one.height or 0)) for one in drops)
-    return PlannedTest(_subject(vehicle, noise, {}), planned).data
+    return PlannedTest(_measurement_setup(vehicle, noise, {}), planned).information
 
 
 @lru_cache(maxsize=1024)
 def _bound(case: Case, used: tuple[int, ...]) -> Real:
-    subject = _subject(case.vehicle, case.noise, case.known())
+    setup = _measurement_setup(case.vehicle, case.noise, case.known())
     information = _information(case.vehicle, case.loaded, case.noise, used)
-    covariance = Bound(subject, information + PlannedTest(subject, ()).prior).covariance
-    gradients = np.eye(len(subject.names))
+    covariance = CramerRaoBound(setup, information + PlannedTest(setup, ()).known_information).covariance
+    gradients = np.eye(len(setup.names))
     if not case.scaled:
-        total, gradient = evaluate_quantity("total_mass", subject.names, subject.values)
-        scales = np.array([PARAMETERS[name].scales for name in subject.names])
-        gradients[scales] -= gradient * subject.slopes / total
+        total, gradient = evaluate_quantity("total_mass", setup.names, setup.values)
+        scales = np.array([PARAMETERS[name].scales for name in setup.names])
+        gradients[scales] -= gradient * setup.slopes / total
     spread: Real = np.sqrt(np.einsum("ij,jk,ik->i", gradients, covariance, gradients))
     return spread

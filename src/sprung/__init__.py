@@ -1,4 +1,4 @@
-"""Find the physical parameters of a two-axle road vehicle from drop tests.
+"""Identify the physical parameters of a two-axle road vehicle from drop tests.
 
 Examples
 --------

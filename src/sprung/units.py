@@ -77,9 +77,9 @@ def split_unit(text: str) -> tuple[str, str | None]:
     Returns
     -------
     name
-        What stands before the brackets.
+        The text before the brackets.
     unit
-        What stands in them; None without brackets. Round brackets are taken as a unit only where they hold one of
+        The text in them; None without brackets. Round brackets are taken as a unit only where they hold one of
         acceleration: ``body (left)`` is a name.
 
     Examples

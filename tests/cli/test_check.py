@@ -28,7 +28,7 @@ def test_the_table_fits_a_terminal_and_says_everything(one: Folder) -> None:
     assert "roll left" in row
     for moment in ("release", "landing", "last_lift_off", "start", "end"):
         assert ("-" if drop[moment] is None else f"{drop[moment]:.3f}") in row.split()
-    for words in (drop["why_start"], drop["why_end"], "500 samples per second"):
+    for words in (drop["why_start"], drop["why_end"], "sampling rate 500 Hz"):
         assert words in said.out
     for channel in drop["channels"]:
         line = next(line for line in said.out.splitlines() if line.startswith(channel["name"]))
@@ -45,7 +45,7 @@ def test_one_page_is_beside_the_campaign_unless_told(one: Folder, tmp_path: Path
     assert (said["page"], said["drawings"]) == (str(beside), [])
     assert beside.read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
     text = run("check", one.path, "-o", tmp_path / "else" / "where")
-    assert f"Page: {tmp_path / 'else' / 'where' / 'check.html'}" in text.out.splitlines()
+    assert f"Report: {tmp_path / 'else' / 'where' / 'check.html'}" in text.out.splitlines()
     assert (tmp_path / "else" / "where" / "check.html").read_bytes() == beside.read_bytes()
 
 
@@ -145,7 +145,7 @@ def test_a_recording_that_cannot_be_read_costs_its_drop_only(tmp_path: Path) -> 
 def test_wheels_that_fell_otherwise_than_stated(one: Folder) -> None:
     one.edit('wheels = ["fl", "rl"]', 'wheels = ["fr", "rr"]')
     said = run("check", one.path, "--no-page")
-    assert "fr, rr stated to be dropped; the release shows fl, rl to have fallen" in " ".join(said.out.split())
+    assert "stated fr, rr, detected fl, rl" in " ".join(said.out.split())
     [drop] = run("check", one.path, "--no-page", "--json").json["drops"]
     assert (drop["kind"], drop["wheels"], drop["wheels_seen"]) == ("roll right", ["fr", "rr"], ["fl", "rl"])
 

@@ -12,7 +12,7 @@ import typer
 
 from command_line import run
 from sprung.cli.app import ORDER, app
-from sprung.cli.helping import readable
+from sprung.cli.help_text import readable
 
 GROUP = typer.main.get_command(app)
 WIDTHS = (30, 40, 60, 80, 200)

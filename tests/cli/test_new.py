@@ -29,10 +29,10 @@ def new(folder: Path) -> Run:
 
 def test_it_shows_what_was_found_and_what_is_missing(folder: Path, new: Run) -> None:
     assert new.status == 0
-    assert "5 drops found" in new.out
+    assert "5 drops detected" in new.out
     assert "empty_pitch_front.csv" in new.out
     assert "vehicle.wheelbase: m, front axle to rear axle" in new.out
-    assert "broken.csv was not read: found an empty file" in new.out
+    assert "broken.csv cannot be read: found an empty file" in new.out
     assert f"sprung check {folder / 'campaign.toml'}" in " ".join(new.out.split())
     assert max(map(len, new.out.splitlines())) <= 100 + len(str(folder)) + len(
         "Next:    fill in what is missing there, then "
@@ -67,7 +67,7 @@ def test_it_never_overwrites_a_campaign_file(folder: Path, new: Run) -> None:
     before = (folder / "campaign.toml").read_bytes()
     again = run("new", folder)
     assert again.status == 2
-    assert f"Go on with it (sprung check {folder / 'campaign.toml'})" in again.err
+    assert f"Continue with it (sprung check {folder / 'campaign.toml'})" in again.err
     assert "move it away" in again.err
     assert (folder / "campaign.toml").read_bytes() == before
 

@@ -18,7 +18,7 @@ def test_a_vehicle_file(vehicle_file: Path) -> None:
     before = sorted(vehicle_file.parent.iterdir())
     said = run("plan", vehicle_file)
     assert (said.status, said.err) == (0, "")
-    assert said.out.startswith("car: standard uncertainty to expect, %\n")
+    assert said.out.startswith("car: expected standard uncertainty, %\n")
     assert "Next: knowing the total mass would determine 11 more parameters" in said.out
     first = next(line.split() for line in said.out.splitlines() if line.startswith("as planned"))
     assert first[2:5] == ["m_s", "-", "11"]
@@ -116,7 +116,7 @@ def test_bad_files(vehicle_file: Path, folder: Folder) -> None:
     assert "no 'm_s'" in said.err
     said = run("plan", folder.path, "--noise", "0.1", "--rate", "100")
     assert (said.status, said.out) == (2, "")
-    assert said.err.count("a campaign brings its own along") == 2
+    assert said.err.count("a campaign has its own") == 2
     folder.edit("wheelbase", "wheelbse")
     assert run("plan", folder.path).status == 2
 

@@ -10,7 +10,7 @@ def test_intervals_are_shown_where_they_are_asked_for(folder: Folder) -> None:
     said = run("identify", folder.path, "--profile", "c_sf", "--profile", "total_mass", "--no-report")
     assert said.status == plain.status == 0
     assert "95 % intervals" not in plain.out
-    _, _, rest = said.out.partition("95 % intervals from the whole likelihood\n")
+    _, _, rest = said.out.partition("95 % intervals from likelihood profiles\n")
     rows = rest.split("\n\n", maxsplit=1)[0].splitlines()
     assert [row.split()[0] for row in rows] == ["parameter", "c_sf", "total_mass"]
     document = run("identify", folder.path, "--json", "--profile", "all", "--no-report").json

@@ -122,7 +122,7 @@ def test_a_pdf_that_fails_leaves_the_report(
     monkeypatch.setattr("sprung.report.folder.pdf_of", failing)
     said = run("report", tmp_path, "--pdf")
     assert said.status == 1  # it was asked for
-    assert said.err.startswith("The report for paper could not be written: ")
+    assert said.err.startswith("The report as PDF could not be written: ")
     assert (tmp_path / "report.html").exists()
 
 
@@ -154,7 +154,7 @@ def test_a_signal_after_the_fit_leaves_the_results(
     assert (said.status, said.out) == (status, "")
     assert said.err.splitlines() == [
         f"The results are complete: {results / 'results.json'}, {results / 'series.npz'}",
-        f"Only the report is missing; write it with: sprung report {results}",
+        f"The report is missing; write it with: sprung report {results}",
         f"sprung was {word}.",
     ]
     assert {path.name for path in results.iterdir()} == {"results.json", "series.npz", MANIFEST}
@@ -213,5 +213,5 @@ def test_a_signal_where_no_exception_can_be_passed_on(
         time.sleep(5.0)
         return "{}"
 
-    monkeypatch.setattr("sprung.cli.measuring.sprung.schema_text", work)
+    monkeypatch.setattr("sprung.cli.studies.sprung.schema_text", work)
     assert run("schema") == Run(status, "", f"sprung was {word}.\n")

@@ -154,7 +154,7 @@ def test_gravity_knows_better_than_the_file(tmp_path: Path, one_day: Day) -> Non
     names = tuple(f"{name} [m/s^2]" for name in NEUTRAL)
     draft = told(tmp_path, one_day.values / STANDARD_GRAVITY, one_day.rate, names)
     assert {sensor.unit for sensor in draft.sensors} == {"g"}
-    assert "though the file says m/s^2" in draft.text
+    assert "though the file states m/s^2" in draft.text
 
 
 @pytest.mark.parametrize("size", [1.0, 1 / STANDARD_GRAVITY, 1e3])
@@ -194,7 +194,7 @@ def test_what_is_no_sensor_on_the_vehicle_is_left_out_with_the_reason(tmp_path: 
     assert known(draft).keys() == set(NEUTRAL)
     reasons = draft.files[0].left_out
     assert "no unit of acceleration" in reasons["temperature"]
-    assert reasons["packet"] == "it only counts"
+    assert reasons["packet"] == "it is a counter"
     assert reasons["spare"] == "it reads 0 throughout"
     assert reasons["trigger"] == reasons["ch9_z"] == "no drop moves it"
     assert "along x" in reasons["ch9_x"]
@@ -314,7 +314,7 @@ def test_wheels_contradict_the_name_of_the_file(tmp_path: Path, campaign: Campai
     draft = sprung.draft(tmp_path)
     front = next(drop for drop in draft.drops if drop.files == ("empty_pitch_front.csv",))
     assert front.wheels == ("rl", "rr")
-    assert "these wheels fell, though the name of the file says fl, fr" in front.notes
+    assert "these wheels fell, though the name of the file states fl, fr" in front.notes
 
 
 def test_without_a_drop_everything_is_refused_with_the_reasons(tmp_path: Path) -> None:
@@ -324,7 +324,7 @@ def test_without_a_drop_everything_is_refused_with_the_reasons(tmp_path: Path) -
     with pytest.raises(InputError) as caught:
         sprung.draft(tmp_path)
     assert [problem.where for problem in caught.value.problems] == ["quiet.csv", "empty.csv"]
-    assert "no drop: nothing in it moves" in str(caught.value)
+    assert "no drop: it shows no motion" in str(caught.value)
 
 
 def test_progress_runs_from_nothing_to_everything(tmp_path: Path, campaign: Campaign) -> None:

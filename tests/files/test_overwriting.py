@@ -16,7 +16,7 @@ import pytest
 from sprung.errors import InputError
 from sprung.files import atomic_write, overwriting_problems
 from sprung.files.ownership import MANIFEST, checksum
-from sprung.files.recovery import JOURNAL, hidden
+from sprung.files.recovery import JOURNAL, temporary_path
 
 OLD = {"series.npz": b"old", "results.json": b"old"}
 NEW = {"series.npz": b"new", "results.json": b"new", "sub/more.svg": b"new"}
@@ -182,7 +182,7 @@ def leave(folder: Path, new: dict[str, bytes], before: dict[str, str]) -> None:
     """Leave what a process that is gone left after its journal was written."""
     token = f"{2**22 + 1:x}-00000000-00000000"  # a number that no process of Linux has
     for name, content in new.items():
-        hidden(folder / name, token, "new").write_bytes(content)
+        temporary_path(folder / name, token, "new").write_bytes(content)
     sums = {name: checksum(content) for name, content in new.items()}
     (folder / JOURNAL.format(token=token)).write_text(json.dumps({"files": sums, "before": before}))
 
@@ -199,7 +199,7 @@ def test_a_file_that_the_user_made_after_a_kill_is_not_replaced_by_the_recovery(
 
 def test_files_of_a_process_that_runs_are_left_alone(tmp_path: Path) -> None:
     token = f"{os.getppid():x}-00000000-00000000"
-    other = hidden(tmp_path / "a.csv", token, "new")
+    other = temporary_path(tmp_path / "a.csv", token, "new")
     other.write_bytes(b"being written")
     atomic_write(tmp_path, {"b.csv": b"ours"})
     assert other.read_bytes() == b"being written"

@@ -36,13 +36,15 @@ def installed(monkeypatch: pytest.MonkeyPatch, *entries: object) -> None:
     monkeypatch.setattr(registry, "entry_points", lambda *, group: entries if group == "sprung.formats" else ())
 
 
-def test_text_tables_are_known_without_package_metadata(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_formats_of_this_package(monkeypatch: pytest.MonkeyPatch) -> None:
     installed(monkeypatch)
     own = ["csv", "excel", "hdf5", "iso_mme", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
     assert list(formats()) == own
 
 
-def test_a_format_registered_twice_counts_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_format_that_another_package_registers_again_counts_once(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     entry = EntryPoint("csv", "sprung.formats.csv:CsvFormat", "sprung.formats")
     installed(monkeypatch, entry, entry)
     (tmp_path / "a.csv").write_text("time,a\n0,1\n1,2\n")

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 
 import sprung
 from sprung.errors import InputError
-from sprung.planning import Bound, Plan, PlanRow
+from sprung.planning import CramerRaoBound, Plan, PlanRow
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 from strategies import vehicles
@@ -24,7 +24,7 @@ def row(plan: Plan, label: str) -> PlanRow:
     return next(row for row in plan.rows if row.label == label)
 
 
-def bound(plan: Plan, label: str) -> Bound:
+def bound(plan: Plan, label: str) -> CramerRaoBound:
     found = row(plan, label).bound
     assert found is not None
     return found
@@ -100,8 +100,8 @@ def test_nothing_tells_the_scale_without_load_or_weighing() -> None:
     for label in ("as planned", "drops 4 times", "noise / 5", "+ fl and rr"):
         found = bound(plain(), label)
         assert set(found.undetermined) == SCALED
-        assert [set(one.parameters) for one in found.why] == [SCALED]
-        assert "weigh the vehicle" in found.why[0].text
+        assert [set(one.parameters) for one in found.unidentifiable] == [SCALED]
+        assert "weigh the vehicle" in found.unidentifiable[0].text
         assert found.percents["a"] is not None
 
 
@@ -151,9 +151,9 @@ def test_more_never_tells_less(vehicle: Vehicle) -> None:
 def test_fewer_drops_tell_less_and_say_of_what() -> None:
     only = bound(weighed(), "only all wheels")
     assert {"I_xx", "t_f", "t_r"} <= set(only.undetermined)
-    named = {name for one in only.why for name in one.parameters}
+    named = {name for one in only.unidentifiable for name in one.parameters}
     assert set(only.undetermined) <= named
-    assert all(one.text for one in only.why)
+    assert all(one.text for one in only.unidentifiable)
 
 
 def test_the_cheapest_step_that_is_enough() -> None:

@@ -30,7 +30,7 @@ def added_mass(load: Load) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
         max_size=4,
     )
 )
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 def test_items_add_the_moments_of_a_set_of_point_masses(items: list[Item]) -> None:
     # About the empty body's centre of gravity, at x = -a: θ moves a point at x by -(x + a) θ, φ one at y by y φ.
     expected = np.zeros((7, 7))

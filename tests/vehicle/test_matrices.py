@@ -63,7 +63,7 @@ def model_of(names: tuple[str, ...], extras: tuple[str, ...] = ()) -> LinearMode
 
 
 @given(values_of(NAMES))
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 def test_matrices_are_equation_2(p: dict[str, float]) -> None:
     M, C, K = model_of(NAMES).matrices([p[name] for name in NAMES])
     tyres = np.diag([0.0, 0.0, 0.0, p["k_tf"], p["k_tf"], p["k_tr"], p["k_tr"]])
@@ -73,7 +73,7 @@ def test_matrices_are_equation_2(p: dict[str, float]) -> None:
 
 
 @given(values_of(ALL_NAMES))
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 def test_matrices_are_symmetric_and_store_or_dissipate_energy(p: dict[str, float]) -> None:
     for matrix in model_of(ALL_NAMES, LINEAR_EXTRAS).matrices([p[name] for name in ALL_NAMES]):
         assert_allclose(matrix, matrix.T, atol=1e-14 * np.abs(matrix).max())
@@ -82,7 +82,7 @@ def test_matrices_are_symmetric_and_store_or_dissipate_energy(p: dict[str, float
 
 
 @given(values_of(ALL_NAMES))
-@settings(max_examples=10)
+@settings(max_examples=10, deadline=None)
 def test_derivatives_by_every_parameter(p: dict[str, float]) -> None:
     # Every entry is quadratic at most in any one parameter, so central differences are exact for any step.
     values = np.array([p[name] for name in ALL_NAMES])

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.axes import about_roll_axis, axes_of
 from sprung.analysis.clocks import clock_reports
-from sprung.analysis.design import to_design
+from sprung.analysis.design import recommend_next_step
 from sprung.analysis.profiles import profiles_of
 from sprung.assessment import (
     BodyMotion,
-    Misfit,
     body_motions,
     cross_validate_drops,
     decide_verdict,
@@ -25,7 +24,6 @@ from sprung.assessment import (
 from sprung.checking import check_prepared
 from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
 from sprung.faults import detect_drift
-from sprung.planning import next_step
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
@@ -58,7 +56,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         version=version("sprung"),
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
-        next_step=None if rejected else next_step(to_design(run)).text,
+        next_step=None if rejected else recommend_next_step(run),
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
             **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
@@ -95,7 +93,7 @@ def _fit_report(
     fit: FitStatistics,
     decays: Sequence[FreeDecay],
     channels: Sequence[str],
-    misfit: Misfit,
+    misfit: tuple[NDArray[np.float64], NDArray[np.float64]],
     optimum: FitResult,
 ) -> FitReport:
     return FitReport(
@@ -116,7 +114,7 @@ def _fit_report(
         inflation=fit.inflation,
         inflated_by=fit.inflated_by,
         most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
-        misfit=dict(zip(channels, misfit.relative.tolist(), strict=True)),
+        misfit=dict(zip(channels, misfit[0].tolist(), strict=True)),
         loglikelihood=optimum.absolute_loglikelihood,
         unknowns=optimum.unknowns,
     )

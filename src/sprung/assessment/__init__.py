@@ -1,10 +1,10 @@
-"""Does the model hold? Measured against fitted, residuals against noise, and the verdict."""
+"""Assessment of a fit: residuals against noise, cross-validation of left-out drops, and the verdict."""
 
 from sprung.assessment.amplitude import ModeAmplitude, follow_modes
 from sprung.assessment.body_motion import MOTIONS, BodyMotion, body_motions
 from sprung.assessment.cross_validation import DropValidation, cross_validate_drops
 from sprung.assessment.mode_tracking import AmplitudeCurve
-from sprung.assessment.model_error import Misfit, estimate_model_error
+from sprung.assessment.model_error import estimate_model_error
 from sprung.assessment.residuals import ResidualStatistics, describe_residuals, estimate_noise_level
 from sprung.assessment.verdict import State, Verdict, decide_verdict
 
@@ -13,7 +13,6 @@ __all__ = [
     "AmplitudeCurve",
     "BodyMotion",
     "DropValidation",
-    "Misfit",
     "ModeAmplitude",
     "ResidualStatistics",
     "State",

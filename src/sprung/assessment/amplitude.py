@@ -1,4 +1,4 @@
-"""Frequency and damping of the body's modes against amplitude: from the records alone, and from the fitted vehicle.
+"""Frequency and damping ratio of the body's modes against amplitude: from the records alone, and from the fitted vehicle.
 
 A linear vehicle has one frequency and one damping ratio whatever the amplitude; with dry friction the frequency rises as the
 motion dies, which is what the paper saw in figures 7 to 9.
@@ -35,7 +35,7 @@ _WAVES = 8.0
 """Periods of a simulated decay."""
 
 _TRIES, _LARGER, _REACHED = 6, 1.4, 0.9
-"""How many times a simulated decay is begun, each time so much larger, until it reaches this part of the measured ones."""
+"""Simulated decays at the most, factor between their amplitudes, and part of the measured amplitude to be reached."""
 
 
 @shown
@@ -48,13 +48,13 @@ class ModeAmplitude:
     mode
         Its name.
     frequency, damping_ratio
-        Of the fitted vehicle without any force that no matrix carries, Hz.
+        Of the fitted vehicle without its nonlinear forces, Hz and dimensionless.
     records
         From the records alone, one for each drop that shows it.
     simulated
-        From what the fitted vehicle makes of these drops: dry friction lets a mode depend on what else moves.
+        From the simulation of these drops: with dry friction a mode depends on the other motions.
     model
-        From a free decay of the fitted vehicle in this mode alone, begun where the records begin.
+        From a free decay of the fitted vehicle in this mode alone, from the amplitude of the records.
     load
         On the vehicle in those drops.
     """
@@ -93,27 +93,31 @@ def follow_modes(
     Returns
     -------
     tuple of ModeAmplitude
-        The modes of the body that vibrate and that the sensors tell, lowest first.
+        The underdamped modes of the body that the sensors determine, lowest first.
     """
     linear = model.linear if isinstance(model, NonlinearModel) else model
     matrices = linear.matrices(fit.values)
     modes = [mode for mode in compute_modes(matrices) if mode.pole.imag != 0]
     rows = body_rows(fit, sensors)
-    told = [one for one in motions if np.isfinite(one.measured).all()]
+    determined = [motion for motion in motions if np.isfinite(motion.measured).all()]
     found = []
-    of_body = [i for i, mode in enumerate(modes) if mode.name is not None and mode.name.startswith("body ") and told]
+    of_body = [
+        i for i, mode in enumerate(modes) if mode.name is not None and mode.name.startswith("body ") and determined
+    ]
     for which in counted(progress, "following the modes of the body through the decays", of_body):
         mode = modes[which]
-        shares = [_share(one, modes, which, rows) for one in told]
-        best = sorted(range(len(told)), key=lambda i: -shares[i])[:_DROPS]
-        noise = told[best[0]].noise
+        shares = [_share(motion, modes, which, rows) for motion in determined]
+        best = sorted(range(len(determined)), key=lambda i: -shares[i])[:_DROPS]
+        noise = determined[best[0]].noise
         largest = float(np.abs(rows @ mode.shape[:3]).max())
         traces, simulations = [], []
-        for one in (told[i] for i in best if i == best[0] or shares[i] > _LARGE_PART):
-            rate = (len(one.time) - 1) / float(one.time[-1] - one.time[0])
-            traces.append(follow_mode(one.name, one.measured, rate, one.noise, modes, which, largest))
+        for motion in (determined[i] for i in best if i == best[0] or shares[i] > _LARGE_PART):
+            rate = (len(motion.time) - 1) / float(motion.time[-1] - motion.time[0])
+            traces.append(follow_mode(motion.name, motion.measured, rate, motion.noise, modes, which, largest))
             least = float(traces[-1].amplitude.min(initial=np.inf))
-            simulations.append(follow_mode(one.name, one.simulated, rate, one.noise, modes, which, largest, least))
+            simulations.append(
+                follow_mode(motion.name, motion.simulated, rate, motion.noise, modes, which, largest, least)
+            )
         seen = np.concatenate([trace.amplitude for trace in traces])
         if seen.size:
             begin = float(seen.max()) / largest
@@ -130,7 +134,7 @@ def follow_modes(
 
 
 def _share(motion: BodyMotion, modes: Sequence[Mode], which: int, rows: Real) -> float:
-    """Give the part of the motion of the body's sensors that is in one mode of the body."""
+    """Return the part of the motion of the body's sensors that is in one mode of the body."""
     body = [i for i, mode in enumerate(modes) if mode.name is not None and mode.name.startswith("body ")]
     shapes = np.column_stack([(modes[i].shape[:3] * modes[i].pole ** 2).real for i in body])
     parts = np.linalg.pinv(shapes) @ motion.measured
@@ -139,7 +143,7 @@ def _share(motion: BodyMotion, modes: Sequence[Mode], which: int, rows: Real) ->
 
 
 def _decay(model: LinearModel | NonlinearModel, values: Real, mode: Mode, amplitude: float) -> Real:
-    """Let the vehicle vibrate freely from the shape of a mode: accelerations of the body, shape (3, time)."""
+    """Simulate free vibration from the shape of a mode: accelerations of the body, shape (3, time)."""
     samples = int(_WAVES / mode.frequency / _STEP)
     begin = amplitude * np.concatenate([mode.shape, mode.pole * mode.shape]).real
     if isinstance(model, LinearModel):

@@ -18,13 +18,13 @@ from sprung.vehicle import Rows, Sensor
 Real = NDArray[np.float64]
 
 MOTIONS = ("vertical", "pitch", "roll")
-"""Of the body: figures 7, 8 and 9 of the paper."""
+"""Motions of the body: figures 7, 8 and 9 of the paper."""
 
 _SEEN = 1e-6
-"""Part of a motion that may go unseen by the sensors that tell it."""
+"""Part of a motion that the sensors may leave undetermined."""
 
 _COMPARABLE = 3.0
-"""How many times its noise a motion must be, root-mean-square, for an error in percent of it to tell of the model."""
+"""Root-mean-square of a motion over its noise from which an error in percent of it is one of the model."""
 
 _SIGNIFICANT = 4.0
 """Standard deviations by which its mean square must exceed that of the noise for a motion to be there at all."""
@@ -33,7 +33,7 @@ _SIGNIFICANT = 4.0
 @shown
 @dataclass(frozen=True, eq=False)
 class BodyMotion:
-    """What the body did in one drop, and what the fitted vehicle does.
+    """Motion of the body in one drop, measured and simulated.
 
     Attributes
     ----------
@@ -43,11 +43,11 @@ class BodyMotion:
         s on the recording's clock, shape (time,).
     measured, simulated
         Vertical acceleration of the centre of gravity, m/s², pitch and roll acceleration, rad/s², each with its mean taken
-        off; shape (3, time). NaN for what the sensors in use do not tell.
+        off; shape (3, time). NaN for what the sensors in use do not determine.
     noise
-        What the sensors' noise makes of each at rest, m/s² and rad/s² root-mean-square, shape (3,).
+        Noise of each at rest, m/s² and rad/s² root-mean-square, shape (3,).
     noise_samples
-        From how many independent samples that noise is known.
+        Number of independent samples from which that noise is known.
     """
 
     name: str
@@ -61,7 +61,7 @@ class BodyMotion:
     def errors(self) -> Real:
         """Normalised errors: rms of the difference over rms of the measured, shape (3,).
 
-        NaN for what the sensors do not tell, and for motions so small that the error would be one of their noise.
+        NaN for what the sensors do not determine, and for motions so small that the error would be one of their noise.
         """
         size = _rms(self.measured)
         there = size > _COMPARABLE * self.noise
@@ -77,10 +77,10 @@ class BodyMotion:
         noise itself is known from a number of samples. Noise of which neighbours are correlated by ρ counts N (1 - ρ²)/(1 + ρ²)
         samples (Bartlett 1946); ρ is that of measured minus simulated.
         """
-        size, left = _rms(self.measured), self.measured - self.simulated
-        variance = np.maximum(np.mean(left**2, axis=-1), np.finfo(float).tiny)
-        colour = np.clip(np.mean(left[:, 1:] * left[:, :-1], axis=-1) / variance, 0.0, 0.99)
-        independent = self.measured.shape[1] * (1 - colour**2) / (1 + colour**2)
+        size, residual = _rms(self.measured), self.measured - self.simulated
+        variance = np.maximum(np.mean(residual**2, axis=-1), np.finfo(float).tiny)
+        correlation = np.clip(np.mean(residual[:, 1:] * residual[:, :-1], axis=-1) / variance, 0.0, 0.99)
+        independent = self.measured.shape[1] * (1 - correlation**2) / (1 + correlation**2)
         chance = np.sqrt(2 / independent + 2 / self.noise_samples)
         ratio = size / np.where(self.noise > 0, self.noise, 1.0)
         there = np.where(self.noise > 0, ratio**2 > 1 + _SIGNIFICANT * chance, size > 0)
@@ -88,7 +88,7 @@ class BodyMotion:
 
 
 def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Sequence[Sensor]) -> tuple[BodyMotion, ...]:
-    """Turn what the body's sensors measured, and what the fitted vehicle makes of it, into motions of the body.
+    """Compute the motion of the body from its sensors, measured and simulated.
 
     Parameters
     ----------
@@ -107,39 +107,39 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
     rows, noise = body_rows(fit, sensors), estimate_noise_level(fit, decays)
     at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
     known_from = float(at_rest or sum(decay.samples for decay in decays))
-    found = []
+    motions = []
     for decay, fitted in zip(decays, fit.fitted, strict=True):
-        inverse = of_channels(rows, np.where(decay.usable, noise, np.inf))
+        inverse = motion_from_channels(rows, np.where(decay.usable, noise, np.inf))
         values = np.nan_to_num(decay.values)
         centred = values - values.mean(axis=1, keepdims=True)
-        told = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
-        found.append(
+        determined = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
+        motions.append(
             BodyMotion(
                 name=decay.name,
                 time=decay.start + np.arange(decay.samples) / decay.rate,
-                measured=np.where(told[:, None], inverse @ centred, np.nan),
-                simulated=np.where(told[:, None], inverse @ np.nan_to_num(fitted), np.nan),
+                measured=np.where(determined[:, None], inverse @ centred, np.nan),
+                simulated=np.where(determined[:, None], inverse @ np.nan_to_num(fitted), np.nan),
                 noise=np.sqrt(inverse**2 @ noise**2),
                 noise_samples=known_from,
             )
         )
-    return tuple(found)
+    return tuple(motions)
 
 
 def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
-    """Give what each sensor reads of the body's vertical, pitch and roll acceleration; zero on wheels, shape (channel, 3)."""
+    """Return the reading of each sensor per vertical, pitch and roll acceleration; zero on wheels, shape (channel, 3)."""
     rows = Rows.of([sensor.row for sensor in sensors], fit.names).at(fit.values)[:, :3]
     on_body = np.array([sensor.on == "body" for sensor in sensors])
     return np.where(on_body[:, None], rows, 0.0)
 
 
-def of_channels(rows: Real, noise: Real) -> Real:
-    """Give what turns channels into motions by weighted least squares.
+def motion_from_channels(rows: Real, noise: Real) -> Real:
+    """Return the matrix from channels to motions by weighted least squares.
 
     Parameters
     ----------
     rows
-        What each channel reads of each motion, shape (channel, motion).
+        Reading of each channel per motion, shape (channel, motion).
     noise
         Of each channel, infinite for one that is left out; shape (channel,).
 

@@ -1,4 +1,4 @@
-"""Drop by drop: how well the fitted vehicle explains each, and how well the vehicle fitted to all others predicts it."""
+"""Cross-validation: how well the fit describes each drop, and how well the fit to all other drops predicts it."""
 
 from __future__ import annotations
 
@@ -27,33 +27,30 @@ _DISTANT = 6.0
 @shown
 @dataclass(frozen=True, slots=True)
 class DropValidation:
-    """How well the fitted vehicle does one drop.
+    """Cross-validation of one drop.
 
     Attributes
     ----------
     vertical, pitch, roll
         Normalised error of the body's accelerations, dimensionless: rms of measured minus simulated over rms of measured;
-        None where the sensors do not tell it, or the body hardly moved that way.
+        None where the sensors do not determine it, or the body hardly moved that way.
     fitted
         The same of all channels, each in units of its noise, dimensionless.
     residual
-        What is left of all channels, over the sensors' noise at rest, dimensionless.
+        Residual of all channels over the sensors' noise at rest, dimensionless.
     predicted, predicted_residual
-        The last two, dimensionless, with the vehicle fitted to all other drops, only the initial state being this one's;
-        None where there are no others, the second also where the
-        residual of the fit is below rounding, as without any noise.
+        The last two, dimensionless, with the vehicle fitted to all other drops and the initial state of this one; None where
+        there are no others, the second also where the residual of the fit is below rounding, as without any noise.
     unexpected
-        Error of the prediction beyond that of the fit and what chance makes of it, as a part of the signal; 0 where it is
-        within chance.
+        Error of the prediction beyond that of the fit and of chance, as a part of the signal; 0 where it is within chance.
     apart
-        How far what this drop says of the vehicle is from what the others say: squared, in standard errors, in the mean of all
-        directions in which both say anything; one where the model is right.
+        Mean squared distance, in standard errors, between the estimate from this drop and that from the others, over all
+        directions that both determine; one where the model is right.
     whiteness
-        What is left of each channel, by name.
+        Statistics of the residuals of each channel, by name.
     over_noise
         Root-mean-square of the body's vertical, pitch and roll acceleration over that of the sensors' noise, dimensionless, by
-        name; None where the sensors do not tell it, or no motion beyond their noise is significant. Empty where an older sprung
-        wrote it.
+        name; None where the sensors do not determine it, or no motion beyond their noise is significant.
     """
 
     vertical: float | None
@@ -76,14 +73,14 @@ def cross_validate_drops(
     channels: Sequence[str],
     motions: Sequence[BodyMotion],
 ) -> dict[str, DropValidation]:
-    """Validate a fit drop by drop.
+    """Cross-validate a fit by leaving out one drop at a time.
 
     Parameters
     ----------
-    summit
-        Where the fit ended.
+    optimum
+        The fit.
     fit
-        How sure it is.
+        Its statistics.
     decays
         What was fitted.
     channels
@@ -97,44 +94,44 @@ def cross_validate_drops(
         By the drop's name.
     """
     predicted: Sequence[Prediction | None] = predictions(optimum) if len(decays) > 1 else [None] * len(decays)
-    weights, found = optimum.weights, {}
-    # Coloured noise tells less; that drops disagree is what is to be seen here.
+    weights, validations = optimum.weights, {}
+    # Coloured noise is less informative; a disagreement of the drops is what is to be detected here, so that it does not count.
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
     noise = estimate_noise_level(fit, decays)
     free = 2 * len(coordinates(fit.names))  # a drop's initial state takes up as many samples of noise
     of_drops = zip(decays, motions, predicted, fit.residual, describe_residuals(fit, decays, noise), strict=True)
-    for decay, motion, foretold, residual, left in of_drops:
+    for decay, motion, prediction, residual, statistics in of_drops:
         values = np.nan_to_num(decay.values)
         energy = max(float(values.var(axis=1) @ weights) * decay.samples, np.finfo(float).tiny)
         samples = max(int(decay.usable.sum()) * (decay.samples - 1) - free, 1)
         errors = dict(zip(MOTIONS, motion.errors.tolist(), strict=True))
         squares, over_noise = float(residual @ weights), float(np.sqrt(residual @ noise**-2 / samples))
-        found[decay.name] = DropValidation(
+        validations[decay.name] = DropValidation(
             **{name: None if np.isnan(error) else error for name, error in errors.items()},
             fitted=float(np.sqrt(squares / energy)),
             residual=over_noise,
-            predicted=None if foretold is None else float(np.sqrt(foretold.squares / energy)),
-            predicted_residual=None if foretold is None else _predicted_residual(over_noise, foretold),
-            unexpected=0.0 if foretold is None else _unexpected(foretold, energy, coloured),
-            apart=None if foretold is None else foretold.distance[0] / max(foretold.distance[1], 1),
-            whiteness={channels[channel]: one for channel, one in left.items()},
+            predicted=None if prediction is None else float(np.sqrt(prediction.squares / energy)),
+            predicted_residual=None if prediction is None else _predicted_residual(over_noise, prediction),
+            unexpected=0.0 if prediction is None else _unexpected(prediction, energy, coloured),
+            apart=None if prediction is None else prediction.distance[0] / max(prediction.distance[1], 1),
+            whiteness={channels[channel]: own for channel, own in statistics.items()},
             over_noise={
                 name: None if np.isnan(ratio) else ratio
                 for name, ratio in zip(MOTIONS, motion.over_noise.tolist(), strict=True)
             },
         )
-    return found
+    return validations
 
 
-def _predicted_residual(residual: float, foretold: Prediction) -> float | None:
+def _predicted_residual(residual: float, prediction: Prediction) -> float | None:
     """Return the residual over the noise as predicted; None where that of the fit is below rounding."""
-    return residual * float(np.sqrt(foretold.squares / foretold.fitted)) if foretold.fitted > 0 else None
+    return residual * float(np.sqrt(prediction.squares / prediction.fitted)) if prediction.fitted > 0 else None
 
 
-def _unexpected(foretold: Prediction, energy: float, inflation: float) -> float:
-    mean, deviation = foretold.by_chance
-    distance, directions = foretold.distance
-    more = foretold.squares - foretold.fitted - inflation * (mean + _BEYOND_CHANCE * deviation)
+def _unexpected(prediction: Prediction, energy: float, inflation: float) -> float:
+    mean, deviation = prediction.by_chance
+    distance, directions = prediction.distance
+    more = prediction.squares - prediction.fitted - inflation * (mean + _BEYOND_CHANCE * deviation)
     if distance <= inflation * (directions + _DISTANT * np.sqrt(2 * directions)) or more <= 0:
         return 0.0
     return float(np.sqrt(more / energy))

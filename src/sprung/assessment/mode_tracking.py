@@ -1,10 +1,9 @@
-"""One mode of the body followed through a decay: its frequency, damping ratio and amplitude, window by window."""
+"""Mode tracking: frequency, damping ratio and amplitude of one mode of the body through a decay, window by window."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +28,7 @@ _DAMPED = (0.05, 0.25)
 """Damping ratios from which it is fitted."""
 
 _SURE = 0.05
-"""Standard uncertainty of a frequency, as a part, beyond which a window tells nothing."""
+"""Relative standard uncertainty of a frequency beyond which a window is discarded."""
 
 _LEAST, _MOST = -0.1, 0.8
 """Damping ratios between which a window shows a vibration."""
@@ -38,20 +37,22 @@ _LEAST, _MOST = -0.1, 0.8
 @shown
 @dataclass(frozen=True, eq=False)
 class AmplitudeCurve:
-    """One mode through one decay. All arrays have the shape (window,); neighbouring windows overlap by five sixths.
+    """Frequency and damping ratio of one mode against amplitude in one decay.
+
+    Neighbouring windows overlap by five sixths.
 
     Attributes
     ----------
     name
         The drop's.
     time
-        Middle of each window, s after the first sample.
+        Middle of each window, s after the first sample, shape (window,).
     amplitude
-        Displacement where the body moves most, of all places with a sensor, m.
+        Displacement where the body moves most, of all places with a sensor, m, shape (window,).
     frequency, frequency_std
-        Undamped natural frequency and its standard uncertainty, Hz.
+        Undamped natural frequency and its standard uncertainty, Hz, shape (window,).
     damping_ratio, damping_ratio_std
-        And those of the damping ratio.
+        Damping ratio and its standard uncertainty, shape (window,).
     """
 
     name: str
@@ -73,7 +74,7 @@ def follow_mode(
     largest: float,
     least: float = 0.0,
 ) -> AmplitudeCurve:
-    """Follow one mode.
+    """Follow one mode through a decay.
 
     Parameters
     ----------
@@ -84,12 +85,12 @@ def follow_mode(
     rate
         Samples per second.
     noise
-        Of each, by which they are weighed; shape (3,).
+        Of each, shape (3,).
     modes
         Modes of the linear vehicle, with shapes in the seven coordinates.
     which
-        The one to follow: its pole is free in each window, its shape and everything of the other modes but their amplitudes
-        is not.
+        Position of the mode to follow: its pole is free in each window; its shape, and poles and shapes of the other modes, are
+        fixed.
     largest
         Displacement of the body, where it moves most, in one unit of that mode.
     least
@@ -103,8 +104,8 @@ def follow_mode(
     -----
     In each window the body is taken to accelerate as Re Σ b A e^{λt}, with complex amplitudes A and an offset eliminated as
     they are linear, so that a fit has two unknowns. Averaging neighbours changes no more than A. Uncertainties are those of
-    least squares. A window says nothing where it has no more samples than unknowns, or where the frequency found is an alias,
-    above half the rate of its samples.
+    least squares. A window is discarded where it has no more samples than unknowns, or where the frequency is an alias, above
+    half the rate of its samples.
     """
     fastest = max(abs(mode.pole.imag) for mode in modes) / (2 * np.pi)
     every = max(round(rate / (_PER_PERIOD * fastest)), 1)
@@ -121,9 +122,16 @@ def follow_mode(
             break
         inside = slice(first, first + length)
         middle = float(time[inside].mean())
-        window = _Window(thin[:, inside], time[inside] - middle, noise, own.shape[:3], others)
-        best, deviation, amplitude = window.fit([pole, complex(own.pole)] if found else [pole])
-        found.append((middle, amplitude * largest, *_as_ratio(best, deviation)))
+        starts = [pole, complex(own.pole)] if found else [pole]
+        best, covariance, amplitude = _fit_window(
+            thin[:, inside],
+            time[inside] - middle,
+            own.shape[:3] / noise,
+            [mode.shape[:3] / noise for mode in others],
+            [complex(mode.pole) for mode in others],
+            starts,
+        )
+        found.append((middle, amplitude * largest, *_frequency_and_damping(best, covariance)))
         sure = found[-1][3] < _SURE * found[-1][2] and _LEAST < found[-1][4] < _MOST
         # A window of another length is taken where this one's frequency has another period.
         pole = best if sure else complex(own.pole)
@@ -131,80 +139,75 @@ def follow_mode(
         if sure and found[-1][1] < least:
             break
     table = np.array(found).reshape(-1, 6)
-    told = (table[:, 3] < _SURE * table[:, 2]) & (table[:, 4] > _LEAST) & (table[:, 4] < _MOST)
-    return AmplitudeCurve(name, *np.ascontiguousarray(table[told].T))
+    clear = (table[:, 3] < _SURE * table[:, 2]) & (table[:, 4] > _LEAST) & (table[:, 4] < _MOST)
+    return AmplitudeCurve(name, *np.ascontiguousarray(table[clear].T))
 
 
-@dataclass(frozen=True, eq=False)
-class _Window:
-    """A stretch of a record; values (3, time) over the noise, times from its middle."""
+def _fit_window(
+    values: Real,
+    time: Real,
+    shape: Complex,
+    other_shapes: Sequence[Complex],
+    other_poles: Sequence[complex],
+    starts: Sequence[complex],
+) -> tuple[complex, Real | None, float]:
+    """Fit the pole of one mode in one window by variable projection: offsets and the amplitudes of all modes are eliminated.
 
-    values: Real
-    time: Real
-    noise: Real
-    shape: Complex
-    others: Sequence[Mode]
+    Values, shape (3, time), and the shapes of the modes are in units of the noise; times count from the window's middle.
+    Returns the pole, the covariance of its real and imaginary part, and the displacement in the middle; no covariance where
+    the window has no more samples than unknowns, or where the pole is an alias.
+    """
+    offsets = np.kron(np.eye(3), np.ones((len(time), 1)))
+    others = [_mode_columns(time, pole, own) for pole, own in zip(other_poles, other_shapes, strict=True)]
+    fixed = np.column_stack([offsets, *others])
+    sizes = np.linalg.norm(fixed, axis=0)
+    left, singular, _ = np.linalg.svd(fixed[:, sizes > 0] / sizes[sizes > 0], full_matrices=False)
+    basis = left[:, singular > 1e-6 * singular[0]]
+    remaining = values.ravel() - basis @ (basis.T @ values.ravel())
 
-    def _columns(self, pole: complex, shape: Complex) -> Iterator[Real]:
-        """Give what the two parts of an amplitude do, each of shape (3 · time,)."""
-        motion = (shape / self.noise)[:, None] * np.exp(pole * (self.time - self._largest(pole)))
-        yield motion.real.ravel()
-        yield -motion.imag.ravel()
+    def project(pole: complex) -> tuple[Real, Real]:
+        columns = _mode_columns(time, pole, shape)
+        columns = columns - basis @ (basis.T @ columns)
+        return columns, np.asarray(np.linalg.lstsq(columns, remaining, rcond=None)[0], dtype=float)
 
-    def _largest(self, pole: complex) -> float:
-        """When a mode is largest, s: counted from there, none overflows or is out of all proportion to the others."""
-        return float(self.time[0] if pole.real < 0 else self.time[-1])
+    def residual(x: Real) -> Real:
+        columns, parts = project(complex(x[0], x[1]))
+        return np.asarray(remaining - columns @ parts)
 
-    def _fixed(self) -> Real:
-        offsets = np.kron(np.eye(3), np.ones((len(self.time), 1)))
-        beside = list(chain.from_iterable(self._columns(complex(one.pole), one.shape[:3]) for one in self.others))
-        columns = np.column_stack([offsets, *beside])
-        sizes = np.linalg.norm(columns, axis=0)
-        left, singular, _ = np.linalg.svd(columns[:, sizes > 0] / sizes[sizes > 0], full_matrices=False)
-        basis: Real = left[:, singular > 1e-6 * singular[0]]
-        return basis
-
-    def fit(self, poles: Sequence[complex]) -> tuple[complex, Real | None, float]:
-        """Fit the pole, from several others: it, the covariance of its parts, and the displacement in the middle.
-
-        There is no covariance where the window says nothing.
-        """
-        basis = self._fixed()
-        values = self.values.ravel()
-        values = values - basis @ (basis.T @ values)
-
-        def left(x: Real) -> Real:
-            own = np.column_stack(list(self._columns(complex(x[0], x[1]), self.shape)))
-            own = own - basis @ (basis.T @ own)
-            rest: Real = values - own @ np.linalg.lstsq(own, values, rcond=None)[0]
-            return rest
-
-        starts = [
-            np.array([-ratio * abs(pole) * times, abs(pole) * times])
-            for pole in poles
-            for times in _TRIED
-            for ratio in _DAMPED
-        ]
-        costs = [float(left(start) @ left(start)) for start in starts]
-        order = np.argsort(costs)[:2]
-        size = abs(poles[0])
-        ends = [least_squares(left, starts[i], method="lm", x_scale=(size, size)) for i in order]
-        end = min(ends, key=lambda one: float(one.cost))
-        pole = complex(end.x[0], abs(end.x[1]))
-        own = np.column_stack(list(self._columns(pole, self.shape)))
-        own -= basis @ (basis.T @ own)
-        parts = np.linalg.lstsq(own, values, rcond=None)[0]
-        freedom = len(values) - basis.shape[1] - 4
-        if freedom <= 0 or pole.imag >= np.pi / (self.time[1] - self.time[0]):
-            return pole, None, 0.0
-        slopes = np.asarray(end.jac, dtype=float)
-        covariance = 2 * float(end.cost) / freedom * np.linalg.pinv(slopes.T @ slopes)
-        middle = float(np.exp(-pole.real * self._largest(pole)))
-        return pole, covariance, float(np.hypot(*parts)) / abs(pole) ** 2 * middle
+    tried = [
+        np.array([-ratio * abs(pole) * times, abs(pole) * times])
+        for pole in starts
+        for times in _TRIED
+        for ratio in _DAMPED
+    ]
+    order = np.argsort([float(np.sum(residual(start) ** 2)) for start in tried])[:2]
+    size = abs(starts[0])
+    ends = [least_squares(residual, tried[i], method="lm", x_scale=(size, size)) for i in order]
+    end = min(ends, key=lambda solution: float(solution.cost))
+    pole = complex(end.x[0], abs(end.x[1]))
+    _, parts = project(pole)
+    freedom = remaining.size - basis.shape[1] - 4
+    if freedom <= 0 or pole.imag >= np.pi / (time[1] - time[0]):
+        return pole, None, 0.0
+    jacobian = np.asarray(end.jac, dtype=float)
+    covariance = 2 * float(end.cost) / freedom * np.linalg.pinv(jacobian.T @ jacobian)
+    in_middle = float(np.exp(-pole.real * _largest_at(time, pole)))
+    return pole, covariance, float(np.hypot(*parts)) / abs(pole) ** 2 * in_middle
 
 
-def _as_ratio(pole: complex, covariance: Real | None) -> tuple[float, float, float, float]:
-    """Turn a pole into undamped frequency, its standard uncertainty, damping ratio, and its own."""
+def _mode_columns(time: Real, pole: complex, shape: Complex) -> Real:
+    """Return the motion of a mode for each of the two parts of its amplitude, shape (3 · time, 2)."""
+    motion = shape[:, None] * np.exp(pole * (time - _largest_at(time, pole)))
+    return np.column_stack([motion.real.ravel(), -motion.imag.ravel()])
+
+
+def _largest_at(time: Real, pole: complex) -> float:
+    """Return when a mode is largest, s: counted from there none overflows, and all have comparable columns."""
+    return float(time[0] if pole.real < 0 else time[-1])
+
+
+def _frequency_and_damping(pole: complex, covariance: Real | None) -> tuple[float, float, float, float]:
+    """Return undamped frequency, Hz, and damping ratio of a pole, each with its standard uncertainty."""
     size = abs(pole)
     if covariance is None:
         return size / (2 * np.pi), np.inf, -pole.real / size, np.inf

@@ -1,4 +1,4 @@
-"""What is left of each channel in each drop: how large, and whether it is like noise."""
+"""Residuals of each channel in each drop: their size, and whether they are white."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ _SPAN = 0.25
 @shown
 @dataclass(frozen=True, slots=True)
 class ResidualStatistics:
-    """What is left of one channel in one drop.
+    """Residuals of one channel in one drop.
 
     Attributes
     ----------
     residual
         m/s² root-mean-square.
     over_noise
-        The ratio of that and the sensor's noise: at rest where a recording shows it, else what is left in all drops.
+        Ratio of that to the sensor's noise: at rest where a recording shows it, else in the residuals of all drops.
     correlation, lag
-        The largest correlation of residuals with themselves within a quarter of a second, and how far they are apart, s.
+        The largest autocorrelation within a quarter of a second, and its lag, s.
     colour
-        By how many standard deviations all these correlations together are more than those of white noise: Ljung and Box,
+        Portmanteau statistic of all these autocorrelations, in standard deviations beyond white noise: Ljung and Box,
         Biometrika 65 (1978) 297.
     """
 
@@ -45,7 +45,7 @@ class ResidualStatistics:
 
 
 def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Real:
-    """Give the noise of each sensor at rest, where a recording shows it, and not more than a fit leaves.
+    """Estimate the noise level of each sensor: at rest where a recording shows it, at most that of the residuals.
 
     Parameters
     ----------
@@ -59,16 +59,15 @@ def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Rea
     ndarray
         m/s² root-mean-square, shape (channel,).
     """
-    seen = estimate_sensor_noise(decays, pool_moments(fit.residuals))
-    variance = seen.variance + seen.added
-    at_rest = np.where((seen.samples > 0) & (seen.variance > 0), np.sqrt(variance), np.inf)
+    noise = estimate_sensor_noise(decays, pool_moments(fit.residuals))
+    at_rest = np.where((noise.samples > 0) & (noise.variance > 0), np.sqrt(noise.variance + noise.added), np.inf)
     return np.minimum(at_rest, fit.noise)
 
 
 def describe_residuals(
     fit: FitStatistics, decays: Sequence[FreeDecay], noise: Real
 ) -> tuple[dict[int, ResidualStatistics], ...]:
-    """Say what is left of each channel in each drop.
+    """Describe the residuals of each channel in each drop.
 
     Parameters
     ----------
@@ -77,23 +76,23 @@ def describe_residuals(
     decays
         What was fitted.
     noise
-        Of each sensor, m/s², shape (channel,).
+        Noise level of each sensor, m/s², shape (channel,).
 
     Returns
     -------
     tuple of dict
-        For each drop, by the position of the channel; without channels that are left out.
+        `ResidualStatistics` for each drop, by the position of the channel; without channels that are left out.
     """
     return tuple(
         {
-            int(channel): _remainder(record[channel], decay.rate, float(noise[channel]))
+            int(channel): _residual_statistics(record[channel], decay.rate, float(noise[channel]))
             for channel in np.flatnonzero(decay.usable)
         }
         for decay, record in zip(decays, fit.residuals, strict=True)
     )
 
 
-def _remainder(values: Real, rate: float, noise: float) -> ResidualStatistics:
+def _residual_statistics(values: Real, rate: float, noise: float) -> ResidualStatistics:
     count, size = len(values), float(np.sqrt(np.mean(values**2)))
     lags = np.arange(1, min(max(int(_SPAN * rate), 1), count // 4) + 1)
     correlations = fftconvolve(values, values[::-1])[count - 1 + lags] / max(count * size**2, np.finfo(float).tiny)

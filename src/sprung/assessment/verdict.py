@@ -9,16 +9,18 @@ from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sprung.assessment.cross_validation import DropValidation
-from sprung.assessment.model_error import Misfit
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.tables import escaped
 from sprung.uncertainty import Estimate
 
+Real = NDArray[np.float64]
+
 State = Literal["accept", "doubtful", "reject"]
-"""What a verdict may be: see `Verdict`."""
+"""State of a `Verdict`."""
 
 EXPLAINED = 0.01
 """Model error, as a part of a channel's signal, below which the model explains the records."""
@@ -34,7 +36,7 @@ CONTRADICTION = 4.0
 
 
 SLIGHTEST = 0.0005
-"""Error of a prediction, as a part of a drop's signal, that nobody has to know of."""
+"""Error of a prediction, as a part of a drop's signal, that is not reported."""
 
 ALONE, _FAR, _FEW = 10.0, 25.0, 3
 """How many times further from the others than these are a drop must be to stand alone, how far at least (five standard errors
@@ -68,39 +70,40 @@ class Verdict:
 
 def decide_verdict(
     fit: FitStatistics,
-    misfit: Misfit,
+    model_error: tuple[Real, Real],
     parameters: Mapping[str, Estimate],
     channels: Sequence[str],
-    accused: Sequence[str] = (),
+    suspected: Sequence[str] = (),
     drops: Mapping[str, DropValidation] = _NO_DROPS,
 ) -> Verdict:
-    """Come to a verdict.
+    """Decide whether the estimates may be used.
 
     Parameters
     ----------
     fit
         The fit.
-    misfit
-        How far the model is from the records.
+    model_error
+        Model error over signal and residual over noise of each channel, from `estimate_model_error`.
     parameters
         The estimates.
     channels
         Channel names.
-    accused
-        What is probably wrong with the campaign file or an instrument.
+    suspected
+        Faults of the campaign file or an instrument that are probable, in words.
     drops
-        How well each drop is explained, and predicted by the others, by its name.
+        Cross-validation of each drop, by its name.
 
     Returns
     -------
     Verdict
     """
-    worst = int(np.argmax(misfit.relative))
-    size = float(misfit.relative[worst])
-    unexplained = list(_unexplained(size, float(misfit.ratio[worst]), channels[worst]))
+    relative, over_noise = model_error
+    worst = int(np.argmax(relative))
+    size = float(relative[worst])
+    unexplained = list(_unexplained(size, float(over_noise[worst]), channels[worst]))
     reject = [*(unexplained if size > UNUSABLE else ()), *_no_fit(fit, parameters)]
     doubt = [
-        *accused,
+        *suspected,
         *(unexplained if size <= UNUSABLE else ()),
         *_contradictions(fit),
         *_unpredicted(drops),
@@ -116,10 +119,10 @@ def decide_verdict(
 
 def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
     if size > EXPLAINED:
-        beyond = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
+        ratio_text = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
         yield (
             f"the model does not explain the records: in {channel} its error is {100 * size:.1f} % of the "
-            f"signal{beyond}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
+            f"signal{ratio_text}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
         )
 
 
@@ -159,12 +162,12 @@ def _unpredicted(drops: Mapping[str, DropValidation]) -> Iterator[str]:
     error, residual = drops[worst].predicted or 0.0, drops[worst].predicted_residual or 0.0
     size = f"{100 * error:.1f} % of its signal, {residual:.1f} times the noise"
     if 2 * len(missed) > len(drops):
-        yield f"the drops do not predict each other: the vehicle that the others show misses {worst} by {size}"
+        yield f"the drops do not predict each other: the fit to the others misses {worst} by {size}"
         return
     rest = sorted(missed.keys() - {worst})
     also = f", nor do they predict {', '.join(rest)}" if rest else ""
     yield (
-        f"the other drops do not predict {worst}: the vehicle that they show misses it by {size}{also}; something was "
+        f"the other drops do not predict {worst}: the fit to them misses it by {size}{also}; something was "
         "different in it (load, tyre pressure, brake), or the model lacks a property of the vehicle"
     )
 

@@ -26,13 +26,13 @@ class ModelChoice:
     """What the user states of the model; what is left out is selected."""
 
     tracks: Literal["shared", "separate"] | None = None
-    """One half-distance per axle, or those of springs and dampers apart."""
+    """One half-distance per axle (shared), or separate ones of springs and dampers."""
     extras: tuple[str, ...] | None = None
-    """Exactly these beyond the plain model of seven degrees of freedom."""
+    """Exactly these model terms beyond the linear model of seven degrees of freedom."""
     forbid: tuple[str, ...] = ()
     """Never these, whatever else is selected."""
     fall: bool | None = None
-    """Whether drops are used from their release on, and not only from when the last tyre is down."""
+    """Whether drops are used from their release on, and not only from the last landing on."""
 
 
 @checked_record
@@ -42,11 +42,11 @@ class TestRecord:
     date: dt.date | None = None
     """Day of the test: 2026-11-22, without quotes."""
     operator: Annotated[str, Field(min_length=1)] | None = None
-    """Who did the test."""
+    """Name of the operator."""
     place: Annotated[str, Field(min_length=1)] | None = None
-    """Where it was done."""
+    """Place of the test."""
     remarks: Annotated[str, Field(min_length=1)] | None = None
-    """Whatever else belongs into the record: tyre pressures, fuel, weather."""
+    """Other data for the record: tyre pressures, fuel, weather."""
 
 
 @shown

@@ -205,24 +205,24 @@ def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[s
                 PARAMETERS[name].meaning,
                 PARAMETERS[name].positive,
             )
-        beyond = explain_implausible(name, measured.value)
+        limits = explain_implausible(name, measured.value)
         if measured.value < 0 or (measured.value < SMALLEST and positive):
             sign = "positive" if positive else "not negative"
             problems.add(where, f"{measured.value:g}", f"a {sign} number: the {describe_key} in {unit}", "Correct it.")
-        elif beyond is not None:
-            expected, do = beyond
+        elif limits is not None:
+            expected, do = limits
             problems.add(where, f"{measured.value:g}", f"{expected}: the {describe_key}", do)
         else:
             known[name] = measured.known
     wheelbase = parsed.file.vehicle.wheelbase
     if wheelbase is not None:
         where, length = parsed.where("vehicle", "wheelbase"), wheelbase.value
-        beyond = explain_implausible("wheelbase", length)
+        limits = explain_implausible("wheelbase", length)
         if length < SMALLEST:
             expected = "a positive number: front axle to rear axle in m"
             problems.add(where, f"{length:g}", expected, "Correct it.")
-        elif beyond is not None:
-            problems.add(where, f"{length:g}", *beyond)
+        elif limits is not None:
+            problems.add(where, f"{length:g}", *limits)
         else:
             known["wheelbase"] = wheelbase.known
     return known

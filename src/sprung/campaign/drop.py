@@ -50,23 +50,23 @@ class Drop:
     # Where it is not known yet, the load is empty text and there are no wheels.
 
     file: str | None = None
-    """Recording, relative to the campaign file; a vehicle file, which has no recordings, leaves it out."""
+    """Path of the recording, relative to the campaign file; not in a vehicle file."""
     files: Annotated[tuple[str, ...], Field(max_length=64)] = ()
-    """Recordings of this drop, where several loggers recorded it, each on its own clock; instead of `file`."""
+    """Recordings of this drop by several loggers, each with its own clock; instead of `file`."""
     name: Annotated[str, Field(min_length=1)] | None = None
-    """What to call it everywhere, unlike every other drop's; its recording's name where it is left out."""
+    """Unique name of the drop; default: the name of its recording."""
     window: tuple[Finite, Finite] | None = None
-    """s on the file's clock, of several files the first one's: the part that holds this drop, where they hold more than one."""
+    """Part of the recording that contains this drop, s on the clock of the (first) file, if it contains several drops."""
     load: str = "empty"
     """Name of the load on the vehicle."""
     wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
     """Which wheels were dropped; the others stood on the ground."""
     height: Positive | None = None
-    """Of the blocks, m."""
+    """Height of the blocks, m."""
     start: Finite | None = None
-    """s on the file's clock, of several files the first one's: the decay is used from here, as given."""
+    """Beginning of the free decay, s on the clock of the (first) file; used as given."""
     end: Finite | None = None
-    """s on the file's clock, of several files the first one's: the decay is used up to here, as given."""
+    """End of the free decay, s on the clock of the (first) file; used as given."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Drop:

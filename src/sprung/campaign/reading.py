@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from sprung.campaign.campaign import Campaign
-    from sprung.campaign.file_reading import VehicleFile
+    from sprung.campaign.vehicle_file import VehicleFile
     from sprung.formats import Signals
 
 # The formats and the models of the files are imported where a file is read: whoever has a campaign needs none of them.
@@ -118,6 +118,6 @@ def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:
     InputError
         If something is wrong with it; every problem at once.
     """
-    from sprung.campaign.file_reading import read_vehicle_file  # noqa: PLC0415 (see above)
+    from sprung.campaign.vehicle_file import read_vehicle_file  # noqa: PLC0415 (see above)
 
     return read_vehicle_file(Path(path))

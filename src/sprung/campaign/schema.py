@@ -43,17 +43,17 @@ class VehicleSection(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     name: str | None = Field(default=None, min_length=1)
-    """For people to read; the folder's name where it is left out."""
+    """Name of the vehicle, for display; default: the name of the folder."""
     identification: str | None = Field(default=None, min_length=1)
     """Chassis number, registration or test number, for the record."""
     wheelbase: Measured | None = None
     """Front axle to rear axle, m."""
     cg_height: Positive | None = None
-    """Of the sprung mass's centre of gravity above the ground, m; left out, loads count as level with it."""
+    """Centre of gravity of the sprung mass above the ground, m; without it, loads are assumed to be at its height."""
     wheel_height: Positive | None = None
-    """Of the wheel centres above the ground, m."""
+    """Wheel centres above the ground, m."""
     roll_axis_height: Finite | None = None
-    """Of the axis about which the body rolls, above the ground, m."""
+    """Roll axis above the ground, m."""
 
     @property
     def heights(self) -> Heights:

@@ -146,10 +146,10 @@ def _rate_ratios(table: SampleTable, sensors: Sequence[Sensor]) -> tuple[float, 
 
 def _common_range(table: SampleTable, needed: Sequence[int]) -> SampleTable:
     """Leave out the few samples at both ends that columns of another clock do not reach."""
-    reach = [table.resampled[column] for column in needed if column in table.resampled]
-    reach = [column for column in reach if column.last - column.first >= (1 - MAX_MISSING) * table.samples]
-    first = max((column.first for column in reach), default=0)
-    last = min((column.last for column in reach), default=table.samples)
+    covering = [table.resampled[column] for column in needed if column in table.resampled]
+    covering = [column for column in covering if column.last - column.first >= (1 - MAX_MISSING) * table.samples]
+    first = max((column.first for column in covering), default=0)
+    last = min((column.last for column in covering), default=table.samples)
     return table.part(first, last) if last - first < table.samples else table
 
 

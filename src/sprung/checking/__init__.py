@@ -1,8 +1,8 @@
-"""Judge recordings without identifying anything: which part of each drop can be used, and what is wrong or missing."""
+"""Check of recordings without an identification: which part of each drop can be used, faults, and what is missing."""
 
-from sprung.checking.check import ChannelReport, Check, DropReport, check, check_prepared
-from sprung.checking.clock import ClockReport
+from sprung.checking.check import check, check_prepared
 from sprung.checking.recorded import PlottedRecording
+from sprung.checking.reports import ChannelReport, Check, ClockReport, DropReport
 
 __all__ = [
     "ChannelReport",

@@ -1,4 +1,4 @@
-"""One drop's whole recording, as figures draw it."""
+"""The whole recording of one drop, as figures plot it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Drawn = NDArray[np.float32]
 @shown
 @dataclass(frozen=True, eq=False)
 class PlottedRecording:
-    """One drop's whole recording, in SI, put right as far as it could be.
+    """Whole recording of one drop, in SI, corrected.
 
     Attributes
     ----------
@@ -26,9 +26,9 @@ class PlottedRecording:
     rate
         Samples per second.
     values
-        m/s², positive up, shape (channel, time); of channels that are left out what was read, NaN where nothing was.
+        m/s², positive up, shape (channel, time); as read in channels that are left out, NaN where nothing was read.
     marks
-        Samples with which something is the matter.
+        Samples that have a fault.
     """
 
     start: float
@@ -37,18 +37,20 @@ class PlottedRecording:
     marks: tuple[MarkedSamples, ...] = ()
 
     @classmethod
-    def of(cls, seen: DropObservation) -> PlottedRecording:
-        """Take what a recording shows.
+    def of(cls, observation: DropObservation) -> PlottedRecording:
+        """Make it from an observation.
 
         Parameters
         ----------
-        seen
-            What its drop shows.
+        observation
+            Of the drop.
         """
-        values, as_read = seen.recording.values, seen.drop.recording.values
+        values, as_read = observation.recording.values, observation.drop.recording.values
         if values.shape == as_read.shape:
             values = np.where(np.isnan(values).any(axis=1, keepdims=True), as_read, values)
-        return cls(seen.recording.start, seen.recording.rate, values.astype(np.float32), seen.marks)
+        return cls(
+            observation.recording.start, observation.recording.rate, values.astype(np.float32), observation.marks
+        )
 
     @property
     def time(self) -> Real:

@@ -1,4 +1,4 @@
-"""The command line: parse, call, print, exit code; nothing is computed here."""
+"""The command line: arguments, calls, output, exit statuses; no computation."""
 
 from __future__ import annotations
 
@@ -6,38 +6,39 @@ import os
 import sys
 import traceback
 
-from sprung.cli import identifying as identifying
-from sprung.cli import measuring as measuring
+from sprung.cli import identification as identification
+from sprung.cli import recordings as recordings
+from sprung.cli import studies as studies
 from sprung.cli.app import app
-from sprung.cli.helping import readable
+from sprung.cli.help_text import readable
 from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, complain
-from sprung.cli.stopping import stopped_before, stopping_like_ctrl_c, was_stopped
+from sprung.cli.signals import interruption_of, report_stop, sigterm_as_exception
 from sprung.errors import SprungError
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""What tells NumPy's libraries, when it is imported, how many threads to use."""
+"""Environment variables with the number of threads of NumPy's libraries, read when NumPy is imported."""
 
 
 def main() -> None:
-    """Run the command line; exit status 0, 1, 2 or 3 as the contract has it, 130 on Ctrl-C, 143 on SIGTERM."""
+    """Run the command line; exit status 0, 1, 2 or 3 as documented, 130 on Ctrl-C, 143 on SIGTERM."""
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="replace")  # a terminal that knows no ² must still get the numbers
-    with stopping_like_ctrl_c():
+            stream.reconfigure(errors="replace")  # a terminal without ² must still show the numbers
+    with sigterm_as_exception():
         _run()
 
 
 def _run() -> None:
-    for variable in _THREADS:  # every matrix is small: threads would only wait for each other
+    for variable in _THREADS:  # matrices are small: more threads are slower
         os.environ.setdefault(variable, "1")
     try:
         app(prog_name="sprung")
     except SystemExit as leaving:
-        if leaving.code == INTERRUPTED and (stopped := stopped_before(leaving)) is not None:
-            raise SystemExit(was_stopped(stopped)) from None
+        if leaving.code == INTERRUPTED and (stopped := interruption_of(leaving)) is not None:
+            raise SystemExit(report_stop(stopped)) from None
         raise
     except KeyboardInterrupt as stopped:
-        raise SystemExit(was_stopped(stopped)) from None
+        raise SystemExit(report_stop(stopped)) from None
     except SprungError as error:
         complain(readable(f"{_headline(error)}\n{error}"))
         raise SystemExit(BAD_INPUT) from None
@@ -58,5 +59,5 @@ def _headline(error: SprungError) -> str:
 def _report(error: Exception) -> str:
     return (
         f"This is a defect of sprung, not of your input ({type(error).__name__}). Please report it to the developers with "
-        "the lines above, the command you gave and, if you may share it, the campaign."
+        "the lines above, the command and, if possible, the campaign."
     )

@@ -1,4 +1,4 @@
-"""The command line's application: its group of commands, and what several of them take."""
+"""The application: the group of commands, and arguments that several of them share."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import typer
 from typer.core import TyperGroup
 
 import sprung
-from sprung.cli.completing import campaigns
-from sprung.cli.helping import Command, group_help
+from sprung.cli.completion import campaigns
+from sprung.cli.help_text import Command, group_help
 from sprung.cli.output import say
-from sprung.cli.stopping import was_stopped
+from sprung.cli.signals import report_stop
 
 ORDER = (
     "demo",
@@ -29,37 +29,37 @@ ORDER = (
     "paper",
     "schema",
 )
-"""The commands in the order of work: first an example to look at, then the way from recordings to results."""
+"""The commands in the order of work: an example, then from recordings to results."""
 
 
 class Commands(TyperGroup):
-    """The commands; Ctrl-C and SIGTERM end any of them with the shell's own status and without a traceback."""
+    """The group of commands; Ctrl-C and SIGTERM end any of them without a traceback, with the status that shells use."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """List the commands in the order of work."""
+        """Return the names of the commands in the order of work."""
         names = super().list_commands(ctx)
         return sorted(names, key=lambda name: ORDER.index(name) if name in ORDER else len(ORDER))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help of the program."""
-        options = [one for one in self.get_params(ctx) if one.param_type_name == "option"]
+        options = [parameter for parameter in self.get_params(ctx) if parameter.param_type_name == "option"]
         commands = [self.commands[name] for name in self.list_commands(ctx)]
         usage = f"{ctx.command_path} COMMAND [OPTIONS] [ARGUMENTS]"
         formatter.write(group_help(usage, self.help or "", options, commands))
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command that was asked for."""
+        """Run a command."""
         try:
             return super().invoke(ctx)
         except KeyboardInterrupt as stopped:
-            raise SystemExit(was_stopped(stopped)) from None
+            raise SystemExit(report_stop(stopped)) from None
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Program(typer.Typer):
-    """The program; its commands write their own help."""
+    """The program, whose commands write their own help."""
 
     def command(self, name: str | None = None, **options: Any) -> Callable[[Function], Function]:
         """Add a command."""
@@ -76,15 +76,13 @@ app = Program(
 )
 
 CampaignFile = Annotated[
-    Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or the folder it is in.", autocompletion=campaigns)
+    Path, typer.Argument(metavar="CAMPAIGN", help="campaign.toml, or its folder.", autocompletion=campaigns)
 ]
 Force = Annotated[
     bool,
-    typer.Option(
-        "--force", help="Overwrite files that sprung did not write, or that were changed since it wrote them."
-    ),
+    typer.Option("--force", help="Overwrite files that sprung did not write, or that were changed since."),
 ]
-Json = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, and nothing else.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document, and nothing else, on standard output.")]
 
 
 def _version(wanted: bool) -> None:
@@ -96,7 +94,7 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and leave.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
     """Find the physical parameters of a two-axle road vehicle from drop tests."""

@@ -1,4 +1,4 @@
-"""What the commands say and with which status they leave: results on standard output, everything else on standard error."""
+"""Output and exit statuses of the commands: results on standard output, everything else on standard error."""
 
 from __future__ import annotations
 
@@ -23,25 +23,25 @@ BAD_INPUT = 2
 REJECTED = 3
 INTERRUPTED = 130
 TERMINATED = 143
-"""Exit statuses; the last two are the shell's own for Ctrl-C and SIGTERM."""
+"""Exit statuses; the last two are those of shells for Ctrl-C and SIGTERM."""
 
 _SOON = 2.0
-"""Seconds of a stage after which the rest of it is estimated."""
+"""Time after which the remaining time of a stage is estimated, s."""
 
 
 @contextmanager
 def working(first: str) -> Iterator[Progress]:
-    """Show in one line of a terminal what is being done and for how long; into a pipe or a file nothing is written.
+    """Show the current step and the elapsed time in one line of a terminal; nothing in a pipe or file.
 
     Parameters
     ----------
     first
-        What is done first.
+        Name of the first step.
 
     Yields
     ------
     Progress
-        To be called with each step that begins.
+        To call with each step that begins.
     """
     console = Console(stderr=True)
     line = StatusLine(Step(first))
@@ -55,7 +55,7 @@ def working(first: str) -> Iterator[Progress]:
 
 
 class StatusLine:
-    """One line: time since the command began, the step it is at, and how long this stage will probably take still."""
+    """The status line: elapsed time, estimated remaining time of the stage, and current step."""
 
     def __init__(self, first: Step, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
@@ -64,13 +64,13 @@ class StatusLine:
         self._spinner = Spinner("dots")
 
     def begin(self, step: Step) -> None:
-        """Go on to a step."""
+        """Begin a step."""
         if step.stage != self._step.stage:
             self._stage_began = self._clock()
         self._step = step
 
     def text(self) -> str:
-        """Return the line without its turning sign."""
+        """Return the line without the spinner."""
         now = self._clock()
         elapsed, in_stage, done = _minutes(now - self._began), now - self._stage_began, self._step.done
         if done is None or not 0 < done < 1 or in_stage < _SOON:
@@ -79,8 +79,8 @@ class StatusLine:
 
     def __rich__(self) -> Text:
         frames = self._spinner.frames
-        turning = frames[int(8 * self._clock()) % len(frames)]
-        return Text(f"{turning} {self.text()}", no_wrap=True, overflow="ellipsis")
+        frame = frames[int(8 * self._clock()) % len(frames)]
+        return Text(f"{frame} {self.text()}", no_wrap=True, overflow="ellipsis")
 
 
 def _minutes(seconds: float) -> str:
@@ -89,18 +89,18 @@ def _minutes(seconds: float) -> str:
 
 
 def say(text: str) -> None:
-    """Print text to standard output; go on without a reader when it has gone, as `| head` does."""
+    """Print text to standard output; a closed pipe, as with `| head`, is no error."""
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
     except BrokenPipeError:
-        # What is left in the buffer would fail again at the end of the program: it goes nowhere instead.
+        # The rest of the buffer would fail again at the end of the program: it is discarded.
         with suppress(OSError, io.UnsupportedOperation):
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def say_json(document: str | Any) -> None:
-    """Print one JSON document, in UTF-8 as JSON must be; text counts as JSON already."""
+    """Print one JSON document in UTF-8; text is printed as it is."""
     if hasattr(sys.stdout, "reconfigure"):
         sys.stdout.reconfigure(encoding="utf-8")
     text = (

@@ -1,4 +1,4 @@
-"""A campaign drafted from its recordings: what they tell is written down, what they do not is marked as a gap."""
+"""Drafting of a campaign file from recordings: drops are detected, sensors and loads recognised, gaps left to fill in."""
 
 from sprung.drafting.detected_drop import DetectedDrop, wheel_score
 from sprung.drafting.detection import Detection, detect_drops

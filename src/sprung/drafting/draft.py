@@ -1,4 +1,4 @@
-"""The composition: every recording looked at, all of them taken together, the campaign file written out."""
+"""Drafting of a campaign: every recording is examined, all of them are combined, the campaign file is written."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from itertools import accumulate
 from pathlib import Path
 
 from sprung.campaign import CAMPAIGN_FILE
-from sprung.drafting.gather import gather
-from sprung.drafting.look import Look, look
+from sprung.drafting.combination import combine_recordings
+from sprung.drafting.examination import ExaminedRecording, examine_recording
 from sprung.drafting.records import DraftCampaign
 from sprung.drafting.single_channel import join_single_channel_loggers
 from sprung.drafting.text import campaign_text, missing_in
@@ -21,7 +21,7 @@ _NO_RECORDINGS = frozenset(
     (".toml", ".json", ".npz", ".html", ".htm", ".py", ".md", ".pdf", ".png", ".jpg", ".jpeg", ".svg", ".doc", ".docx", ".ppt",
      ".pptx", ".zip", ".mp4", ".mov", ".ini", ".log", ".db")
 )  # fmt: skip
-"""Endings of what lies about in a folder of recordings, and is passed over without a word."""
+"""File name extensions in a folder of recordings that are ignored."""
 
 
 def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwrite: bool = False) -> DraftCampaign:
@@ -48,14 +48,14 @@ def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwr
         reason for each of them.
     """
     folder = Path(folder)
-    _refuse(folder, overwrite)
+    _require_no_campaign(folder, overwrite)
     names = tuple(_recordings(folder))
     if not names:
         do = "Put the recordings there, in any format that sprung reads."
         raise InputError([Problem(str(folder), "no recordings", "the recordings of drops", do)])
     sizes = [max((folder / name).stat().st_size, 1) for name in names]
     before = [done / sum(sizes) for done in accumulate(sizes, initial=0)]
-    looks: list[Look] = []
+    recordings: list[ExaminedRecording] = []
     unreadable: dict[str, tuple[Problem, ...]] = {}
     for i, name in enumerate(names):
 
@@ -65,15 +65,17 @@ def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwr
 
         tell(0.0)
         try:
-            looks.append(look(folder, name, tell))
+            recordings.append(examine_recording(folder, name, tell))
         except InputError as error:
             unreadable[name] = error.problems
-    looks = list(join_single_channel_loggers(looks, folder))
-    if not any(one.drops for one in looks):
-        raise InputError([*_no_drops(looks), *(problem for problems in unreadable.values() for problem in problems)])
-    sensors, drops, still = gather(looks)
-    files = [one.file for one in looks]
-    held = {one.file.name: {channel.name for channel in one.channels} for one in looks}
+    recordings = list(join_single_channel_loggers(recordings, folder))
+    if not any(recording.drops for recording in recordings):
+        raise InputError(
+            [*_no_drops(recordings), *(problem for problems in unreadable.values() for problem in problems)]
+        )
+    sensors, drops, still = combine_recordings(recordings)
+    files = [recording.file for recording in recordings]
+    held = {recording.file.name: {channel.name for channel in recording.channels} for recording in recordings}
     made = DraftCampaign(
         folder=folder,
         name=folder.absolute().name or "vehicle",
@@ -92,19 +94,19 @@ def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwr
     return replace(made, text=text, missing=missing_in(text))
 
 
-def _refuse(folder: Path, overwrite: bool) -> None:
+def _require_no_campaign(folder: Path, overwrite: bool) -> None:
     if not folder.is_dir():
         found = "a file" if folder.exists() else "no such folder"
         do = "Give the folder that the recordings are in."
         raise InputError([Problem(str(folder), found, "a folder with recordings", do)])
     path = folder / CAMPAIGN_FILE
     if path.exists() and not overwrite:
-        do = f"Go on with it (sprung check {path}), or move it away to have it drafted anew."
+        do = f"Continue with it (sprung check {path}), or remove it and draft it anew."
         raise InputError([Problem(str(path), "a campaign file", "a folder that has none yet", do)])
 
 
 def _recordings(folder: Path) -> Iterator[str]:
-    """Give the files that may be recordings, in the order of their names; hidden ones and results are none."""
+    """Yield the files that may be recordings, in the order of their names; without hidden files and results."""
     found = []
     for path in folder.rglob("*"):
         relative = path.relative_to(folder)
@@ -122,14 +124,14 @@ def _recordings(folder: Path) -> Iterator[str]:
             yield relative.as_posix()
 
 
-def _no_drops(looks: Sequence[Look]) -> Iterator[Problem]:
-    for one in looks:
-        why = one.file.rejected[0].why if one.file.rejected else "nothing in it moves"
+def _no_drops(recordings: Sequence[ExaminedRecording]) -> Iterator[Problem]:
+    for recording in recordings:
+        why = recording.file.rejected[0].why if recording.file.rejected else "it shows no motion"
         found = f"no drop: {why}"
         expected = "at least one drop, with some rest before it"
         yield Problem(
-            one.file.name,
+            recording.file.name,
             found,
             expected,
-            "Look whether it is the right recording, and name its unit if it has another.",
+            "Check that it is the right recording, and state its unit if it has another.",
         )

@@ -1,4 +1,4 @@
-"""What names of channels and files tell, in English, in German and in the codes of ISO-MME."""
+"""Names of channels and files: wheels, parts, axes and loads in English, in German and in the codes of ISO-MME."""
 
 from __future__ import annotations
 
@@ -68,17 +68,17 @@ def tokens(text: str) -> list[str]:
 
 
 def _words(text: str) -> list[str]:
-    """Give the tokens, those that are glued together taken apart: ``wheelfl`` is wheel and fl."""
+    """Return the tokens, compound ones split: ``wheelfl`` is wheel and fl."""
     words: list[str] = []
     for token in tokens(text):
         glued = re.fullmatch(rf"({'|'.join((*_WHEEL, *_BODY, 'acc', 'a'))})?({'|'.join(_CODES)})([xyz])?", token)
         words += [part for part in glued.groups() if part] if glued else [token]
-    pairs = [f"{one}{two}" for one, two in itertools.pairwise(words) if len(one) == len(two) == 1]
+    pairs = [f"{first}{second}" for first, second in itertools.pairwise(words) if len(first) == len(second) == 1]
     return words + [pair for pair in pairs if pair in _CODES]
 
 
 def station_named(channel: str) -> Wheel | None:
-    """Tell which wheel, or which corner of the body, a channel's name means.
+    """Return the wheel, or the corner of the body, that a channel's name states.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _sides(words: list[str]) -> set[str]:
 
 
 def part_named(channel: str) -> Literal["body", "wheel"] | None:
-    """Tell whether a channel's name means the body or a wheel; None where it says nothing, or both.
+    """Return whether a channel's name states the body or a wheel; None where it states neither, or both.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def part_named(channel: str) -> Literal["body", "wheel"] | None:
 
 
 def axis_named(channel: str, others: tuple[str, ...]) -> Literal["x", "y", "z"] | None:
-    """Tell along which axis of its own a sensor measures, where the name says so and its neighbours bear it out.
+    """Return the axis along which a sensor measures, where its name states one and those of its neighbours agree.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def axis_named(channel: str, others: tuple[str, ...]) -> Literal["x", "y", "z"] 
 
 
 def load_named(path: str) -> str | None:
-    """Tell a load from a recording's name, or else from its folders': ``empty``, or what the name calls it.
+    """Return the load that a recording's name states, or else its folders': ``empty``, or its name.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def load_named(path: str) -> str | None:
 
 
 def wheels_named(path: str) -> tuple[Wheel, ...]:
-    """Tell from a recording's name which wheels were dropped; none where it does not say.
+    """Return the dropped wheels that a recording's name states; none where it states none.
 
     Parameters
     ----------

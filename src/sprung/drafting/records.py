@@ -1,4 +1,4 @@
-"""What a draft holds."""
+"""Records of a drafted campaign."""
 
 from __future__ import annotations
 
@@ -20,30 +20,30 @@ from sprung.vehicle import Wheel
 
 @dataclass(frozen=True)
 class DraftSensor:
-    """A sensor, as far as its readings and its name tell.
+    """A sensor, as far as its readings and its name show.
 
     Attributes
     ----------
     channel
         Its name.
     on
-        The body, a wheel station, or just "wheel" where nobody knows which.
+        The body, a wheel station, or "wheel" where the station is not known.
     corner
-        The corner of the body that its name means.
+        Corner of the body at which it sits.
     unit
-        In which it reads; None where nothing tells.
-    written
-        The unit that the files name.
+        Its unit; None where it is not known.
+    stated_unit
+        Unit that the files state.
     direction
-        Which way its positive reading points.
+        Direction of a positive reading.
     coupling
-        DC where it feels gravity at rest, AC where it reads nothing.
+        DC where it reads gravity at rest, AC where it reads zero.
     full_scale
         A reading at which it stays for some samples, in its unit.
     notes
-        What was found and what was concluded from it, in words.
+        Findings and conclusions, in words.
     logger
-        The part of its recordings' names that tells its logger, where several loggers' channels have one name; the channel
+        The part of its recordings' names that states its logger, where several loggers' channels have one name; the channel
         then begins with it.
     """
 
@@ -51,7 +51,7 @@ class DraftSensor:
     on: SensorPlace
     corner: Wheel | None
     unit: str | None
-    written: str | None
+    stated_unit: str | None
     direction: Literal["up", "down"]
     coupling: Literal["DC", "AC"]
     full_scale: float | None
@@ -70,15 +70,15 @@ class DraftDrop:
     window
         s on the file's clock, where the recording holds more than this drop.
     load
-        Name of the load; None where nothing tells.
+        Name of the load; None where it is not known.
     wheels
-        Which fell; none where nothing tells.
+        Which wheels fell; none where it is not known.
     found
-        What was seen of it.
+        The drop as detected.
     notes
-        What was found and what was concluded from it, in words.
+        Findings and conclusions, in words.
     proposed
-        Whether its load is taken from how the vehicle swings, and not from a name.
+        Whether its load follows from the periods of the body, not from a name.
     """
 
     files: tuple[str, ...]
@@ -108,13 +108,13 @@ class DraftFile:
     start, end
         s on its clock.
     drops
-        How many drops were found in it.
+        Number of drops in it.
     rejected
         The largest of the other events, and why they are no drops.
     events
         How many other events there were.
     left_out
-        Channels that are no vertical accelerations, and why.
+        Channels that are no vertical accelerations, each with the reason.
     """
 
     name: str
@@ -139,15 +139,15 @@ class DraftCampaign:
     name
         Of the vehicle, after the folder.
     sensors, drops
-        What was found.
+        Of all recordings.
     files
         The recordings that were read.
     unreadable
-        Those that were not, and why.
+        Those that could not be read, each with the reason.
     text
         The campaign file.
     missing
-        Where its gaps are, and what is to be written there.
+        Places to be completed, and what to write there.
     """
 
     folder: Path
@@ -192,7 +192,7 @@ class DraftCampaign:
         return self.path
 
     def document(self) -> dict[str, Any]:
-        """Give everything as one JSON document."""
+        """Return the draft as one JSON document."""
         return {
             "campaign": str(self.path),
             "sensors": [
@@ -233,7 +233,7 @@ class DraftCampaign:
                     "end": _rounded(file.end),
                     "drops": file.drops,
                     "events": file.events,
-                    "refused": [{"time": _rounded(one.time), "why": one.why} for one in file.rejected],
+                    "refused": [{"time": _rounded(event.time), "why": event.why} for event in file.rejected],
                     "left_out": dict(file.left_out),
                 }
                 for file in self.files

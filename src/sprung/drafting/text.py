@@ -1,4 +1,4 @@
-"""The text of a drafted campaign file: the keys in their usual order, what was found as comments, what is missing as gaps."""
+"""Text of a drafted campaign file: keys in their usual order, findings as comments, placeholders for what is missing."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _MASS = placeholder(
 )
 _POSITION = placeholder("[x, y, z], m: forward of the front axle, left of the centreline, above the ground")
 _STATION = placeholder("fl, fr, rl or rr: the wheel it sits on")
-_UNIT = placeholder("g or m/s^2: its unit, which neither the file nor gravity tells")
+_UNIT = placeholder("g or m/s^2: its unit, which neither the file nor gravity at rest shows")
 _HIGH_PASS = placeholder(
-    "Hz, lower limit of the sensor or its amplifier; remove the line if it has none, or nobody knows it"
+    "Hz, lower limit of the sensor or its amplifier; remove the line if it has none, or it is not known"
 )
 _ITEMS = placeholder("[ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece of this load")
 _WHICH = placeholder(
@@ -57,12 +57,12 @@ def campaign_text(draft: DraftCampaign) -> str:
     Parameters
     ----------
     draft
-        What it is to say.
+        The draft.
 
     Returns
     -------
     str
-        TOML, with a gap for everything that the recordings do not tell.
+        TOML, with a placeholder for everything that the recordings do not show.
     """
     sections = [
         SCHEMA_LINE + _HEAD,
@@ -79,7 +79,7 @@ def campaign_text(draft: DraftCampaign) -> str:
 
 
 def missing_in(text: str) -> tuple[tuple[str, str], ...]:
-    """Give the gaps of a campaign file: where, and what is to be written there.
+    """Return the placeholders of a campaign file: the place, and what to write there.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def _sensor(sensor: DraftSensor) -> str:
         lines.append(_key("on", _STATION if sensor.on == "wheel" else sensor.on))
     if sensor.unit is None:
         lines.append(_key("unit", _UNIT))
-    elif sensor.unit != sensor.written:
+    elif sensor.unit != sensor.stated_unit:
         lines.append(_key("unit", sensor.unit))
     if sensor.direction == "down":
         lines.append(_key("direction", "down"))
@@ -176,7 +176,7 @@ def _drop(drop: DraftDrop) -> str:
 def _without_drop(draft: DraftCampaign) -> Iterator[str]:
     for file in draft.files:
         if not file.drops:
-            why = file.rejected[0].why if file.rejected else "nothing in it moves"
+            why = file.rejected[0].why if file.rejected else "it shows no motion"
             yield _comment(f"No drop was found in {file.name}: {why}.")
 
 

@@ -20,6 +20,7 @@ from sprung.estimation.projected_response import ExponentialSums, ProjectedRespo
 from sprung.estimation.records import RecordBatch, batch_records, in_order
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Rows
+from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -249,10 +250,15 @@ class ClosedFormAt:
         """{X, Ẋ} of a drop from samples before its first to samples from it on, SI, shape (state, time)."""
         load, step = self._load(drop)
         poles, shapes = self.modes.poles[load], self.modes.right[load]
-        exponent = poles[:, None] * np.arange(-before, after) * step
+        amplitudes = self.modes.left[load] @ self.states[drop]
+        # A pole and its conjugate add the same real part twice.
+        upper = poles.imag >= 0
+        coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
+        motion = np.empty((len(shapes), before + after))
+        motion[:, before:] = _real_part(coefficients, exponentials(poles[upper] * step, after))
+        exponent = np.outer(np.arange(-before, 0) * step, poles[upper])
         powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
-        amplitudes = np.linalg.solve(shapes, self.states[drop].astype(np.complex128))
-        motion: Real = ((shapes * amplitudes) @ powers).real
+        motion[:, :before] = _real_part(coefficients, powers)
         return motion
 
     def _load(self, drop: int) -> tuple[int, float]:
@@ -314,3 +320,9 @@ class ClosedFormAt:
         )
         modes = self.modes
         return modes.poles[load], modes.left[load], modes.shapes[load], self._derivatives[batch][group]
+
+
+def _real_part(coefficients: Complex, waves: Complex) -> Real:
+    """Return the real part of coefficients (row, mode) times waves (time, mode), as a product of pairs of real numbers."""
+    product: Real = np.ascontiguousarray(coefficients.conj()).view(float) @ np.ascontiguousarray(waves).view(float).T
+    return product

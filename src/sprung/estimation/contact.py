@@ -2,7 +2,7 @@
 
 Before a fit, the accelerometers say roughly when the last tyre has come down for good. A fitted vehicle says it exactly:
 carried backward and forward from its state at the start of a decay, it shows how far each tyre is compressed, and free
-vibration begins where the last one last touched. What lies between is where wheel hop is largest and tells most.
+vibration begins where the last one last touched. The samples between have the largest wheel hop, and most information.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""From a fit to what may be said: parameters, what is left when the scale is unknown, and what cannot be told."""
+"""From a fit to estimates: parameters, ratios where the absolute scale is unknown, and unidentifiable combinations."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Unidentifiable:
     parameters
         Which parameters move together.
     text
-        What cannot be told, and what would.
+        Which combination it is, and what would determine it.
     """
 
     parameters: tuple[str, ...]
@@ -51,7 +51,7 @@ class Unidentifiable:
 @shown
 @dataclass(frozen=True)
 class Scale:
-    """The absolute scale, and what is left without it.
+    """The absolute scale, and ratios that do not need it.
 
     Attributes
     ----------
@@ -85,14 +85,14 @@ class Correlation:
 @shown
 @dataclass(frozen=True)
 class Estimates:
-    """Everything that may be said about the parameters.
+    """The estimates of the parameters.
 
     Attributes
     ----------
     parameters
         By name.
     scale
-        The absolute scale, and what is left without it.
+        The absolute scale, and ratios that do not need it.
     unidentifiable
         Combinations that the data do not determine.
     correlation
@@ -106,7 +106,7 @@ class Estimates:
 
 
 def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimates:
-    """Say what the fit allows to be said.
+    """Return the estimates of all parameters, their correlation, and the combinations that are unidentifiable.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimat
 
 
 def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> Estimate:
-    """Say what the fit says of one quantity.
+    """Return the estimate of one quantity.
 
     Parameters
     ----------

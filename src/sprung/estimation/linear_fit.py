@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.overdispersion import von_neumann_ratio
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import (
     CLOSE_BY,
@@ -29,7 +28,7 @@ from sprung.estimation.score_test import score_test
 from sprung.estimation.start_ranking import rank_starts
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.optimisation import Maximum
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, pool_moments
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
@@ -42,8 +41,8 @@ NEAR = 0.01
 STARTS = 3
 """How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
 
-_WHITE = 1.2
-"""Residual variance over that of white noise with the same differences, up to which nothing but noise is left."""
+_WHITE = 0.15
+"""Correlation of neighbouring residuals up to which nothing but noise is left; a motion makes it nearly one."""
 
 _WELL_KNOWN = 1e4
 """Information of a logarithm from which a direction has no second optimum nearby: one percent of uncertainty."""
@@ -172,7 +171,8 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     """Whether the residuals of every channel are white noise, or rounding."""
     variance = fit.noise**2
     rounding = variance < 2 * fit.problem.least_variance
-    return bool(np.all(rounding | (von_neumann_ratio(fit.residuals) < _WHITE)))
+    total, neighbours, _ = pool_moments(fit.residuals)
+    return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 
 def _costs_as_they_are(problem: EstimationProblem, objective: ClosedFormObjective, starts: Sequence[Real]) -> Real:

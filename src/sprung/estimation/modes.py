@@ -1,4 +1,4 @@
-"""Modes of the identified vehicle, with the uncertainty that its parameters hand down to them."""
+"""Modes of the identified vehicle, with the uncertainty that follows from that of its parameters."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ Real = NDArray[np.float64]
 UNNAMED = "unnamed"
 """What a mode is called whose shape is like no template."""
 
-_TOLD = 0.5
-"""Part of itself by which a value may be uncertain, to count as told."""
+_DETERMINED = 0.5
+"""Relative standard uncertainty from which a value counts as not determined."""
 
 
 @shown
@@ -44,7 +44,7 @@ class ModeEstimate:
         -re/|pole|, dimensionless; 1 for a real pole.
     motion
         How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
-        imaginary part of each, the largest 1; empty where an older sprung wrote the result, or the records alone told the mode.
+        imaginary part of each, the largest 1; empty in results of older versions, or where the mode is from the records alone.
     paper_name
         What Table 3 of the paper calls it; None where it has no such mode, or an older sprung wrote the result.
     """
@@ -61,7 +61,7 @@ class ModeEstimate:
 
 
 def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
-    """Give the modes of one load, lowest frequency first.
+    """Return the modes of one load with their uncertainties, lowest frequency first.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def _estimate(
     def std(direction: Real, value: float, values: Real) -> float | None:
         near = fit.spread(direction, value)
         far = float(np.abs(values - value).max(initial=0.0))
-        return None if near is None or max(near, far) > _TOLD * abs(value) else max(near, far)
+        return None if near is None or max(near, far) > _DETERMINED * abs(value) else max(near, far)
 
     return ModeEstimate(
         name=mode.name or UNNAMED,

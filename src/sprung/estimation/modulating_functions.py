@@ -12,6 +12,7 @@ start that is nearly there.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +56,7 @@ def modulating_function_estimate(
     sensors
         The sensors.
     size
-        Size of the vehicle; its mass is used where it was weighed, or where no load tells the scale.
+        Size of the vehicle; its mass is used where it was weighed, or where no load determines the scale.
 
     Returns
     -------
@@ -73,13 +74,10 @@ def modulating_function_estimate(
     records = [(batch, _terms(moved[batch.load[0]], keys, wheelbase)) for batch in _decimated(batches, rows)]
     motions = [(*_coordinates(batch, rows), float(batch.step[0]), terms) for batch, terms in records]
     normal = np.zeros((len(keys), len(keys)))
-    for decay_rate, frequencies in _WINDOWS:
-        functions: dict[tuple[int, float], tuple[Real, Real, Real]] = {}
+    for window in range(len(_WINDOWS)):
         for accelerations, noise, step, terms in motions:
-            kind = accelerations.shape[2], step
-            if kind not in functions:
-                functions[kind] = _modulating_functions(*kind, decay_rate, frequencies)
-            normal += _normal_equations(accelerations, noise, functions[kind], terms)
+            functions = _modulating_functions(accelerations.shape[2], step, window)
+            normal += _normal_equations(accelerations, noise, functions, terms)
     products = _products(normal, keys, (0, 0, sprung))
     if products is None:
         return None
@@ -150,7 +148,8 @@ def _coordinates(batch: RecordBatch, rows: Real) -> tuple[Real, Real]:
     return to_coordinates @ records, noise
 
 
-def _modulating_functions(samples: int, step: float, decay_rate: float, frequencies: Real) -> tuple[Real, Real, Real]:
+@lru_cache(maxsize=6)  # a campaign has records of one or two kinds, and is fitted more than once
+def _modulating_functions(samples: int, step: float, window: int) -> tuple[Real, Real, Real]:
     """Return p₃, -p₂ and p₁ of ψ = u⁵(1-u)⁵ e^{-st}, u running from 0 to 1.
 
     Returns
@@ -160,6 +159,7 @@ def _modulating_functions(samples: int, step: float, decay_rate: float, frequenc
     overlap
         Real part of their inner products, shape (function, 3, 3).
     """
+    decay_rate, frequencies = _WINDOWS[window]
     s = np.asarray(decay_rate + 2j * np.pi * frequencies, dtype=np.complex128)
     duration = (samples - 1) * step
     powers = np.linspace(0.0, 1.0, samples) ** np.arange(_BUMP.shape[1])[:, None]

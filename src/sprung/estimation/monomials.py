@@ -27,8 +27,8 @@ Key = tuple[int, int, int]
 """A product of parameters: their positions in the list of names counted from 1, in order, filled up with 0 for 1."""
 
 
-_NOTHING = 1e-100
-"""Sums below this tell nothing, in any unit."""
+_ZERO = 1e-100
+"""Sums below this are zero, in any unit."""
 
 
 def expand(model: LinearModel, law: LinearLaw) -> dict[Key, Real]:
@@ -70,7 +70,7 @@ def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], n
     Returns
     -------
     ndarray
-        Shape (parameter,); NaN where no product tells of one.
+        Shape (parameter,); NaN for one that no product determines.
     """
     values = np.full(len(names), np.nan)
     for (one, two, three), value in products.items():
@@ -87,7 +87,7 @@ def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], n
                 if length in lengths and np.isfinite(values[rate]):
                     sums[lengths.index(length)] += values[rate] * term
         largest = float(np.abs(sums).max(initial=0.0))
-        size = largest if largest > _NOTHING else 1.0
+        size = largest if largest > _ZERO else 1.0
         design.append(sums.reshape(len(lengths), -1).T / size)
         observed.append(sum((products[key] * term for key, term in pairs.items()), np.zeros((7, 7))).ravel() / size)
     stacked = np.vstack(design)

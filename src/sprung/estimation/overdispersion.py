@@ -1,6 +1,6 @@
-"""How much less the records tell than as many independent samples of the right model would.
+"""Overdispersion: by how much variances exceed those of independent samples of the right model.
 
-Two things show it without any other model: residuals that are coloured, and drops that contradict each other.
+Two statistics show it without any other model: the autocorrelation of residuals, and the disagreement of drops.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ _SPAN = 0.25
 _SIGNIFICANT = 3.0
 """Standard errors by which an excess must be real before it counts."""
 
-_SEEN = 1e-9
-"""Information, as a part of the largest, below which one drop says nothing about a direction."""
+_DETERMINED = 1e-9
+"""Information, as a part of the largest, below which one drop does not determine a direction."""
 
 
 def autocorrelation_inflation(
@@ -29,7 +29,7 @@ def autocorrelation_inflation(
     counted: Real | float = 1.0,
     least: Real | float = 0.0,
 ) -> Real:
-    """Estimate by how much the variance of a mean of residuals exceeds that of white ones.
+    """Return the factor by which the autocorrelation of residuals inflates the variance of their mean.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def autocorrelation_inflation(
         Part of the samples that the fit counts, shape (channel,) or one for all; fewer than there are where some were
         interpolated.
     least
-        Variance below which residuals are rounding, of whose colour nothing follows, (m/s²)²; shape (channel,) or one for
+        Variance below which residuals are rounding, whose autocorrelation means nothing, (m/s²)²; shape (channel,) or one for
         all.
 
     Returns
@@ -69,27 +69,8 @@ def autocorrelation_inflation(
     return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
 
 
-def von_neumann_ratio(residuals: Sequence[Real]) -> Real:
-    """Return the variance of residuals over that of white noise with the same differences.
-
-    Parameters
-    ----------
-    residuals
-        One record for each drop, shape (channel, time), NaN in channels that are left out.
-
-    Returns
-    -------
-    ndarray
-        About 1 for white noise, much more where a motion is left, 0 for channels that are left out; shape (channel,).
-        From second differences, which a slow drift does not change (J. von Neumann, Ann. Math. Stat. 12 (1941) 367).
-    """
-    squares = np.nansum([np.mean(record**2, axis=1) for record in residuals], axis=0)
-    differences = np.nansum([np.mean(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in residuals], axis=0) / 6
-    return np.asarray(squares / np.maximum(differences, np.finfo(float).tiny))
-
-
 def birge_ratio(scores: Real, informations: Real) -> float:
-    """Estimate by how much the drops differ from each other beyond their noise.
+    """Return Birge's ratio, squared: by how much the drops differ from each other beyond their noise.
 
     Parameters
     ----------
@@ -118,7 +99,7 @@ def birge_ratio(scores: Real, informations: Real) -> float:
 
 
 def drop_corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np.int64]]:
-    """Give each drop's own correction to the joint estimate, in units of its own uncertainty, squared and added up.
+    """Return each drop's own correction to the joint estimate, in units of its own uncertainty, squared and summed.
 
     Parameters
     ----------
@@ -130,12 +111,12 @@ def drop_corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np
     squares
         Shape (drop,).
     directions
-        In how many directions each drop says anything, shape (drop,).
+        In how many directions each drop has information, shape (drop,).
     """
     squares, directions = np.zeros(len(scores)), np.zeros(len(scores), dtype=np.int64)
     for drop, (score, information) in enumerate(zip(scores, informations, strict=True)):
         eigenvalues, vectors = np.linalg.eigh(information)
-        seen = eigenvalues > _SEEN * eigenvalues.max(initial=0.0)
-        squares[drop] = np.sum((vectors.T @ score)[seen] ** 2 / eigenvalues[seen])
-        directions[drop] = seen.sum()
+        determined = eigenvalues > _DETERMINED * eigenvalues.max(initial=0.0)
+        squares[drop] = np.sum((vectors.T @ score)[determined] ** 2 / eigenvalues[determined])
+        directions[drop] = determined.sum()
     return squares, directions

@@ -16,7 +16,7 @@ Real = NDArray[np.float64]
 
 
 _FINEST = 1e-6
-"""Smallest relative uncertainty that a statement is taken to have: beside a finer one, rounding would hide the records."""
+"""Smallest relative uncertainty of a statement: with a finer one, rounding would hide the records."""
 
 
 _TRAVEL = 0.03
@@ -93,11 +93,11 @@ class PriorsAndConstraints:
         """Names, values and scales of the exact statements, and of the others."""
         chosen = {}
         for exact in (True, False):
-            those = {name: known for name, known in self.statements.items() if known.is_exact == exact}
-            values = np.array([known.value for known in those.values()])
-            std = np.array([known.std for known in those.values()])
+            stated = {name: known for name, known in self.statements.items() if known.is_exact == exact}
+            values = np.array([known.value for known in stated.values()])
+            std = np.array([known.std for known in stated.values()])
             sizes = np.abs(values) if exact else np.maximum(std, _FINEST * np.abs(values))
-            chosen[exact] = tuple(those), values, sizes
+            chosen[exact] = tuple(stated), values, sizes
         return chosen
 
     def _at(self, u: Real, exact: bool) -> tuple[Real, Real]:

@@ -25,7 +25,7 @@ RANK = 1e-12
 """Information, as a part of the largest, that is nothing but rounding."""
 
 NO_INFORMATION = 1.0
-"""Fisher information of a logarithm below which its value cannot be told from e times it."""
+"""Fisher information of a logarithm below which its value is not determined to a factor of e."""
 
 CONVERGED = 1e-8
 """Expected gain in log-likelihood at which a fit has converged: the parameters are within 1e-4 of a standard error."""

@@ -315,8 +315,8 @@ class ProjectedResponse:
         for record, own in enumerate(derivatives):
             across = self._across(record, own, driven[record : record + 1])[0]
             alone = clocks.covariance[record]
-            carried = alone @ clocks.response(record, own, driven[record], across)
-            yield alone + carried @ covariance @ carried.T
+            projected = alone @ clocks.response(record, own, driven[record], across)
+            yield alone + projected @ covariance @ projected.T
 
     def noise_bias_of_information(self, derivatives: Complex) -> Real:
         """Information that noise alone adds on average, shape (parameter, parameter).

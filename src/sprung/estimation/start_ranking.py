@@ -13,7 +13,7 @@ from sprung.vibration import exponential_gram
 Real = NDArray[np.float64]
 
 _RATE = 120.0
-"""Samples per second that are enough to tell vehicles apart: an exponential is one however sparsely it is sampled."""
+"""Samples per second that are enough to rank vehicles: an exponential is one however sparsely it is sampled."""
 
 _LONGEST, _MOST = 10.0, 8  # s of each decay, and decays
 

@@ -1,4 +1,4 @@
-"""Where the fit starts: vehicles of every usual kind, tried on the records, when nobody has told us which it is."""
+"""Start values: a grid of usual vehicles of the size that is known or that the sensors span."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 a
 
 
 class Mounting(NamedTuple):
-    """How an engine may be mounted, before a fit says so.
+    """How an engine may be mounted, before the fit.
 
     Attributes
     ----------
@@ -45,17 +45,17 @@ class Mounting(NamedTuple):
     place: float = 0.0
 
     def engine(self, mass: float) -> dict[str, float]:
-        """Give the parameters of an engine of a mass in kg, SI, by name."""
+        """Return the parameters of an engine of a mass in kg, SI, by name."""
         omega = 2 * np.pi * self.frequency
         return {"m_e": mass, "k_e": mass * omega**2, "c_e": 2 * _MOUNT_DAMPING * mass * omega, "x_e": self.place}
 
 
 USUAL_MOUNTING = Mounting()
-"""The one from which a start begins where nothing says another."""
+"""The mounting of a start where no other is given."""
 
 
 def mountings_of(wheelbase: float) -> list[Mounting]:
-    """Give how engines are usually mounted: above either axle.
+    """Return the usual mountings of engines: above either axle.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def mountings_of(wheelbase: float) -> list[Mounting]:
 
 
 class VehicleSize(NamedTuple):
-    """Size of a vehicle, as what is known and the sensors' places tell it.
+    """Size of a vehicle, as far as it is known or follows from the sensors' positions.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class VehicleSize(NamedTuple):
     mass
         Of the whole vehicle, kg.
     weighed
-        Whether somebody knows it; a usual one for the wheelbase otherwise.
+        Whether the mass is known; a usual one for the wheelbase otherwise.
     half_track
         m.
     """
@@ -94,7 +94,7 @@ class VehicleSize(NamedTuple):
 
     @classmethod
     def of(cls, known: Mapping[str, KnownValue], sensors: Sequence[Sensor]) -> VehicleSize:
-        """Gather what is known beforehand, the wheelbase included; the rest is taken from the sensors' places."""
+        """Return the size from what is known beforehand, the rest from the sensors' positions."""
         value = {name: one.value for name, one in known.items()}
         places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
         wheelbase, front_share = _length(value, places)
@@ -109,14 +109,12 @@ class VehicleSize(NamedTuple):
         return self.mass * (1 - 4 * _WHEEL_SHARE)
 
 
-def start_grid(
-    outline: VehicleSize, known: Mapping[str, KnownValue], engine: bool = False
-) -> Iterator[dict[str, float]]:
-    """Make vehicles of every usual kind, of one size.
+def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool = False) -> Iterator[dict[str, float]]:
+    """Yield usual vehicles of one size.
 
     Parameters
     ----------
-    outline
+    size
         The size.
     known
         What was measured beforehand.
@@ -128,9 +126,9 @@ def start_grid(
     dict
         Values, SI, of every parameter of every linear model; the known ones hold.
     """
-    wheelbase, front_share, half_track = outline.wheelbase, outline.front_share, outline.half_track
+    wheelbase, front_share, half_track = size.wheelbase, size.front_share, size.half_track
     a, b = (1 - front_share) * wheelbase, front_share * wheelbase
-    wheel, sprung_mass = _WHEEL_SHARE * outline.mass, outline.sprung_mass
+    wheel, sprung_mass = _WHEEL_SHARE * size.mass, size.sprung_mass
     for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
         values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
         for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
@@ -150,7 +148,7 @@ def start_grid(
 
 
 def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:
-    """Give wheelbase and the front axle's share of the weight."""
+    """Return wheelbase and the front axle's share of the weight."""
     wheelbase = value.get("wheelbase")
     if wheelbase is None and "a" in value and "b" in value:
         wheelbase = value["a"] + value["b"]

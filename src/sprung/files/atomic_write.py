@@ -17,17 +17,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sprung.errors import InputError
-from sprung.files.interrupts import interrupts_held
+from sprung.files.interrupts import hold_interrupts
 from sprung.files.ownership import (
     MANIFEST,
+    check_overwriting,
     checksum,
     is_unchanged,
     manifest_text,
     read_manifest,
-    refuse_overwriting,
-    unwritable,
+    unwritable_folder,
 )
-from sprung.files.recovery import JOURNAL, hidden, new_token, recover
+from sprung.files.recovery import JOURNAL, new_token, recover, temporary_path
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -40,15 +40,15 @@ def atomic_write(
     overwrite: bool = False,
     obsolete: Collection[str] = (),
 ) -> None:
-    """Write several files that belong together: all of them, or none, leaving what was there as it was.
+    """Write several files: all of them, or none, with the previous files unchanged.
 
     Parameters
     ----------
     folder
-        Where to; made if it does not exist.
+        Folder to write to; created if it does not exist.
     files
-        Content by name, relative to the folder. The file by which others find the rest goes last: it never stands beside
-        files that do not belong to it.
+        Content by name, relative to the folder. The file that refers to the others comes last: it never stands beside files
+        of another write.
     overwrite
         Whether files that sprung did not write, or that were changed since, may be replaced.
     obsolete
@@ -64,42 +64,44 @@ def atomic_write(
     """
     folder = Path(folder)
     token = new_token()
-    places = [_Place.of(folder, name, token) for name in files]
+    targets = [_FileTarget.of(folder, name, token) for name in files]
     with suppress(OSError):
-        recover(folder, {place.target.parent for place in places})
+        recover(folder, {place.target.parent for place in targets})
     if not overwrite:
-        refuse_overwriting(folder, files)
-    stale = [_Place.of(folder, name, token) for name in obsolete if name not in files and is_unchanged(folder, name)]
-    made = [path for place in places for path in _missing(place.target.parent)]
-    transaction = _Transaction(folder, token, places, stale)
+        check_overwriting(folder, files)
+    obsolete_targets = [
+        _FileTarget.of(folder, name, token) for name in obsolete if name not in files and is_unchanged(folder, name)
+    ]
+    made = [path for place in targets for path in _missing(place.target.parent)]
+    transaction = _Transaction(folder, token, targets, obsolete_targets)
     try:
-        for place, content in zip(places, files.values(), strict=True):
+        for place, content in zip(targets, files.values(), strict=True):
             place.prepare(content)
-        with interrupts_held():
+        with hold_interrupts():
             transaction.commit({name: checksum(content) for name, content in files.items()})
     except BaseException as error:
-        with interrupts_held():
+        with hold_interrupts():
             transaction.undo()
             _remove_empty(made)
         if isinstance(error, OSError):
-            raise InputError([unwritable(folder, error.strerror or str(error))]) from error
+            raise InputError([unwritable_folder(folder, error.strerror or str(error))]) from error
         raise
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
-    """Where one file goes, and its two temporary names beside it: of the new content, and of what was there."""
+class _FileTarget:
+    """Path of a file to write, and two temporary paths beside it: of the new content, and of the old."""
 
     target: Path
     new: Path
     old: Path
 
     @classmethod
-    def of(cls, folder: Path, name: str, token: str) -> _Place:
+    def of(cls, folder: Path, name: str, token: str) -> _FileTarget:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             raise ValueError(f"'{name}' leads out of the folder it should be written to")
         target = folder / name
-        return cls(target, hidden(target, token, "new"), hidden(target, token, "old"))
+        return cls(target, temporary_path(target, token, "new"), temporary_path(target, token, "old"))
 
     def prepare(self, content: bytes) -> None:
         if self.target.is_dir():
@@ -107,22 +109,22 @@ class _Place:
         self.target.parent.mkdir(parents=True, exist_ok=True)
         _write_through(self.new, content)
 
-    def put_aside(self) -> None:
+    def set_aside(self) -> None:
         if self.target.exists():
             self.target.replace(self.old)
 
-    def take(self) -> None:
+    def install(self) -> None:
         self.new.replace(self.target)
 
 
 @dataclass(frozen=True, slots=True)
 class _Transaction:
-    """New files that are prepared, and old ones that they make obsolete."""
+    """New files that are prepared, and old ones to be removed."""
 
     folder: Path
     token: str
-    places: Sequence[_Place]
-    stale: Sequence[_Place]
+    targets: Sequence[_FileTarget]
+    obsolete_targets: Sequence[_FileTarget]
 
     @property
     def journal(self) -> Path:
@@ -130,7 +132,7 @@ class _Transaction:
 
     def commit(self, checksums: Mapping[str, str]) -> None:
         """Rename the new files to their names; this can be undone until the list of checksums is replaced."""
-        everything = [*self.places, *self.stale]
+        everything = [*self.targets, *self.obsolete_targets]
         before = {
             str(place.target.relative_to(self.folder)): checksum(place.target.read_bytes())
             for place in everything
@@ -138,13 +140,13 @@ class _Transaction:
         }
         journal = {"files": dict(checksums), "before": before}
         _replace(self.journal, json.dumps(journal).encode(), self.token)
-        # First the one by which others find the rest: killed at any moment, this leaves all the old, all the new, or none.
+        # First the file that refers to the others: killed at any moment, this leaves all the old, all the new, or none.
         for place in reversed(everything):
-            place.put_aside()
-        for place in self.places:
-            place.take()
-        gone = {str(place.target.relative_to(self.folder)) for place in self.stale}
-        kept = {name: entry for name, entry in read_manifest(self.folder).items() if name not in gone}
+            place.set_aside()
+        for place in self.targets:
+            place.install()
+        removed = {str(place.target.relative_to(self.folder)) for place in self.obsolete_targets}
+        kept = {name: entry for name, entry in read_manifest(self.folder).items() if name not in removed}
         _replace(self.folder / MANIFEST, manifest_text(kept | dict(checksums)).encode(), self.token)
         for place in everything:
             with suppress(OSError):
@@ -155,16 +157,16 @@ class _Transaction:
     def undo(self) -> None:
         """Restore the previous state; killed at any moment, this leaves what `recover` puts in order."""
         if self.journal.exists():
-            for place in self.places:
+            for place in self.targets:
                 if not place.new.exists() and place.target.exists():
                     place.target.replace(place.new)
             self.journal.unlink()
-        for place in (*self.places, *self.stale):
+        for place in (*self.targets, *self.obsolete_targets):
             if place.old.exists():
                 place.old.replace(place.target)
             place.new.unlink(missing_ok=True)
         for own in (self.journal, self.folder / MANIFEST):
-            hidden(own, self.token, "new").unlink(missing_ok=True)
+            temporary_path(own, self.token, "new").unlink(missing_ok=True)
 
 
 def _write_through(path: Path, content: bytes) -> None:
@@ -176,7 +178,7 @@ def _write_through(path: Path, content: bytes) -> None:
 
 def _replace(path: Path, content: bytes, token: str) -> None:
     """Write one file of sprung's own under its name at once."""
-    new = hidden(path, token, "new")
+    new = temporary_path(path, token, "new")
     _write_through(new, content)
     new.replace(path)
 

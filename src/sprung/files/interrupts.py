@@ -7,22 +7,22 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_ASKING = (signal.SIGINT, signal.SIGTERM)
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 @contextmanager
-def interrupts_held() -> Iterator[None]:
-    """Hold Ctrl-C and SIGTERM back until the block is done; then they act as they would have.
+def hold_interrupts() -> Iterator[None]:
+    """Delay Ctrl-C and SIGTERM until the block is done.
 
-    Only the main thread can; in others the block runs as it is.
+    Only the main thread can do that; in others the block runs unprotected.
     """
-    before = {number: signal.getsignal(number) for number in _ASKING}
+    before = {number: signal.getsignal(number) for number in _SIGNALS}
     if threading.current_thread() is not threading.main_thread() or None in before.values():
         yield
         return
     held: list[int] = []
     try:
-        for number in _ASKING:
+        for number in _SIGNALS:
             signal.signal(number, lambda got, _: held.append(got))
         yield
     finally:

@@ -25,7 +25,7 @@ _INSIST = "Choose another folder, move them away, or replace them on purpose: --
 
 
 def checksum(content: bytes) -> str:
-    """SHA-256 of the content of a file, as hexadecimal digits."""
+    """Return the SHA-256 of the content of a file, as hexadecimal digits."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -35,7 +35,7 @@ def read_manifest(folder: Path) -> dict[str, str]:
         files = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["files"]
         return {name: entry for name, entry in files.items() if isinstance(entry, str)}
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
-        return {}  # what is not listed is taken for the user's, which is safe
+        return {}  # a file that is not in the list counts as the user's, which is safe
 
 
 def manifest_text(files: Mapping[str, str]) -> str:
@@ -45,7 +45,7 @@ def manifest_text(files: Mapping[str, str]) -> str:
 
 
 def is_unchanged(folder: Path, name: str) -> bool:
-    """Whether a file exists, was written by sprung, and has not been changed since."""
+    """Return whether a file exists, was written by sprung, and has not been changed since."""
     try:
         return read_manifest(folder).get(name) == checksum((folder / name).read_bytes())
     except OSError:
@@ -53,7 +53,7 @@ def is_unchanged(folder: Path, name: str) -> bool:
 
 
 def overwriting_problems(folder: Path, files: Collection[str] | Mapping[str, bytes]) -> Iterator[Problem]:
-    """Yield what forbids writing some files into a folder.
+    """Yield the problems that forbid writing some files into a folder.
 
     Parameters
     ----------
@@ -69,23 +69,23 @@ def overwriting_problems(folder: Path, files: Collection[str] | Mapping[str, byt
         The files that sprung did not write, or that were changed since; or that the folder cannot be written to.
     """
     contents = files if isinstance(files, Mapping) else {}
-    listed, others = read_manifest(folder), []
+    known, foreign = read_manifest(folder), []
     for name in files:
         try:
             there = (folder / name).read_bytes()
         except OSError:
             continue  # none there, or one that cannot be replaced either: writing will say why
-        if listed.get(name) != checksum(there) and contents.get(name) != there:
-            others.append(f"{name} ({'changed since sprung wrote it' if name in listed else 'not written by sprung'})")
-    if others:
-        found = f"{len(others)} file{'s' * (len(others) > 1)} that would be overwritten: {', '.join(others)}"
+        if known.get(name) != checksum(there) and contents.get(name) != there:
+            foreign.append(f"{name} ({'changed since sprung wrote it' if name in known else 'not written by sprung'})")
+    if foreign:
+        found = f"{len(foreign)} file{'s' * (len(foreign) > 1)} that would be overwritten: {', '.join(foreign)}"
         yield Problem(str(folder), found, "only files that sprung wrote and that are unchanged", _INSIST)
     place = next((path for path in (folder, *folder.absolute().parents) if path.exists()), folder)
     if not place.is_dir() or not os.access(place, os.W_OK):
-        yield unwritable(folder, "no permission")
+        yield unwritable_folder(folder, "no permission")
 
 
-def unwritable(folder: Path, why: str) -> Problem:
+def unwritable_folder(folder: Path, why: str) -> Problem:
     """Return the problem of a folder that cannot be written to."""
     found = f"a place that cannot be written to ({why})"
     if any(path.is_file() for path in (folder, *folder.parents)):
@@ -93,8 +93,8 @@ def unwritable(folder: Path, why: str) -> Problem:
     return Problem(str(folder), found, "a folder to write to", "Choose another folder, or check its permissions.")
 
 
-def refuse_overwriting(folder: Path, files: Collection[str] | Mapping[str, bytes]) -> None:
-    """Refuse to overwrite what sprung did not write, before any work is done.
+def check_overwriting(folder: Path, files: Collection[str] | Mapping[str, bytes]) -> None:
+    """Check, before any work is done, that only files written by sprung would be overwritten.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Putting in order what a process left that was killed while it wrote: the write is finished, or undone.
+"""Recovery of a write whose process was killed: it is finished, or undone.
 
 Where a journal says that all new files were complete, they take their places; where there is none, they go, and old files that
 were put aside come back. A file that somebody else has put there since is never touched. Files of a process that still runs
@@ -36,12 +36,12 @@ _LONGEST = 600.0
 
 
 def new_token() -> str:
-    """Return what tells the hidden files of one write from all others: its process, and eight digits at random."""
+    """Return the token of one write, which marks its temporary files: its process, and eight random digits."""
     return f"{os.getpid():x}-{_RUN}-{secrets.token_hex(4)}"
 
 
-def hidden(target: Path, token: str, state: str) -> Path:
-    """Return the hidden name beside a file, of its ``new`` content or of what was there, ``old``."""
+def temporary_path(target: Path, token: str, state: str) -> Path:
+    """Return the temporary path beside a file, of its ``new`` or its ``old`` content."""
     return target.with_name(f".{target.name}.{token}.{state}")
 
 
@@ -51,9 +51,9 @@ def recover(folder: Path, within: Iterable[Path]) -> None:
     Parameters
     ----------
     folder
-        That was written into.
+        Folder that was written to.
     within
-        It and those of its subfolders in which there may be leftovers.
+        Those of its subfolders in which there may be temporary files.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def _finish(folder: Path, path: Path, token: str) -> None:
     written: dict[str, str] = {}
     for name in dict.fromkeys((*files, *before)):
         target = folder / name
-        new, old = hidden(target, token, "new"), hidden(target, token, "old")
+        new, old = temporary_path(target, token, "new"), temporary_path(target, token, "old")
         there = checksum(target.read_bytes()) if target.exists() else None
         if there is None or there == before.get(name):
             if name in files and new.exists():
@@ -98,7 +98,7 @@ def _finish(folder: Path, path: Path, token: str) -> None:
         for left in (new, old):
             left.unlink(missing_ok=True)
     kept = {name: entry for name, entry in read_manifest(folder).items() if name in files or name not in before}
-    manifest = hidden(folder / MANIFEST, token, "new")
+    manifest = temporary_path(folder / MANIFEST, token, "new")
     manifest.write_text(manifest_text(kept | written), encoding="utf-8")
     manifest.replace(folder / MANIFEST)
     path.unlink()

@@ -87,11 +87,13 @@ def _closing_what_was_begun() -> Iterator[None]:
         yield
     except Exception as error:
         for frame, _ in walk_tb(error.__traceback__):
-            begun: Any = frame.f_locals.get("self")
-            if hasattr(begun, "_closed"):
-                vars(begun).update({name: None for name in ("header", "identification") if not hasattr(begun, name)})
+            partial_reader: Any = frame.f_locals.get("self")
+            if hasattr(partial_reader, "_closed"):
+                vars(partial_reader).update(
+                    {name: None for name in ("header", "identification") if not hasattr(partial_reader, name)}
+                )
                 with suppress(Exception):
-                    begun.close()
+                    partial_reader.close()
         raise
 
 

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 GROUP = "sprung.formats"
 HEAD = 8192
 
-# To look through everything that is installed takes as long as to read a file, of which a campaign has many.
+# Searching the installed packages takes as long as reading a file, of which a campaign has many.
 entry_points = cache(metadata.entry_points)
 
-# Known even where no package metadata is installed, as when running from the sources.
+# Other packages add theirs by an entry point of this group.
 _OWN = tuple(
     EntryPoint(name, f"sprung.formats.{name}:{format_}", GROUP)
     for name, format_ in (

@@ -180,8 +180,12 @@ class SampleTable:
 
     def _read(self, columns: Sequence[int], first: int, last: int, samples: int) -> Iterator[NDArray[np.float64]]:
         """Read in pieces of a multiple of some samples, as long as a read is worth it."""
-        worth = BUDGET // (8 * max(len(columns), 1))
-        return self.store.read(columns, first, last, max(worth // samples, 1) * samples) if columns else iter(())
+        samples_per_read = BUDGET // (8 * max(len(columns), 1))
+        return (
+            self.store.read(columns, first, last, max(samples_per_read // samples, 1) * samples)
+            if columns
+            else iter(())
+        )
 
     def _times(self, first: int, last: int) -> NDArray[np.float64]:
         if isinstance(self.clock, np.ndarray):

@@ -53,7 +53,7 @@ class AmplitudeDependence:
     frequency, frequency_std
         Undamped natural frequency and its standard uncertainty, Hz.
     damping_ratio, damping_ratio_std
-        And those of the damping ratio.
+        Damping ratio and its standard uncertainty.
     """
 
     mode: Mode
@@ -80,7 +80,7 @@ def amplitude_dependence(
 ) -> tuple[AmplitudeDependence, ...]:
     """Fit each mode in successive windows of every record.
 
-    In each window the pole of one mode is free, those of the others and all shapes are as identified; amplitudes of all modes
+    In each window the pole of one mode is free, the other poles and all shapes are as identified; amplitudes of all modes
     and offsets are free, and eliminated as they are linear.
 
     Parameters
@@ -122,18 +122,18 @@ def _windows(record: Real, rate: float, poles: Poles, which: int) -> list[tuple[
         objective = climb(decays, poles, only=which)
         lost = decays.sample_count / max(decays.sample_count - objective.parameters / decays.channels, 1.0)
         uncertainty = pole_bound(objective.weighted(1 / (objective.variance * lost)), which)
-        own = Mode(
+        fitted = Mode(
             complex(objective.poles.exponent[which] * rate), objective.poles.shapes[:, which], uncertainty=uncertainty
         )
-        frequency_std, ratio_std = own.frequency_std or 0.0, own.damping_ratio_std or 0.0
-        aliased = own.damped_frequency > NEAR_NYQUIST * rate / 2
-        if aliased or frequency_std * length / rate > _LARGEST_PHASE_STD or not _LEAST < own.damping_ratio < _MOST:
+        frequency_std, ratio_std = fitted.frequency_std or 0.0, fitted.damping_ratio_std or 0.0
+        aliased = fitted.damped_frequency > NEAR_NYQUIST * rate / 2
+        if aliased or frequency_std * length / rate > _LARGEST_PHASE_STD or not _LEAST < fitted.damping_ratio < _MOST:
             if rows:
                 break  # the motion has decayed
             continue
         middle = np.exp(objective.poles.exponent[which].real * length / 2)
         size = 2 * float(np.abs(objective.coefficients[0, :, which]).max() * middle)
-        rows.append((size, own.frequency, frequency_std, own.damping_ratio, ratio_std))
+        rows.append((size, fitted.frequency, frequency_std, fitted.damping_ratio, ratio_std))
     return rows
 
 

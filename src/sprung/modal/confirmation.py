@@ -16,7 +16,7 @@ from sprung.vibration import Mode
 
 Real = NDArray[np.float64]
 
-_NEAR, _SURE = 0.02, 3.0
+_NEAR, _STDS = 0.02, 3.0
 """Part of its frequency, and damping ratio, within which another pole is the same, plus standard uncertainties."""
 
 _LATER = 0.5
@@ -51,7 +51,7 @@ def confirm_modes(
     arrays = [np.asarray(record, dtype=float) for record in records]
     stable: list[complex] = []
     with suppress(InputError):  # records too short for a diagram are shortened and identified again
-        stable = [one.pole for one in (diagram or stabilisation_diagram(arrays, rate)).chosen]
+        stable = [cluster.pole for cluster in (diagram or stabilisation_diagram(arrays, rate)).chosen]
     kept, rejected = [], []
     later: dict[int, tuple[Mode, ...]] = {}
     for mode in found:
@@ -77,12 +77,12 @@ def _identify_again(records: Sequence[Real], rate: float, method: str) -> tuple[
 
 
 def _is_same(mode: Mode, other: Mode) -> bool:
-    frequency = _NEAR * mode.frequency + _SURE * _both(mode.frequency_std, other.frequency_std)
-    ratio = _NEAR + _SURE * _both(mode.damping_ratio_std, other.damping_ratio_std)
-    apart = abs(mode.frequency - other.frequency), abs(mode.damping_ratio - other.damping_ratio)
-    return apart[0] <= frequency and apart[1] <= ratio and other.is_resolved
+    frequency = _NEAR * mode.frequency + _STDS * _combined(mode.frequency_std, other.frequency_std)
+    ratio = _NEAR + _STDS * _combined(mode.damping_ratio_std, other.damping_ratio_std)
+    difference = abs(mode.frequency - other.frequency), abs(mode.damping_ratio - other.damping_ratio)
+    return difference[0] <= frequency and difference[1] <= ratio and other.is_resolved
 
 
-def _both(*stds: float | None) -> float:
+def _combined(*stds: float | None) -> float:
     known: Iterable[float] = (std for std in stds if std is not None)
     return float(np.hypot.reduce([0.0, *known]))

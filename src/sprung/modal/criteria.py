@@ -1,4 +1,4 @@
-"""What tells a mode of the structure from one of the computation."""
+"""Criteria for modes: modal phase collinearity, and distance from the Nyquist frequency."""
 
 from __future__ import annotations
 

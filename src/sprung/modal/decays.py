@@ -25,7 +25,7 @@ Index = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Decays:
-    """Records of the same channels and rate, each with the mean of every channel taken off.
+    """Records of the same channels and rate, each with the mean of every channel subtracted.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class Decays:
     rate: float
     samples: Index
     energy: Real
-    blocked: Real
+    padded_blocks: Real
 
     @classmethod
     def of(cls, records: Sequence[Real], rate: float) -> Decays:
@@ -56,7 +56,7 @@ class Decays:
             rate=rate,
             samples=np.array([record.shape[1] for record in records]),
             energy=np.array([np.einsum("ct,ct->c", record, record) for record in values]),
-            blocked=np.concatenate([split_into_blocks(record) for record in records]),
+            padded_blocks=np.concatenate([split_into_blocks(record) for record in records]),
         )
 
     @cached_property
@@ -92,7 +92,7 @@ class Decays:
     def correlate(self, exponent: Complex) -> Complex:
         """Return the inner products of (e^{λk}, k e^{λk}) with the records, shape (record, channel, 2 pole)."""
         counts, group = -(-self.samples // BLOCK_LENGTH), np.zeros(self.count, dtype=np.int64)
-        products = correlate_with_exponentials(self.blocked, counts, exponent[None], group)
+        products = correlate_with_exponentials(self.padded_blocks, counts, exponent[None], group)
         return products.reshape(*products.shape[:2], -1)
 
     def subtract(self, exponent: Complex, coefficients: Complex) -> tuple[Real, ...]:

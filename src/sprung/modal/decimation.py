@@ -19,7 +19,7 @@ _WINDOW = 0.5
 """Periods of the lowest frequency that the block rows span: a longer span gains nothing."""
 
 _LEAST_ROWS = 40
-"""Rows of a block Hankel matrix at the least, where the records are long enough: an order may be asked for."""
+"""Least number of rows of a block Hankel matrix, where the records are long enough, for orders given by the user."""
 
 _FINE = 2
 """Samples in a lag, once neighbours are averaged."""
@@ -88,9 +88,9 @@ class DecimatedRecords:
 
     def shifts_within(self, rows: int) -> int:
         """Return the number of shifts of a block Hankel matrix with at most so many rows, each of a lag."""
-        wanted = min(max(self.shifts, -(-_LEAST_ROWS // self.channels)), rows // self.channels - 1)
-        room = min(wanted, self.shortest // (2 * self.step))
-        return int(max(room, min(2, self.shortest // self.step - 1), 1))
+        shifts = min(max(self.shifts, -(-_LEAST_ROWS // self.channels)), rows // self.channels - 1)
+        possible = min(shifts, self.shortest // (2 * self.step))
+        return int(max(possible, min(2, self.shortest // self.step - 1), 1))
 
     def hankel(self, shifts: int) -> list[Real]:
         """Stack each record delayed by 0, 1, ... lags.

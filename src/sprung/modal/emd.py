@@ -22,7 +22,7 @@ _REFINEMENT = 4
 """Times the samples in a period that other methods work with."""
 
 _MOTIONS = 6
-"""Intrinsic motions of a channel that are looked for."""
+"""Largest number of intrinsic motions of a channel."""
 
 _UPPER, _LOWER = 0.9, 0.1
 """Parts of the largest amplitude between which the decay is fitted."""
@@ -31,7 +31,7 @@ _STRAIGHT = 0.9
 """Squared correlation that the logarithm of an amplitude must have with time to be a decay."""
 
 _ALIKE = 0.2
-"""Part of a frequency within which motions are taken for the same mode."""
+"""Part of a frequency within which motions belong to one mode."""
 
 
 def empirical_mode_decomposition(records: Sequence[ArrayLike], rate: float, order: int | None = None) -> ModeSet:
@@ -77,13 +77,13 @@ def empirical_mode_decomposition(records: Sequence[ArrayLike], rate: float, orde
                     found.append((pole, float((motion**2).sum())))
     # Motions of one frequency are merged, the strongest first.
     poles, weights = [], []
-    found.sort(key=lambda one: -one[1])
+    found.sort(key=lambda pair: -pair[1])
     while found:
         first = abs(found[0][0].imag)
-        same = [one for one in found if abs(one[0].imag - first) < _ALIKE * first]
-        found = [one for one in found if abs(one[0].imag - first) >= _ALIKE * first]
-        weight = np.array([energy for _, energy in same])
-        poles.append(complex(weight @ np.array([pole for pole, _ in same]) / weight.sum()))
+        alike = [pair for pair in found if abs(pair[0].imag - first) < _ALIKE * first]
+        found = [pair for pair in found if abs(pair[0].imag - first) >= _ALIKE * first]
+        weight = np.array([energy for _, energy in alike])
+        poles.append(complex(weight @ np.array([pole for pole, _ in alike]) / weight.sum()))
         weights.append(float(weight.sum()))
     kept = [pole for pole, weight in zip(poles, weights, strict=True) if weight > 1e-3 * max(weights)]
     kept = kept[: len(kept) if order is None else max(order // 2, 1)]

@@ -25,7 +25,7 @@ def eigensystem_realisation(records: Sequence[ArrayLike], rate: float, order: in
     rate
         Samples per second, the same in all records.
     order
-        How many poles to look for; unless given as many as stand out from the noise.
+        Number of poles; unless given, of those above the noise.
 
     Returns
     -------

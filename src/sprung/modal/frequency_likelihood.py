@@ -56,10 +56,12 @@ def frequency_domain_likelihood(records: Sequence[ArrayLike], rate: float, order
     check_decay(start, "ml-frequency")
     objective = climb(lines, start)
     lost = lines.sample_count / max(lines.sample_count - objective.parameters / lines.channels, 1.0)
-    spread = cramer_rao_bounds(objective.weighted(1 / (objective.variance * lost)))
-    found = zip(objective.poles.exponent * rate, objective.poles.shapes.T, spread, strict=True)
+    uncertainties = cramer_rao_bounds(objective.weighted(1 / (objective.variance * lost)))
+    found = zip(objective.poles.exponent * rate, objective.poles.shapes.T, uncertainties, strict=True)
     return ModeSet(
-        sort_modes([Mode(complex(pole), shape, uncertainty=own) for pole, shape, own in found]), (), "ml-frequency"
+        sort_modes([Mode(complex(pole), shape, uncertainty=uncertainty) for pole, shape, uncertainty in found]),
+        (),
+        "ml-frequency",
     )
 
 
@@ -86,26 +88,28 @@ class SpectralLines(Decays):
             count = values.shape[1]
             last = min(max(int(highest / decays.rate * count), 2), (count - 1) // 2)
             lines = np.fft.rfft(values)[:, 1 : last + 1] / np.sqrt(count)
-            own = 2 * np.pi * np.arange(1, last + 1) / count
-            angles.append(np.concatenate([own, -own]))
+            positive = 2 * np.pi * np.arange(1, last + 1) / count
+            angles.append(np.concatenate([positive, -positive]))
             transforms.append(np.concatenate([lines, lines.conj()], axis=1))
         energy = np.array([(np.abs(lines) ** 2).sum(axis=1) for lines in transforms])
-        return cls(decays.values, decays.rate, decays.samples, energy, decays.blocked, tuple(angles), tuple(transforms))
+        return cls(
+            decays.values, decays.rate, decays.samples, energy, decays.padded_blocks, tuple(angles), tuple(transforms)
+        )
 
     @property
     def sample_count(self) -> float:
         """Number of lines of each channel, all records together."""
-        return float(sum(len(own) for own in self.angles))
+        return float(sum(len(angles) for angles in self.angles))
 
     def gram(self, exponent: Complex) -> Complex:
         """Return the Gram matrices of the transforms of (e^{λk}, k e^{λk})."""
-        waves = self._transformed_exponentials(exponent)
-        return np.array([one.conj() @ one.T for one in waves])
+        transforms = self._transformed_exponentials(exponent)
+        return np.array([transform.conj() @ transform.T for transform in transforms])
 
     def correlate(self, exponent: Complex) -> Complex:
         """Return the inner products of the transforms of (e^{λk}, k e^{λk}) with those of the records."""
         pairs = zip(self._transformed_exponentials(exponent), self.transforms, strict=True)
-        return np.array([lines @ one.conj().T for one, lines in pairs])
+        return np.array([lines @ transform.conj().T for transform, lines in pairs])
 
     def _transformed_exponentials(self, exponent: Complex) -> list[Complex]:
         """Transform e^{λk} and k e^{λk}, for each record; shape (2 pole, line)."""

@@ -73,8 +73,8 @@ class IdentificationTask:
         arrays = check_records(records, rate, method)
         decays = Decays.of(arrays, rate)
         subspace = SignalSubspace.of(arrays, decays.spectrum)
-        wanted = min(subspace.significant, max(FIRST_POLES, 2 * decays.channels)) if order is None else order
-        task = cls(decays, subspace, wanted, method)
+        number = min(subspace.significant, max(FIRST_POLES, 2 * decays.channels)) if order is None else order
+        task = cls(decays, subspace, number, method)
         task.allow(subspace.most, given=order is not None)
         return task
 
@@ -110,13 +110,13 @@ class IdentificationTask:
             return ModeSet((), (), self.method)
         weights = 1 / np.maximum(self.decays.energy.sum(axis=0), 1e-300)
         shares = ModalObjective.at(self.decays, poles, weights).shares.max(axis=0)
-        rate, room = self.decays.rate, self.order
+        rate, remaining = self.decays.rate, self.order
         kept, rejected = [], []
         for j in np.argsort(-shares).tolist():
             size = 2 if poles.exponent[j].imag else 1
-            if size <= room and shares[j] > _LEAST_SHARE:
+            if size <= remaining and shares[j] > _LEAST_SHARE:
                 kept.append(j)
-                room -= size
+                remaining -= size
             else:
                 reason = f"{self.order} poles explain more: of no channel is it more than {100 * shares[j]:.2g} %"
                 rejected.append(RejectedPole(complex(poles.exponent[j]) * rate, reason))

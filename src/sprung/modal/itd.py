@@ -82,9 +82,9 @@ def ibrahim_time_domain(records: Sequence[ArrayLike], rate: float, order: int | 
     """
     task = IdentificationTask.of(records, rate, order, "itd")
     before, after, seen = _states(task)
-    one = np.linalg.solve((before @ before.T).T, (after @ before.T).T).T
-    other = np.linalg.solve((before @ after.T).T, (after @ after.T).T).T
-    return task.modes(poles_of_transition((one + other) / 2, seen, task.decimated))
+    biased_up = np.linalg.solve((before @ before.T).T, (after @ before.T).T).T
+    biased_down = np.linalg.solve((before @ after.T).T, (after @ after.T).T).T
+    return task.modes(poles_of_transition((biased_up + biased_down) / 2, seen, task.decimated))
 
 
 def _states(task: IdentificationTask) -> _States:

@@ -3,7 +3,7 @@
 Poles λ and shapes φ are shared by all records; how much of each mode a record holds (q) and its offsets are its own, and as
 they are linear they are solved for in closed form (variable projection: Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973)
 413). A pole and its conjugate are two columns here, so complex and real poles are treated alike, and whatever is solved for
-comes out conjugate too. All sums over samples are those of `sums`: nothing of the records' length is ever formed.
+comes out conjugate too. All sums over samples are those of `sprung.vibration`: nothing of the records' length is ever formed.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _UNDETERMINED = 1e-13
 """Information, relative to that of a parameter alone, that is lost in rounding."""
 
 LEAST_NOISE = 1e-6
-"""Noise of a channel, as a part of its root-mean-square, below which it cannot be told from rounding."""
+"""Noise of a channel, as a part of its root-mean-square, below which it cannot be distinguished from rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,8 +115,8 @@ class ModalObjective:
     def at(cls, decays: Decays, poles: Poles, weights: Real) -> ModalObjective:
         """Sum over the samples."""
         exponent = poles.both(poles.exponent)
-        own = decays.correlate(poles.exponent).reshape(decays.count, decays.channels, 2, poles.count)
-        data = poles.both(own).reshape(decays.count, decays.channels, -1)
+        products = decays.correlate(poles.exponent).reshape(decays.count, decays.channels, 2, poles.count)
+        data = poles.both(products).reshape(decays.count, decays.channels, -1)
         return cls(decays, poles, weights, decays.gram(exponent), data)
 
     def weighted(self, weights: Real) -> ModalObjective:
@@ -184,9 +184,9 @@ class ModalObjective:
         """Energy of each mode alone as a part of that of each channel, all records together; shape (channel, mode)."""
         size, count = self.shapes.shape[1], self.poles.count
         twice = np.where(self.poles.exponent.imag != 0, 2.0, 1.0)
-        own = np.diagonal(self.gram[:, :size, :size], axis1=1, axis2=2).real[:, None, :count]
+        energies = np.diagonal(self.gram[:, :size, :size], axis1=1, axis2=2).real[:, None, :count]
         # A pole outside the motion may have any amplitude.
-        sizes = np.minimum(np.abs(self.coefficients[:, :, :count]) * np.sqrt(np.maximum(own, 0.0)), 1e100)
+        sizes = np.minimum(np.abs(self.coefficients[:, :, :count]) * np.sqrt(np.maximum(energies, 0.0)), 1e100)
         energy = (sizes**2).sum(axis=0) * twice
         return np.asarray(energy / np.maximum(self.decays.energy.sum(axis=0), 1e-300)[:, None])
 
@@ -278,13 +278,13 @@ class ModalObjective:
         both = q.conj()[:, :, None] * q[:, None, :]
         within = (both * gram[:, :size, :size]).sum(axis=0)
         onward = (both * gram[:, :size, size:]).sum(axis=0)
-        beyond = (both * gram[:, size:, size:]).sum(axis=0)
+        sensitivity_products = (both * gram[:, size:, size:]).sum(axis=0)
         whole = np.zeros((channels + 1, size, channels + 1, size), dtype=np.complex128)
-        own = np.arange(channels)
-        whole[own, :, own, :] = w[:, None, None] * within
+        channel = np.arange(channels)
+        whole[channel, :, channel, :] = w[:, None, None] * within
         whole[:channels, :, channels, :] = w[:, None, None] * onward * s[:, None, :]
         whole[channels, :, :channels, :] = np.moveaxis(whole[:channels, :, channels, :].conj(), (0, 1, 2), (1, 2, 0))
-        whole[channels, :, channels, :] = self._across * beyond
+        whole[channels, :, channels, :] = self._across * sensitivity_products
         # Elimination of the amplitudes (Schur complement).
         coupling = np.empty((len(records), size, channels + 1, size), dtype=np.complex128)
         through = (s.conj() * w[:, None]).T

@@ -38,7 +38,7 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
     rate
         Samples per second, the same in all records.
     order
-        How many poles to look for at the most, two for each mode; unless given, as many as the records hold. Either way those
+        Largest number of poles, two for each mode; unless given, as many as the records support. Either way those
         that an information criterion does not find worth their parameters are rejected.
 
     Returns
@@ -72,13 +72,13 @@ def maximum_likelihood(records: Sequence[ArrayLike], rate: float, order: int | N
     objective = model.objective
     found, rejected = [], list(model.rejected)
     shapes = objective.poles.shapes.T
-    spread = mode_uncertainties(objective, inconsistency_factor(objective))
-    for pole, shape, own in zip(objective.poles.exponent * rate, shapes, spread, strict=True):
-        growth, unsure = float(pole.real), float(np.sqrt(own.pole[0, 0]))
-        if growth > _SIGNIFICANT_GROWTH * unsure:
-            rejected.append(RejectedPole(complex(pole), f"it grows, by {growth:.3g} ± {unsure:.2g} 1/s"))
+    uncertainties = mode_uncertainties(objective, inconsistency_factor(objective))
+    for pole, shape, uncertainty in zip(objective.poles.exponent * rate, shapes, uncertainties, strict=True):
+        growth, growth_std = float(pole.real), float(np.sqrt(uncertainty.pole[0, 0]))
+        if growth > _SIGNIFICANT_GROWTH * growth_std:
+            rejected.append(RejectedPole(complex(pole), f"it grows, by {growth:.3g} ± {growth_std:.2g} 1/s"))
         else:
-            found.append(Mode(complex(pole), shape, uncertainty=own))
+            found.append(Mode(complex(pole), shape, uncertainty=uncertainty))
     return ModeSet(sort_modes(found), tuple(rejected), "ml")
 
 

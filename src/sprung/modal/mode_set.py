@@ -42,7 +42,7 @@ class ModeSet(Sequence[Mode]):
     modes
         The modes.
     rejected
-        Poles that were met and are none.
+        Poles that are not accepted as modes.
     method
         By which they were found.
     """

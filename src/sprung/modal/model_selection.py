@@ -46,7 +46,7 @@ class ModalFit:
 
     Attributes
     ----------
-    stand
+    objective
         The likelihood there.
     rejected
         Poles that were tried and not accepted, or removed.
@@ -94,7 +94,7 @@ def fit_by_criterion(decays: Decays, subspace: SignalSubspace, most: int = MOST_
         # numbers are tried.
         starts = [subspace.poles(n) for n in range(2, order)]
         smaller = [climb(decays, poles, _FIRST_STEPS, _FAR) for poles in starts if poles.count]
-        objective = min([*smaller, objective], key=lambda one: _criterion(one, inflation))
+        objective = min([*smaller, objective], key=lambda candidate: _criterion(candidate, inflation))
     objective = _try_real_axis(_add_modes(objective, most, rejected))
     objective = _remove_modes(objective, rejected)
     return ModalFit(objective, tuple(rejected))
@@ -234,8 +234,8 @@ def _remove_modes(objective: ModalObjective, rejected: list[RejectedPole]) -> Mo
     while objective.poles.count > 1:
         exponents = objective.poles.exponent.tolist()
         weak = [
-            float(np.trace(spread.pole)) > (UNRESOLVED_FROM * abs(pole) * objective.decays.rate) ** 2
-            for pole, spread in zip(exponents, mode_uncertainties(objective, 1.0), strict=True)
+            float(np.trace(uncertainty.pole)) > (UNRESOLVED_FROM * abs(pole) * objective.decays.rate) ** 2
+            for pole, uncertainty in zip(exponents, mode_uncertainties(objective, 1.0), strict=True)
         ]
         losses = [objective.without(i).cost for i in range(len(exponents))]
         for i in sorted(range(len(exponents)), key=lambda j: (not weak[j], losses[j])):

@@ -49,7 +49,7 @@ def peak_picking(records: Sequence[ArrayLike], rate: float, order: int | None = 
     length = _REFINEMENT * max(record.shape[1] for record in values)
     spectrum = Spectrum.of(values, rate)
     transforms = [np.abs(np.fft.rfft(record, length)) ** 2 / record.shape[1] for record in values]
-    power = np.sum([one.sum(axis=0) for one in transforms], axis=0)
+    power = np.sum([transform.sum(axis=0) for transform in transforms], axis=0)
     noise = float(len(values) * np.sum(spectrum.floor))
     step = rate / length
     poles, rejected = [], []
@@ -74,7 +74,7 @@ def _find_peaks(power: Real, least: float) -> list[int]:
     tops = np.flatnonzero((inner > power[:-2]) & (inner >= power[2:]) & (inner > least)) + 1
     kept: list[int] = []
     for top in tops[np.argsort(-power[tops])].tolist():
-        between = [power[min(top, other) : max(top, other)].min() for other in kept]
+        between = [power[min(top, higher) : max(top, higher)].min() for higher in kept]
         if all(power[top] > _PROMINENT * lowest for lowest in between):
             kept.append(top)
     return kept

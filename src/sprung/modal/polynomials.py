@@ -47,7 +47,7 @@ def complex_frequency(records: Sequence[ArrayLike], rate: float, order: int | No
     Parameters
     ----------
     records, rate, order
-        As for `eigensystem_realisation`. There are more poles than asked for; those that explain most of the records are kept.
+        As for `eigensystem_realisation`. The model has more poles; those that explain most of the records are kept.
 
     Returns
     -------

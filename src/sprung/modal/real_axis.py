@@ -41,15 +41,15 @@ def real_axis_alternatives(poles: Poles) -> Iterator[Poles]:
         pole, shape = complex(poles.exponent[j]), poles.shapes[:, j]
         if pole.imag < _NEARLY_REAL * abs(pole.real):
             two = abs(pole) * np.array([-1 - _APART, -1 + _APART], dtype=complex)
-            turned = shape.real + shape.imag * np.array([[1.0], [-1.0]])
-            yield poles.without(j).joined_with(Poles.of(two.astype(np.complex128), turned.T.astype(np.complex128)))
-    for place, i in enumerate(real.tolist()):
+            shapes = shape.real + shape.imag * np.array([[1.0], [-1.0]])
+            yield poles.without(j).joined_with(Poles.of(two.astype(np.complex128), shapes.T.astype(np.complex128)))
+    for position, i in enumerate(real.tolist()):
         rest = poles.without(i)
-        for j in real[place + 1 :].tolist():
-            one, other = poles.exponent[i].real, poles.exponent[j].real
-            if 1 / _NEAR < one / other < _NEAR:
+        for j in real[position + 1 :].tolist():
+            first, second = poles.exponent[i].real, poles.exponent[j].real
+            if 1 / _NEAR < first / second < _NEAR:
                 shape = poles.shapes[:, i] + 1j * poles.shapes[:, j]
-                yield rest.without(j - 1).joined_with(_pair(-float(np.sqrt(one * other)), shape))
+                yield rest.without(j - 1).joined_with(_pair(-float(np.sqrt(first * second)), shape))
         if poles.exponent[i].real < 0:
             yield rest.joined_with(_pair(float(poles.exponent[i].real), poles.shapes[:, i]))
 

@@ -12,7 +12,7 @@ from sprung.vibration import exponentials
 Complex = NDArray[np.complex128]
 
 _ANOTHER = 6.0
-"""Standard errors by which a second shape of one pole must stand out from noise."""
+"""Standard errors by which a second shape of one pole must exceed noise."""
 
 _LEAST = 1e-3
 """Part of the first that a second shape must be: close poles leave rounding that looks like one."""
@@ -32,7 +32,7 @@ def fit_shapes(decimated: DecimatedRecords, exponent: Complex) -> Poles:
         λ per sample of the records as they were, of one of each conjugate pair, none twice; shape (pole,).
     """
     every = np.concatenate([exponent, exponent[exponent.imag != 0].conj()]) * decimated.every
-    contributions, spreads, squares, freedom = [], [], 0.0, 0
+    contributions, errors, squares, freedom = [], [], 0.0, 0
     for record in decimated.records:
         motion = exponentials(every, record.shape[1])
         motion = motion - motion.mean(axis=0)
@@ -41,19 +41,17 @@ def fit_shapes(decimated: DecimatedRecords, exponent: Complex) -> Poles:
         values = (record - record.mean(axis=1, keepdims=True)).T
         found = inverse @ values
         contributions.append(found)
-        spreads.append(np.linalg.norm(inverse, axis=1))
+        errors.append(np.linalg.norm(inverse, axis=1))
         squares += float((np.abs(values - motion @ found) ** 2).sum())
         freedom += values.size
     noise = np.sqrt(max(squares / freedom, 1e-300))
     poles, shapes = [], []
     for j, pole in enumerate(exponent):
         # Channels have noise of one size here, and each contribution its own standard error.
-        matrix = (
-            np.array([found[j] / spread[j] for found, spread in zip(contributions, spreads, strict=True)]).T / noise
-        )
-        own, strengths, _ = np.linalg.svd(matrix, full_matrices=False)
+        matrix = np.array([found[j] / error[j] for found, error in zip(contributions, errors, strict=True)]).T / noise
+        left, strengths, _ = np.linalg.svd(matrix, full_matrices=False)
         limit = max(_ANOTHER * (np.sqrt(matrix.shape[0]) + np.sqrt(matrix.shape[1])), _LEAST * strengths[0])
         for k in range(max(int((strengths > limit).sum()), 1)):
             poles.append(pole)
-            shapes.append(decimated.scale * own[:, k])
+            shapes.append(decimated.scale * left[:, k])
     return Poles.of(np.array(poles, dtype=np.complex128), np.stack(shapes, axis=1).astype(np.complex128))

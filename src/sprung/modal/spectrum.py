@@ -59,9 +59,9 @@ class Spectrum:
         while width <= bins:
             # Periodograms of white noise are exponentially distributed, sums of them by a gamma distribution.
             limit = float(gammainccinv(width * records * channels, _CHANCE / bins))
-            beyond = (sums[width:] - sums[:-width] > limit).astype(np.int64)
-            edges = np.concatenate([beyond, np.zeros(width, dtype=np.int64)])
-            edges[width:] -= beyond
+            is_exceeded = (sums[width:] - sums[:-width] > limit).astype(np.int64)
+            edges = np.concatenate([is_exceeded, np.zeros(width, dtype=np.int64)])
+            edges[width:] -= is_exceeded
             found |= np.cumsum(edges)[:bins] > 0
             width *= 4
         return found

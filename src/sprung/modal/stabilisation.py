@@ -151,7 +151,7 @@ def stabilisation_diagram(
     """
     arrays = check_records(records, rate, "diagram")
     subspace = SignalSubspace.of(arrays, Decays.of(arrays, rate).spectrum)
-    wanted = criteria or StabilityCriteria()
+    limits = criteria or StabilityCriteria()
     orders = tuple(range(2, min(highest, subspace.most) + 1, 2))
     chains: list[list[DiagramPole]] = []
     points: list[DiagramPole] = []
@@ -159,23 +159,23 @@ def stabilisation_diagram(
     for order in orders:
         now = []
         for point in _poles(subspace, order, rate):
-            own, chain = _link(point, before, wanted)
+            linked, chain = _link(point, before, limits)
             if chain is None:
                 chain = []
                 chains.append(chain)
-            chain.append(own)
-            points.append(own)
-            now.append((own, chain))
+            chain.append(linked)
+            points.append(linked)
+            now.append((linked, chain))
         before = now
     chosen, rejected = [], []
     for chain in chains:
-        cluster, reason = _cluster(chain, orders, wanted)
+        cluster, reason = _cluster(chain, orders, limits)
         if reason is None:
             chosen.append(cluster)
         else:
             rejected.append(RejectedPole(cluster.pole, reason))
-    chosen.sort(key=lambda one: abs(one.pole))
-    return StabilisationDiagram(orders, tuple(points), tuple(chosen), tuple(rejected), wanted)
+    chosen.sort(key=lambda cluster: abs(cluster.pole))
+    return StabilisationDiagram(orders, tuple(points), tuple(chosen), tuple(rejected), limits)
 
 
 def _poles(subspace: SignalSubspace, order: int, rate: float) -> list[DiagramPole]:
@@ -210,14 +210,14 @@ def _link(
 ) -> tuple[DiagramPole, list[DiagramPole] | None]:
     """Return a pole and the chain of the same pole at the orders before, or None."""
     best, chain = np.inf, None
-    for other, own in before:
-        frequency = abs(abs(point.pole) / abs(other.pole) - 1)
-        ratios = [-one.pole.real / abs(one.pole) for one in (point, other)]
-        alike = float(modal_assurance_criterion(point.shape[:, None], other.shape[:, None])[0, 0])
+    for earlier, members in before:
+        frequency = abs(abs(point.pole) / abs(earlier.pole) - 1)
+        ratios = [-pole.pole.real / abs(pole.pole) for pole in (point, earlier)]
+        alike = float(modal_assurance_criterion(point.shape[:, None], earlier.shape[:, None])[0, 0])
         near = frequency <= criteria.frequency and abs(ratios[0] - ratios[1]) <= criteria.damping * abs(ratios[1])
         # A chain goes on with one pole of each order only.
-        if near and alike >= criteria.similarity and frequency < best and own[-1] is other:
-            best, chain = frequency, own
+        if near and alike >= criteria.similarity and frequency < best and members[-1] is earlier:
+            best, chain = frequency, members
     stable = chain is not None
     return DiagramPole(point.order, point.pole, point.shape, stable, point.coherence, point.collinearity), chain
 
@@ -225,18 +225,18 @@ def _link(
 def _cluster(
     chain: list[DiagramPole], orders: Sequence[int], criteria: StabilityCriteria
 ) -> tuple[PoleCluster, str | None]:
-    poles = np.array([one.pole for one in chain])
+    poles = np.array([point.pole for point in chain])
     middle = complex(np.median(poles.real), np.median(poles.imag))
     scatter = float(np.sqrt(np.mean(np.abs(poles - middle) ** 2)) / abs(middle))
     first = chain[0].order
     room = len([order for order in orders if order >= first])
     cluster = PoleCluster(middle, scatter, first, len(chain))
-    coherence = float(np.median([one.coherence for one in chain]))
+    coherence = float(np.median([point.coherence for point in chain]))
     if middle.real >= 0:
         return cluster, f"it grows, by {middle.real:.2g} 1/s"
     if len(chain) < max(criteria.orders * room, min(_LEAST_ORDERS, len(orders))):
-        asked = f"{criteria.orders:.0%}, and at least {_LEAST_ORDERS}, are required"
-        return cluster, f"it is present at {len(chain)} of {room} orders from {first} on; {asked}"
+        required = f"{criteria.orders:.0%}, and at least {_LEAST_ORDERS}, are required"
+        return cluster, f"it is present at {len(chain)} of {room} orders from {first} on; {required}"
     if coherence < criteria.coherence:
         reason = f"its amplitude coherence is {coherence:.2f}; {criteria.coherence:g} is required"
         return cluster, reason

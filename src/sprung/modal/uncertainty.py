@@ -23,7 +23,7 @@ def mode_uncertainties(objective: ModalObjective, disagreement: float) -> tuple[
 
     Parameters
     ----------
-    stand
+    objective
         At the maximum of the likelihood.
     disagreement
         Square of the Birge ratio of parts of the records; 1 where they agree.
@@ -46,7 +46,7 @@ def cramer_rao_bounds(
 
     Parameters
     ----------
-    stand
+    objective
         Poles, shapes and, in its weights, the noise of the channels.
     excess
         Factor of the variances of each mode, shape (mode,); 1 unless given.
@@ -64,9 +64,9 @@ def cramer_rao_bounds(
     conjugate[objective.poles.paired] = count + np.arange(len(objective.poles.paired))
     factors, every = np.ones(count) if excess is None else excess, np.arange(channels + 1)
     found = []
-    for j, other in enumerate(conjugate.tolist()):
-        own, across = covariance[every, j, every, j].real, covariance[every, j, every, other]
-        parts = _parts(own, across if other != j else own) * (factors[j] * lost)
+    for j, twin in enumerate(conjugate.tolist()):
+        own, across = covariance[every, j, every, j].real, covariance[every, j, every, twin]
+        parts = _parts(own, across if twin != j else own) * (factors[j] * lost)
         entries = np.sqrt(np.maximum(parts[:-1, [0, 1], [0, 1]], 0.0))
         found.append(
             ModeUncertainty(parts[-1] * objective.decays.rate**2, entries[:, 0] + 1j * entries[:, 1], float(factors[j]))
@@ -79,7 +79,7 @@ def pole_bound(objective: ModalObjective, which: int) -> ModeUncertainty:
 
     Parameters
     ----------
-    stand
+    objective
         Poles, shapes and, in its weights, the noise of the channels.
     which
         The mode, which vibrates.

@@ -22,6 +22,7 @@ Array = NDArray[Any]
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
 _SLOWEST = 0.9  # ratio of successive gains that is assumed where only one is known, and at the most
 _STALLED = 1e-3  # expected gain above which a point from which no step gains is not an optimum
+_FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 Point = TypeVar("Point")
 
@@ -126,39 +127,40 @@ def maximise(
         # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
         if equations.step(damping)[1] < tolerance and equations.step()[1] < tolerance:
             return Maximum(point, steps, converged=True)
-        point, has_gained, damping, gain = _gaining_step(problem, point, equations, damping, longest_step)
-        if not has_gained:
-            return Maximum(point, steps, converged=gain < _STALLED)
+        found = _gaining_step(problem, point, equations, damping, longest_step)
+        if found is None:
+            return Maximum(point, steps, converged=equations.step()[1] < _STALLED)
+        point, damping, gain = found
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
         before = gain
-        if gain * min(ratio / (1 - ratio), 1.0) < tolerance:
+        if gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM:
             return Maximum(point, steps + 1, converged=True)
     return Maximum(point, most_steps, converged=False)
 
 
 def _gaining_step(
     problem: Maximisable[Point], point: Point, equations: NormalEquations, damping: float, longest: float
-) -> tuple[Point, bool, float, float]:
-    """Return the point a step further that does not lose, whether there is one, the next damping and the expected gain.
+) -> tuple[Point, float, float] | None:
+    """Return the point a step further that does not lose, the next damping and the expected gain; None if there is none.
 
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
     step loses, one more is tried from there (the watchdog).
     """
-    first, expected = True, 0.0
+    first = True
     while damping < _MOST_DAMPING:
         step, expected = equations.step(damping)
         tried, gain = problem.trial(point, _limited(step, longest))
         if gain >= 0:
-            return tried, True, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
+            return tried, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping)
-            beyond, further = problem.trial(tried, _limited(back, longest))
+            second_point, further = problem.trial(tried, _limited(back, longest))
             if gain + further > 0:
-                return beyond, True, damping, max(expected, gain + further)
+                return second_point, damping, max(expected, gain + further)
             first = False
         damping = max(damping, 1e-8) * 8
-    return point, False, damping, expected
+    return None
 
 
 def _next_damping(damping: float, ratio: float) -> float:

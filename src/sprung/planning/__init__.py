@@ -1,12 +1,12 @@
-"""What a test would tell before it is done: Cramér-Rao bounds of alternatives, and which of them to take next."""
+"""Test planning (optimal experiment design): Cramér-Rao bounds of alternative tests, and the cheapest sufficient step."""
 
 from sprung.planning.completed import completed_test, setup_from_fit
-from sprung.planning.cramer_rao import Bound, two_figures
+from sprung.planning.cramer_rao import CramerRaoBound, two_figures
 from sprung.planning.plan import NextStep, Plan, PlanRow, next_step, tabulate_alternatives, tabulate_rejected
 from sprung.planning.setup import MeasurementSetup, PlannedDrop, PlannedTest
 
 __all__ = [
-    "Bound",
+    "CramerRaoBound",
     "MeasurementSetup",
     "NextStep",
     "Plan",

@@ -1,4 +1,4 @@
-"""The alternatives to a test: what else could be measured, and what that costs."""
+"""Alternatives to a test: further measurements and other tests, with their cost."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.planning.cramer_rao import Bound
+from sprung.planning.cramer_rao import CramerRaoBound
 from sprung.planning.setup import PlannedDrop, PlannedTest
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity
@@ -35,7 +35,7 @@ QUIETER = (2, 5)
 RATES = (0.5, 2.0)
 """Other sampling rates, as multiples of the planned one."""
 
-KINDS: Mapping[frozenset[Wheel], str] = {
+DROP_LABELS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "all wheels",
     frozenset(("fl", "fr")): "front wheels",
     frozenset(("rl", "rr")): "rear wheels",
@@ -44,11 +44,11 @@ KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(("fl", "rr")): "fl and rr",
     frozenset(("fl",)): "fl alone",
 }
-"""Drops by their wheels."""
+"""Labels of drops by their wheels."""
 
 
 class Cost(IntEnum):
-    """What a step costs, the cheapest first: the one place where that is said.
+    """Cost of a step, the cheapest first.
 
     A weighbridge is on the way; weighing axles takes two readings there. Dropping again what is rigged costs minutes, moving
     the blocks more. A load has to be found, weighed and placed; other sensors have to be bought.
@@ -74,98 +74,99 @@ class Alternative:
         What is done, for a sentence: ``weighing both axles``.
     cost
         None for what is no step beyond the test but another one.
-    times
-        Multiplies the information in all drops: repeats, or quieter sensors.
+    factor
+        Multiplies the information in all drops: repeats, or sensors with less noise.
     added
-        Drops done besides.
-    statements
-        Known besides.
+        Additional drops.
+    known
+        Additional quantities known beforehand.
     instead, rate
         Drops done in place of the test's own, if any, and samples per second in place of the planned ones.
     test
-        What it differs from.
+        The test that it changes.
     """
 
     label: str
     text: str
     test: PlannedTest = field(repr=False)
     cost: Cost | None = None
-    times: float = 1.0
+    factor: float = 1.0
     added: tuple[PlannedDrop, ...] = ()
-    statements: Mapping[str, KnownValue] = field(default_factory=dict)
+    known: Mapping[str, KnownValue] = field(default_factory=dict)
     instead: tuple[PlannedDrop, ...] | None = None
     rate: float | None = None
 
     @cached_property
-    def more(self) -> Real:
-        """Information in what is dropped besides, or less that in what is not dropped; shape (direction, direction)."""
-        subject = self.test.subject
+    def added_information(self) -> Real:
+        """Information in the additional drops, or in those done instead less that in the test's; (direction, direction)."""
+        setup = self.test.setup
         if self.instead is not None:
-            return subject.of_drops(self.instead, self.rate) - self.test.data
-        return subject.of_drops(self.added)
+            return setup.drop_information(self.instead, self.rate) - self.test.information
+        return setup.drop_information(self.added)
 
     @cached_property
-    def told(self) -> Real:
-        """Information in what is known besides; shape (direction, direction)."""
-        return self.test.subject.of_statements(self.statements)
+    def known_information(self) -> Real:
+        """Information in the additional known quantities; shape (direction, direction)."""
+        return self.test.setup.prior_information(self.known)
 
 
-def bound(test: PlannedTest, *alternatives: Alternative) -> Bound:
-    """Give the bound of a test with all these changes together.
+def compute_bound(test: PlannedTest, *alternatives: Alternative) -> CramerRaoBound:
+    """Compute the Cramér-Rao bound of a test with all these changes together.
 
     Raises
     ------
     InputError
         If the vehicle cannot be dropped so.
     """
-    information, times = test.data, 1.0
-    known = test.prior
-    for one in alternatives:
-        information, known, times = information + one.more, known + one.told, times * one.times
-    return Bound(test.subject, times * information + known)
+    information, known, factor = test.information, test.known_information, 1.0
+    for alternative in alternatives:
+        information = information + alternative.added_information
+        known = known + alternative.known_information
+        factor *= alternative.factor
+    return CramerRaoBound(test.setup, factor * information + known)
 
 
-def alternatives(test: PlannedTest) -> Iterator[Alternative]:
-    """Name the alternatives to a test, steps beyond it in the order of their cost, then other tests."""
+def list_alternatives(test: PlannedTest) -> Iterator[Alternative]:
+    """Yield the alternatives to a test: further steps in the order of their cost, then other tests."""
     yield from _weighings(test)
     yield from _repeats(test)
     yield from _drops(test)
     yield from _loads(test)
     for factor in QUIETER:
         part = "half" if factor == 2 else f"1/{factor} of"
-        text = f"sensors with {part} the noise, every drop done anew"
-        more = factor**2 if test.recorded is None else 1 + factor**2  # what is recorded already remains
-        yield Alternative(f"noise / {factor}", text, test, Cost.SENSORS, times=more)
-    if test.recorded is None:
+        text = f"sensors with {part} the noise, every drop repeated"
+        more = factor**2 if test.recorded_information is None else 1 + factor**2  # what is recorded already remains
+        yield Alternative(f"noise / {factor}", text, test, Cost.SENSORS, factor=more)
+    if test.recorded_information is None:
         yield from _other_tests(test)
 
 
 def _weighings(test: PlannedTest) -> Iterator[Alternative]:
-    subject = test.subject
-    std = SCALES * subject.vehicle.total_mass
+    setup = test.setup
+    std = SCALES * setup.vehicle.total_mass
 
     def weighed(*names: str) -> dict[str, KnownValue]:
-        values = {name: evaluate_quantity(name, subject.names, subject.values)[0] for name in names}
-        return {name: KnownValue(value, std) for name, value in values.items() if name not in subject.known}
+        values = {name: evaluate_quantity(name, setup.names, setup.values)[0] for name in names}
+        return {name: KnownValue(value, std) for name, value in values.items() if name not in setup.known}
 
     axles = weighed("front_axle_mass", "rear_axle_mass")
     total = weighed("total_mass") if axles else {}
     if total:
-        yield Alternative("total mass", "knowing the total mass", test, Cost.TOTAL_MASS, statements=total)
+        yield Alternative("total mass", "knowing the total mass", test, Cost.TOTAL_MASS, known=total)
     if axles:
-        yield Alternative("axle loads", "weighing both axles", test, Cost.AXLE_LOADS, statements=axles)
+        yield Alternative("axle loads", "weighing both axles", test, Cost.AXLE_LOADS, known=axles)
 
 
 def _repeats(test: PlannedTest) -> Iterator[Alternative]:
     for times in REPEATS:
         how = "twice" if times == 2 else f"{times} times"
-        yield Alternative(f"drops {how}", f"doing every drop {how}", test, Cost.REPEATS, times=times)
+        yield Alternative(f"drops {how}", f"doing every drop {how}", test, Cost.REPEATS, factor=times)
 
 
 def _drops(test: PlannedTest) -> Iterator[Alternative]:
     done = {frozenset(drop.wheels) for drop in test.drops if drop.load == EMPTY}
     height = test.drops[0].height
-    for wheels, name in KINDS.items():
+    for wheels, name in DROP_LABELS.items():
         if wheels not in done:
             ordered = tuple(wheel for wheel in WHEELS if wheel in wheels)
             text = f"a drop of {name if name.startswith('fl') else f'the {name}'.replace('the all', 'all')}"
@@ -174,7 +175,7 @@ def _drops(test: PlannedTest) -> Iterator[Alternative]:
 
 
 def _loads(test: PlannedTest) -> Iterator[Alternative]:
-    vehicle = test.subject.vehicle
+    vehicle = test.setup.vehicle
     middle = (-vehicle.a, 0.0)
     half = max(float(getattr(vehicle, f"t_f{which}")) for which in "12")
     places = [(fraction, "middle", "in the middle", middle) for fraction in FRACTIONS]
@@ -194,15 +195,15 @@ def _loads(test: PlannedTest) -> Iterator[Alternative]:
 
 
 def _other_tests(test: PlannedTest) -> Iterator[Alternative]:
-    """Name tests that do less, or sample otherwise; a test that is done can only be added to."""
+    """Yield tests with fewer drops or another rate; a completed test can only be extended."""
     empty = tuple(drop for drop in test.drops if drop.load == EMPTY)
     if empty and len(empty) < len(test.drops):
         yield Alternative("without load", "leaving the load out", test, instead=empty)
-    for wheels, name in KINDS.items():
+    for wheels, name in DROP_LABELS.items():
         some = tuple(drop for drop in test.drops if frozenset(drop.wheels) == wheels)
         if some and len(some) < len(test.drops):
             yield Alternative(f"only {name}", f"drops of {name} only", test, instead=some)
     for times in RATES:
-        rate = times * test.subject.rate
-        text = f"sampling at {rate:g} Hz, the noise per root hertz staying"
+        rate = times * test.setup.rate
+        text = f"sampling at {rate:g} Hz with the same noise density"
         yield Alternative(f"{rate:g} Hz", text, test, instead=test.drops, rate=rate)

@@ -1,4 +1,4 @@
-"""A campaign that is done, as a test to which others may be added."""
+"""A completed campaign as a test that further steps may extend."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def setup_from_fit(
     heights: Heights = LEVEL,
     name: str = "vehicle",
 ) -> MeasurementSetup:
-    """Take the vehicle that a fit has found, and its noise, for further tests.
+    """Return the setup of further tests: the fitted vehicle, with the noise of the fit.
 
     Parameters
     ----------
@@ -35,38 +35,38 @@ def setup_from_fit(
     rate, duration
         Samples per second, and seconds after the release, of further recordings.
     heights
-        How high things are, as far as it is known.
+        Heights of centre of gravity and wheels, as far as they are known.
     name
-        The vehicle's.
+        Of the vehicle.
 
     Returns
     -------
     Subject
     """
-    found = dict(zip(fit.names, fit.values.tolist(), strict=True))
-    vehicle = Vehicle.nearest(found, name=name, **heights.by_key)
+    parameters = dict(zip(fit.names, fit.values.tolist(), strict=True))
+    vehicle = Vehicle.nearest(parameters, name=name, **heights.by_key)
     return MeasurementSetup(vehicle, tracks, extras, known, tuple(sensors), fit.noise, rate, duration, fit.inflation)
 
 
-def completed_test(subject: MeasurementSetup, fit: FitStatistics, drops: Sequence[PlannedDrop]) -> PlannedTest:
-    """Take the drops that a fit has used, with what they have told.
+def completed_test(setup: MeasurementSetup, fit: FitStatistics, drops: Sequence[PlannedDrop]) -> PlannedTest:
+    """Return the drops of a fit as a completed test, with the information in their recordings.
 
     Parameters
     ----------
-    subject
+    setup
         From `setup_from_fit`.
     fit
         The fit.
     drops
-        What was dropped.
+        The drops.
 
     Returns
     -------
     PlannedTest
     """
-    # The fit's covariance holds what was known beforehand, which is taken out again: no repeat makes that any better.
-    covariance = subject.free.T @ fit.relative_covariance @ subject.free
+    # The fit's covariance includes what was known beforehand, which is subtracted: no repeat improves that.
+    covariance = setup.free.T @ fit.relative_covariance @ setup.free
     variances, vectors = np.linalg.eigh(covariance)
     least = np.finfo(float).eps * variances.max(initial=0.0)
     total = (vectors / np.maximum(variances, least)) @ vectors.T
-    return PlannedTest(subject, tuple(drops), total - subject.of_statements(subject.known))
+    return PlannedTest(setup, tuple(drops), total - setup.prior_information(setup.known))

@@ -1,4 +1,4 @@
-"""The Cramér-Rao bound: how well any unbiased estimate can know each parameter, and what it cannot know at all."""
+"""Cramér-Rao bound: the smallest standard uncertainty of each parameter, and what a test does not determine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from sprung.vehicle import LOAD_MASS
 Real = NDArray[np.float64]
 
 _LEAST = 0.01
-"""Information given to a direction without any, as the fit does it: ten powers of e of uncertainty."""
+"""Information assumed in a direction without any, as in the fit: an uncertainty of ten powers of e."""
 
 _EXACT = 1e-12
 """Relative uncertainty below which exact knowledge has fixed a parameter, such as b under an exact a and wheelbase."""
@@ -25,28 +25,28 @@ _EXACT = 1e-12
 
 @shown
 @dataclass(frozen=True, eq=False)
-class Bound:
-    """The bound of one test.
+class CramerRaoBound:
+    """Cramér-Rao bound of one test.
 
     Attributes
     ----------
-    subject
+    setup
         What is tested.
     information
-        Of drops and knowledge together, in the subject's free directions, dimensionless, shape (direction, direction).
+        Of drops and known quantities, in the free directions of the setup, dimensionless, shape (direction, direction).
     percents
         Smallest standard uncertainty in percent of each parameter that is not known exactly beforehand, those of extras in
         percent of the front spring or damper rate; None where there is no bound below the value itself.
     """
 
-    subject: MeasurementSetup
+    setup: MeasurementSetup
     information: Real = field(repr=False)
 
     @cached_property
     def _directions(self) -> tuple[Real, Real]:
         eigenvalues, vectors = np.linalg.eigh(self.information)
         rounding = RANK * eigenvalues.max(initial=0.0)
-        return np.where(eigenvalues < rounding, 0.0, eigenvalues), self.subject.free @ vectors
+        return np.where(eigenvalues < rounding, 0.0, eigenvalues), self.setup.free @ vectors
 
     @cached_property
     def covariance(self) -> Real:
@@ -57,62 +57,62 @@ class Bound:
 
     @cached_property
     def percents(self) -> Mapping[str, float | None]:
-        """By name, as the class says."""
+        """Smallest standard uncertainty of each parameter, %; None without a bound below its value."""
         spread = np.sqrt(np.diag(self.covariance)).tolist()
         return {
             name: 100 * one if one <= 1 else None
-            for name, one in zip(self.subject.names, spread, strict=True)
+            for name, one in zip(self.setup.names, spread, strict=True)
             if one > _EXACT and not name.startswith(LOAD_MASS)
         }
 
     @property
     def undetermined(self) -> tuple[str, ...]:
-        """The parameters without a bound."""
+        """Parameters without a bound."""
         return tuple(name for name, percent in self.percents.items() if percent is None)
 
     @property
     def worst(self) -> str | None:
-        """The parameter that is known least; None where all are known exactly."""
+        """Parameter with the largest uncertainty; None where all are known exactly."""
         return max(self.percents, key=lambda name: _size(self.percents[name]), default=None)
 
-    def above(self, wanted: float) -> int:
+    def count_above(self, wanted: float) -> int:
         """Count the parameters that stay above a wanted percent."""
         return sum(_size(percent) > wanted for percent in self.percents.values())
 
     @property
-    def rank(self) -> tuple[int, float]:
-        """Sorts bounds: fewest parameters without one first, then by the worst of the others."""
+    def sort_key(self) -> tuple[int, float]:
+        """Sort key: number of parameters without a bound, then the largest uncertainty of the others."""
         sizes = [percent for percent in self.percents.values() if percent is not None]
         return len(self.undetermined), max(sizes, default=0.0)
 
     @cached_property
-    def why(self) -> tuple[Unidentifiable, ...]:
-        """Which parameters the test does not determine, and why, in the words of an identification of it."""
-        silent = self.undetermined
-        if not silent:
+    def unidentifiable(self) -> tuple[Unidentifiable, ...]:
+        """Combinations of parameters that the test does not determine, with the reason."""
+        undetermined = self.undetermined
+        if not undetermined:
             return ()
         eigenvalues, directions = self._directions
-        silenced = canonical_basis(directions[:, eigenvalues < NO_INFORMATION])
-        named = to_estimates(self._expected(silenced), self.subject.known).unidentifiable
-        found = tuple(one for one in named if set(one.parameters) & set(silent))
-        left = tuple(name for name in silent if not any(name in one.parameters for one in found))
-        if left:
-            found += (Unidentifiable(left, "these drops leave as much doubt of it as its own size"),)
-        return found
+        without = canonical_basis(directions[:, eigenvalues < NO_INFORMATION])
+        combinations = to_estimates(self._expected_fit(without), self.setup.known).unidentifiable
+        combinations = tuple(own for own in combinations if set(own.parameters) & set(undetermined))
+        others = tuple(name for name in undetermined if not any(name in own.parameters for own in combinations))
+        if others:
+            combinations += (Unidentifiable(others, "its standard uncertainty from these drops exceeds its value"),)
+        return combinations
 
-    def _expected(self, undetermined: Real) -> FitStatistics:
-        """Give the fit that is to be expected of the test."""
-        subject = self.subject
+    def _expected_fit(self, undetermined: Real) -> FitStatistics:
+        """Return the statistics of the fit to be expected of the test."""
+        setup = self.setup
         return FitStatistics(
-            names=subject.names,
-            values=subject.values,
-            slopes=subject.slopes,
+            names=setup.names,
+            values=setup.values,
+            slopes=setup.slopes,
             relative_covariance=self.covariance,
-            covariance=self.covariance * np.outer(subject.slopes, subject.slopes),
+            covariance=self.covariance * np.outer(setup.slopes, setup.slopes),
             undetermined=undetermined,
-            noise=subject.noise,
-            residual=np.zeros((0, len(subject.noise))),
-            inflation=subject.inflation,
+            noise=setup.noise,
+            residual=np.zeros((0, len(setup.noise))),
+            inflation=setup.inflation,
             fitted=(),
             residuals=(),
             contradictions={},
@@ -129,7 +129,7 @@ def _size(percent: float | None) -> float:
 
 
 def two_figures(percent: float | None) -> str:
-    """Write a percentage to two figures, or a dash for none.
+    """Format a percentage to two significant figures, or a dash for none.
 
     Parameters
     ----------

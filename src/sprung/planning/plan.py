@@ -1,4 +1,4 @@
-"""The plan: every alternative with its bound, and the cheapest step that is enough."""
+"""The plan: every alternative with its bound, and the cheapest step that is sufficient."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import InputError, SprungError
-from sprung.planning.alternatives import Alternative, Cost, alternatives, bound
-from sprung.planning.cramer_rao import Bound, two_figures
+from sprung.planning.alternatives import Alternative, Cost, compute_bound, list_alternatives
+from sprung.planning.cramer_rao import CramerRaoBound, two_figures
 from sprung.planning.setup import PlannedTest
 
 if TYPE_CHECKING:
@@ -31,15 +31,15 @@ class PlanRow:
     cost
         Where it stands in the order of `Cost`; None for a test that is no step beyond the one planned.
     bound
-        What it would tell; None where it cannot be done.
+        Cramér-Rao bound; None where it cannot be done.
     refused
-        Why it cannot be done.
+        The reason why it cannot be done.
     """
 
     label: str
     text: str
     cost: Cost | None
-    bound: Bound | None = field(repr=False)
+    bound: CramerRaoBound | None = field(repr=False)
     refused: str | None = None
 
 
@@ -51,9 +51,9 @@ class NextStep:
     Attributes
     ----------
     labels
-        The alternatives to take together; none where nothing more is needed, or nothing helps.
+        Alternatives to combine; none where nothing more is needed, or nothing helps.
     enough
-        Whether every parameter is then below the wanted percentage.
+        Whether every parameter then has at most the wanted uncertainty.
     text
         One sentence.
     bound
@@ -63,29 +63,29 @@ class NextStep:
     labels: tuple[str, ...]
     enough: bool
     text: str
-    bound: Bound | None = field(repr=False)
+    bound: CramerRaoBound | None = field(repr=False)
 
 
 @shown
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """The table of alternatives.
+    """Table of alternatives to a test.
 
     Attributes
     ----------
     vehicle
-        Its name.
+        Name of the vehicle.
     wanted
-        Percent that no parameter is to exceed.
+        Standard uncertainty that no parameter is to exceed, %.
     noise, rate
         Of the sensors, m/s² root-mean-square by channel, and samples per second.
     rows
         The first one is the test as it is planned, or the campaign as it is; none of a rejected campaign, whose vehicle is not
         known.
     next_step
-        What to take of it.
+        The cheapest sufficient step.
     rejected
-        Why the campaign's own result must not be used, where that is so.
+        Reasons of the verdict where the campaign was rejected.
     """
 
     vehicle: str
@@ -105,7 +105,7 @@ class Plan:
         return pd.DataFrame.from_dict(rows, orient="index").astype(float).rename_axis("alternative")
 
     def document(self) -> dict[str, Any]:
-        """Give it as what JSON knows; percentages of undetermined parameters are null."""
+        """Return the plan as JSON holds it; percentages of undetermined parameters are null."""
         return {
             "vehicle": self.vehicle,
             "wanted": self.wanted,
@@ -126,20 +126,24 @@ class Plan:
         head = {"name": row.label, "text": row.text, "cost": cost, "refused": row.refused}
         if row.bound is None:
             return {**head, "worst": None, "above": None, "percent": {}, "unidentifiable": []}
-        silent = [{"parameters": list(one.parameters), "text": one.text} for one in row.bound.why]
-        told = {"worst": row.bound.worst, "above": row.bound.above(self.wanted), "percent": dict(row.bound.percents)}
-        return {**head, **told, "unidentifiable": silent}
+        unidentifiable = [{"parameters": list(one.parameters), "text": one.text} for one in row.bound.unidentifiable]
+        body = {
+            "worst": row.bound.worst,
+            "above": row.bound.count_above(self.wanted),
+            "percent": dict(row.bound.percents),
+        }
+        return {**head, **body, "unidentifiable": unidentifiable}
 
 
 def tabulate_alternatives(test: PlannedTest, wanted: float = 1.0) -> Plan:
-    """Draw up the table of alternatives to a test.
+    """Tabulate the alternatives to a test.
 
     Parameters
     ----------
     test
-        The test, planned or done.
+        The test, planned or completed.
     wanted
-        Percent that no parameter is to exceed.
+        Standard uncertainty that no parameter is to exceed, %.
 
     Returns
     -------
@@ -150,30 +154,34 @@ def tabulate_alternatives(test: PlannedTest, wanted: float = 1.0) -> Plan:
     InputError
         If the test itself cannot be done.
     """
-    own = ("as planned", "the test as planned") if test.recorded is None else ("as it is", "the campaign as it is")
-    others = tuple(alternatives(test))
-    subject = test.subject
+    own = (
+        ("as planned", "the test as planned")
+        if test.recorded_information is None
+        else ("as it is", "the campaign as it is")
+    )
+    others = tuple(list_alternatives(test))
+    setup = test.setup
     return Plan(
-        vehicle=subject.vehicle.name,
+        vehicle=setup.vehicle.name,
         wanted=wanted,
-        noise={one.channel: float(level) for one, level in zip(subject.sensors, subject.noise, strict=True)},
-        rate=subject.rate,
-        rows=(PlanRow(*own, None, bound(test)), *(_row(test, one) for one in others)),
-        next_step=_choose(test, wanted, others),
+        noise={sensor.channel: float(level) for sensor, level in zip(setup.sensors, setup.noise, strict=True)},
+        rate=setup.rate,
+        rows=(PlanRow(*own, None, compute_bound(test)), *(_row(test, alternative) for alternative in others)),
+        next_step=_choose_step(test, wanted, others),
     )
 
 
 def tabulate_rejected(
     vehicle: str, wanted: float, noise: Mapping[str, float], rate: float, reasons: Sequence[str]
 ) -> Plan:
-    """Return a plan that promises nothing: every bound would be one of a vehicle that is not known.
+    """Return the plan after a rejected campaign: without bounds, as the vehicle is not known.
 
     Parameters
     ----------
     vehicle
         Name of the one whose campaign was rejected.
     wanted
-        Percent that no parameter was to exceed.
+        Standard uncertainty that no parameter was to exceed, %.
     noise, rate
         Of its sensors, m/s² root-mean-square by channel, and samples per second.
     reasons
@@ -195,27 +203,27 @@ def tabulate_rejected(
 
 
 def next_step(test: PlannedTest, wanted: float = 1.0) -> NextStep:
-    """Say what to measure next, without the table; no drop is simulated that need not be.
+    """Choose what to measure next, without the table; only the drops that are needed are simulated.
 
     Parameters
     ----------
     test
-        The test, planned or done.
+        The test, planned or completed.
     wanted
-        Percent that no parameter is to exceed.
+        Standard uncertainty that no parameter is to exceed, %.
 
     Returns
     -------
     NextStep
     """
-    return _choose(test, wanted, tuple(alternatives(test)))
+    return _choose_step(test, wanted, tuple(list_alternatives(test)))
 
 
-def _row(test: PlannedTest, one: Alternative) -> PlanRow:
+def _row(test: PlannedTest, alternative: Alternative) -> PlanRow:
     try:
-        return PlanRow(one.label, one.text, one.cost, bound(test, one))
+        return PlanRow(alternative.label, alternative.text, alternative.cost, compute_bound(test, alternative))
     except SprungError as error:
-        return PlanRow(one.label, one.text, one.cost, None, _reason(error))
+        return PlanRow(alternative.label, alternative.text, alternative.cost, None, _reason(error))
 
 
 def _reason(error: SprungError) -> str:
@@ -224,55 +232,55 @@ def _reason(error: SprungError) -> str:
     return str(error)
 
 
-def _steps(others: Sequence[Alternative]) -> Iterator[tuple[Alternative, ...]]:
-    """Order single steps and pairs by the dearest in them, then by the other one; the list is ordered by cost itself."""
+def _combine_steps(others: Sequence[Alternative]) -> Iterator[tuple[Alternative, ...]]:
+    """Yield single steps and pairs in the order of the most expensive step, then of the other one."""
     steps = [one for one in others if one.cost is not None]
     for dearest, step in enumerate(steps):
         yield (step,)
-        # Of one kind there is no use in two, but for drops of different wheels.
+        # Two of one kind are of no use, except drops of different wheels.
         yield from (
             (cheaper, step) for cheaper in steps[:dearest] if cheaper.cost != step.cost or step.cost is Cost.DROP
         )
 
 
-def _choose(test: PlannedTest, wanted: float, others: Sequence[Alternative]) -> NextStep:
-    now = bound(test)
-    if not now.above(wanted):
+def _choose_step(test: PlannedTest, wanted: float, others: Sequence[Alternative]) -> NextStep:
+    now = compute_bound(test)
+    if not now.count_above(wanted):
         return NextStep((), True, _satisfied(now, wanted), now)
-    best: tuple[tuple[Alternative, ...], Bound] | None = None
-    for step in _steps(others):
+    best: tuple[tuple[Alternative, ...], CramerRaoBound] | None = None
+    for step in _combine_steps(others):
         try:
-            then = bound(test, *step)
+            then = compute_bound(test, *step)
         except SprungError:
             continue
-        if not then.above(wanted):
+        if not then.count_above(wanted):
             return NextStep(tuple(one.label for one in step), True, _enough(now, then, step, wanted), then)
-        if best is None or then.rank < best[1].rank:
+        if best is None or then.sort_key < best[1].sort_key:
             best = step, then
-    if best is None or not best[1].rank < now.rank:
+    if best is None or not best[1].sort_key < now.sort_key:
         return NextStep((), False, f"no single step or pair of steps brings every parameter to {wanted:g} %", now)
     labels, text = tuple(one.label for one in best[0]), _not_enough(now, *best, wanted)
     return NextStep(labels, False, text, best[1])
 
 
-def _satisfied(now: Bound, wanted: float) -> str:
+def _satisfied(now: CramerRaoBound, wanted: float) -> str:
     if now.worst is None:
-        return "every parameter is known beforehand; nothing is left to measure"
+        return "every parameter is known beforehand; no measurement is needed"
     worst = f"{now.worst} worst with {two_figures(now.percents[now.worst])} %"
     return f"nothing more is needed; every parameter is known to {wanted:g} % or better, {worst}"
 
 
-def _enough(now: Bound, then: Bound, step: Sequence[Alternative], wanted: float) -> str:
+def _enough(now: CramerRaoBound, then: CramerRaoBound, step: Sequence[Alternative], wanted: float) -> str:
     return f"{_change(now, then, step)} and bring every parameter to {wanted:g} % or better"
 
 
-def _not_enough(now: Bound, step: Sequence[Alternative], then: Bound, wanted: float) -> str:
-    left = f"{then.above(wanted)} parameters" if then.above(wanted) > 1 else "one parameter"
-    best = "no step of the table, nor two of them, does more"
+def _not_enough(now: CramerRaoBound, step: Sequence[Alternative], then: CramerRaoBound, wanted: float) -> str:
+    left = f"{then.count_above(wanted)} parameters" if then.count_above(wanted) > 1 else "one parameter"
+    best = "no other step or pair of steps of the table is better"
     return f"{_change(now, then, step)}; {left} would stay above {wanted:g} %, and {best}"
 
 
-def _change(now: Bound, then: Bound, step: Sequence[Alternative]) -> str:
+def _change(now: CramerRaoBound, then: CramerRaoBound, step: Sequence[Alternative]) -> str:
     doing = " and ".join(one.text for one in step)
     if not now.undetermined:
         worst = str(now.worst)

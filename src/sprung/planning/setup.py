@@ -1,4 +1,4 @@
-"""What is to be tested, and what a planned drop of it would tell.
+"""Planned drops and the Fisher information in them.
 
 The information in a drop is that of its decay without noise, at the true parameters, weighted with the noise that the
 sensors will have: the same exact derivatives that the fit uses, so that the bound is the one the fit will meet. Drops are
@@ -43,12 +43,12 @@ _SHORTEST = 0.5
 
 
 class PlannedDrop(NamedTuple):
-    """One release off the blocks, not done yet.
+    """One planned release off the blocks.
 
     Attributes
     ----------
     load
-        What is on the vehicle.
+        Load on the vehicle.
     wheels
         With blocks under them.
     height
@@ -63,16 +63,16 @@ class PlannedDrop(NamedTuple):
 @shown
 @dataclass(frozen=True, eq=False)
 class MeasurementSetup:
-    """A vehicle to test, what is known of it beforehand, and how it will be measured.
+    """A vehicle to be tested, what is known of it beforehand, and how it is measured.
 
     Attributes
     ----------
     vehicle
-        As it is, or as it is thought to be.
+        With the best available values of its parameters.
     tracks, extras
-        The model that will be fitted.
+        The model to be fitted.
     known
-        Known beforehand, the wheelbase among it.
+        Quantities known beforehand, with the wheelbase.
     sensors
         The sensors.
     noise
@@ -82,7 +82,7 @@ class MeasurementSetup:
     duration
         Of the recording after the release, s.
     inflation
-        By how many times less the records tell than they would with white residuals.
+        Factor by which coloured residuals increase the variance of the estimates.
     """
 
     vehicle: Vehicle
@@ -96,17 +96,17 @@ class MeasurementSetup:
     inflation: float = 1.0
 
     def __post_init__(self) -> None:
-        nothing = [
+        invalid = [
             Problem(f"vehicle {self.vehicle.name}: {name}", "0", "a positive number", "Give it a small value instead.")
             for name, value in zip(self.names, self.values, strict=True)
             if PARAMETERS[name].positive and not value > 0
         ]
-        if nothing:
-            raise InputError(nothing)
+        if invalid:
+            raise InputError(invalid)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The parameters of the model, and the masses of loads that are known with an uncertainty."""
+        """Parameters of the model, and the masses of loads that are known with an uncertainty."""
         masses = [name for name in self.known if name.startswith(LOAD_MASS)]
         return (*parameter_names(self.tracks, self.extras), *masses)
 
@@ -120,12 +120,12 @@ class MeasurementSetup:
 
     @cached_property
     def priors(self) -> PriorsAndConstraints:
-        """What is known beforehand, in the coordinates of the fit: an extra counts in parts of a spring or damper rate."""
+        """What is known beforehand, in the coordinates of the fit: a model term is relative to a spring or damper rate."""
         return PriorsAndConstraints(Coordinates.scaled_by(self.names, self.vehicle.parameters), self.known)
 
     @cached_property
     def u(self) -> Real:
-        """The coordinates, shape (parameter,)."""
+        """Coordinates of the fit, shape (parameter,)."""
         return self.priors.coordinates.from_values(self.values)
 
     @cached_property
@@ -135,24 +135,24 @@ class MeasurementSetup:
 
     @cached_property
     def free(self) -> Real:
-        """Directions of the coordinates that exact knowledge leaves free, shape (parameter, direction)."""
+        """Directions of the coordinates that exact constraints leave free, shape (parameter, direction)."""
         return self.priors.null_space(self.u)
 
-    def of_statements(self, statements: Mapping[str, KnownValue]) -> Real:
-        """Give the information in uncertain statements; shape (direction, direction)."""
-        _, by_coordinate = PriorsAndConstraints(self.priors.coordinates, statements).residuals(self.u)
+    def prior_information(self, known: Mapping[str, KnownValue]) -> Real:
+        """Return the information in quantities known with an uncertainty; shape (direction, direction)."""
+        _, by_coordinate = PriorsAndConstraints(self.priors.coordinates, known).residuals(self.u)
         slopes = by_coordinate @ self.free
         return slopes.T @ slopes
 
-    def of_drops(self, drops: Sequence[PlannedDrop], rate: float | None = None) -> Real:
-        """Give the information in drops, each done once.
+    def drop_information(self, drops: Sequence[PlannedDrop], rate: float | None = None) -> Real:
+        """Return the Fisher information in drops, each done once.
 
         Parameters
         ----------
         drops
             The drops.
         rate
-            Samples per second, if other than planned; a sensor's noise per root hertz stays, so that of a sample changes.
+            Samples per second, if other than planned; the noise density of a sensor is the same, so that of a sample changes.
 
         Returns
         -------
@@ -177,9 +177,9 @@ class MeasurementSetup:
         }
         objective = ClosedFormObjective(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
         weights = self.rate / sampling / self.noise**2
-        told = objective.at(self.values, weights).information
-        seen = self.slopes[:, None] * self.free
-        information: Real = seen.T @ told @ seen / self.inflation
+        of_parameters = objective.at(self.values, weights).information
+        directions = self.slopes[:, None] * self.free
+        information: Real = directions.T @ of_parameters @ directions / self.inflation
         return information
 
     def _decay(self, drop: PlannedDrop, load: str, rate: float) -> FreeDecay:
@@ -207,28 +207,30 @@ class MeasurementSetup:
 @shown
 @dataclass(frozen=True, eq=False)
 class PlannedTest:
-    """Drops of one subject, done or not.
+    """A test: drops of one vehicle, planned or completed.
 
     Attributes
     ----------
-    subject
-        What is dropped.
+    setup
+        Vehicle, model and measurement.
     drops
         The drops, each done once.
-    recorded
-        What they have told already, if they are done: information, dimensionless, shape (direction, direction).
+    recorded_information
+        Information in their recordings if the test is completed, dimensionless, shape (direction, direction); else None.
     """
 
-    subject: MeasurementSetup
+    setup: MeasurementSetup
     drops: tuple[PlannedDrop, ...]
-    recorded: Real | None = field(default=None, repr=False)
+    recorded_information: Real | None = field(default=None, repr=False)
 
     @cached_property
-    def data(self) -> Real:
+    def information(self) -> Real:
         """Information in the drops, shape (direction, direction)."""
-        return self.subject.of_drops(self.drops) if self.recorded is None else self.recorded
+        return (
+            self.setup.drop_information(self.drops) if self.recorded_information is None else self.recorded_information
+        )
 
     @cached_property
-    def prior(self) -> Real:
+    def known_information(self) -> Real:
         """Information in what is known beforehand, shape (direction, direction)."""
-        return self.subject.of_statements(self.subject.known)
+        return self.setup.prior_information(self.setup.known)

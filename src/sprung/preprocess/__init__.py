@@ -1,4 +1,4 @@
-"""Decays: the part of each drop in which the free-vibration model holds, and the faults that were met on the way."""
+"""Preprocessing: recordings are corrected, release and landing are detected, free decays extracted, faults reported."""
 
 from sprung.preprocess.alignment import align_loggers
 from sprung.preprocess.decay import FlightLikelihood, FreeDecay, quantisation_variance

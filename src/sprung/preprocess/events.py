@@ -1,4 +1,4 @@
-"""What happened when in a drop, and what its recording shows beside its decay: for people who want to see why."""
+"""Events of a drop, and what its recording shows besides its decay."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from sprung.vehicle import Wheel
 
 @dataclass(frozen=True)
 class Events:
-    """When what happened, and why the decay is used from where to where.
+    """Times of the events of a drop, and the reasons for the limits of its decay.
 
     Attributes
     ----------
     release
         First motion, s on the recording's clock; None where no rest was found before it.
     landing
-        When the last wheel that fell met the ground, s; None where no sensor tells.
+        When the last wheel that fell met the ground, s; None where no sensor shows it.
     last_lift_off
         Last moment, not before the landing, at which a tyre may have been off the ground once more, s; None where none can have
-        been, or no sensor tells.
+        been, or no sensor shows it.
     start
-        From when on the recording shows free vibration, s, not before any of these; None where nobody looked.
+        From when on the recording shows free vibration, s, not before any of these; None where it was not determined.
     why_start, why_end
         The reason for each limit of the decay, in words that go on after the time.
     why_fit
-        The reason why a fit uses the decay from elsewhere; empty where it does not.
+        The reason why a fit uses another start; empty where it does not.
     """
 
     release: float | None = None
@@ -45,7 +45,7 @@ class Events:
 
 
 class MarkedSamples(NamedTuple):
-    """Samples of a channel with which something is the matter.
+    """Samples of a channel that have a fault.
 
     Attributes
     ----------
@@ -64,20 +64,20 @@ class MarkedSamples(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class DropObservation:
-    """What one drop's recording shows, whether or not it can be used.
+    """What the recording of one drop shows, whether or not it can be used.
 
     Attributes
     ----------
     drop
         As it is stated, with its recording as it was read.
     recording
-        The whole of it, in SI, put right; channels that clip within the decay are still in it.
+        The whole of it, in SI, corrected; with the channels that clip within the decay.
     release
         Position of the first sample that moves; None where no rest was found before it.
     rest
         What the sensors read before it.
     marks
-        Samples with which something is the matter.
+        Samples that have a fault.
     dropped
         For each wheel with a sensor, as far as the release shows it: whether it lost its block.
     wheels

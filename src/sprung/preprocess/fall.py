@@ -81,8 +81,10 @@ def detect_dropped_channels(level: Real, onset: Real, depth: Real, speed: Real, 
     ----------
     level
         At rest, m/s², shape (channel,).
-    onset, depth, speed
-        From `measure_fall`.
+    onset, depth
+        From `measure_fall`, m/s², shape (channel,).
+    speed
+        From `measure_fall`, m/s, shape (channel,).
     wheels
         Which channels are on wheels, shape (channel,).
 

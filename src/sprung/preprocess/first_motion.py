@@ -1,11 +1,11 @@
-"""The first motion of the body after each release: where it goes down tells on which side its wheels lost their blocks.
+"""First motion of the body after each release: it goes down on the side on which its wheels lost their blocks.
 
 Within some hundredths of a second after the release a spring that carried a corner of the body loses part of its force, at the
 wheels that fell and nowhere else. What the body then gains in velocity is linear in the place on the body, and adds up over the
 wheels: v(x, y) = Σ over axles (n (A + B x) + s C y), with n wheels that fell at the axle, s more on the left than on the right.
 A body goes down most where its wheels fell (C < 0; B has one sign at the front and the other at the rear), and turns about the
 opposite axle, as its radius of gyration is about that of two masses above the axles (centre of percussion). No mass and no rate
-has to be known for that, so it judges where sensors and wheels are said to be.
+has to be known for that, so it tests the stated places of sensors and wheels.
 """
 
 from __future__ import annotations
@@ -43,19 +43,18 @@ gyration squared is a b; the limits are those of 0.4 and 2 times that."""
 
 @dataclass(frozen=True, eq=False)
 class FirstMotion:
-    """How the body begins to move in each drop.
+    """First motion of the body in each drop.
 
     Attributes
     ----------
     channels
         Positions of the body's sensors in the campaign.
     velocities
-        What each gains in the first hundredths of a second, m/s, upward, shape (drop, channel); NaN where nothing tells.
+        Gained by each in the first hundredths of a second, m/s, upward, shape (drop, channel); NaN without a release.
     dropped
-        For each drop the wheels' channels that show a fall, by the station where they are said to be: whether they fell.
+        For each drop, by the wheel station that the campaign states for a channel, whether the channel shows a fall.
     rises
-        Whether what moves most, among the body's sensors or among those of the wheels, begins to rise after the releases
-        where it should fall: no vehicle does.
+        Whether the largest motion, among the body's sensors or among those of the wheels, begins upward: no vehicle does.
     """
 
     channels: tuple[int, ...]
@@ -65,22 +64,22 @@ class FirstMotion:
 
     @classmethod
     def of(cls, campaign: Campaign, prepared: Prepared) -> FirstMotion:
-        """Read it from recordings that were prepared, for a campaign that may say otherwise where their sensors are."""
+        """Measure it in prepared recordings, for a campaign that may state other places of their sensors."""
         body = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body")
         wheels = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on != "body")
         gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
         rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
-        fell = tuple(
+        dropped = tuple(
             detect_dropped_wheels(
                 seen.recording, None if seen.release is None else Release(seen.release, seen.rest), campaign.sensors
             )
             for seen in prepared.observations
         )
-        return cls(body, gained[:, list(body)], fell, rises)
+        return cls(body, gained[:, list(body)], dropped, rises)
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:
-    """Give the velocity that each channel gains in some time after the release, m/s, shape (drop, channel)."""
+    """Velocity that each channel gains in some time after the release, m/s, shape (drop, channel)."""
     gained = np.full((len(prepared.observations), channels), np.nan)
     for drop, seen in enumerate(prepared.observations):
         if seen.release is not None:
@@ -91,23 +90,23 @@ def _gained(prepared: Prepared, channels: int, span: float) -> Real:
 
 
 def _rises(gained: Real) -> bool:
-    """Say whether the larger velocities of a group of sensors are upward, shape (drop, channel)."""
+    """Return whether the larger velocities of a group of sensors are upward, shape (drop, channel)."""
     known = np.nan_to_num(gained)
     return bool((known * np.abs(known)).sum() > 0)
 
 
 def is_first_motion_consistent(
-    motion: FirstMotion, places: Sequence[tuple[float, float]], fallen: Sequence[Sequence[Wheel]], wheelbase: float
+    motion: FirstMotion, places: Sequence[tuple[float, float]], dropped: Sequence[Sequence[Wheel]], wheelbase: float
 ) -> bool | None:
-    """Say whether the body moves first as bodies do, with its sensors at some places and some wheels fallen.
+    """Return whether the first motion is consistent with stated places of the sensors and stated wheels.
 
     Parameters
     ----------
     motion
-        What the recordings show.
+        Measured.
     places
         x and y of the body's sensors, m: forward of the front axle, left of the centreline.
-    fallen
+    dropped
         The wheels that fell in each drop.
     wheelbase
         m.
@@ -115,13 +114,13 @@ def is_first_motion_consistent(
     Returns
     -------
     bool or None
-        None where neither drops of one end nor of one side show it.
+        None where there are neither drops of one end nor of one side.
     """
-    counts = np.array([[sum(wheel[0] == end for wheel in wheels) for end in "fr"] for wheels in fallen], dtype=float)
+    counts = np.array([[sum(wheel[0] == end for wheel in wheels) for end in "fr"] for wheels in dropped], dtype=float)
     sides = np.array(
         [
             [sum((1 if wheel[1] == "l" else -1) for wheel in wheels if wheel[0] == end) for end in "fr"]
-            for wheels in fallen
+            for wheels in dropped
         ],
         dtype=float,
     )
@@ -137,24 +136,24 @@ def is_first_motion_consistent(
     columns = [np.broadcast_to(counts[:, [i]], there.shape) for i in range(2)]
     columns += [counts[:, [i]] * x for i in range(2)] + [sides[:, [i]] * y for i in range(2)]
     design = np.array([column[there] for column in columns]).T
-    found = np.linalg.lstsq(design, velocities, rcond=1e-9)[0]
-    left = velocities - design @ found
-    if left @ left > (1 - _EXPLAINED) * (velocities @ velocities):
+    solution = np.linalg.lstsq(design, velocities, rcond=1e-9)[0]
+    residual = velocities - design @ solution
+    if residual @ residual > (1 - _EXPLAINED) * (velocities @ velocities):
         return False
     largest = float(np.abs(velocities).max())
-    front, rear, slope_front, slope_rear, left_front, left_rear = found.tolist()
+    front, rear, slope_front, slope_rear, left_front, left_rear = solution.tolist()
     if sides_differ:
         tilts = (left_front + left_rear) * np.ptp(y)
         if not tilts < -_SHOWN * largest:
             return False
     return not ends_differ or (
-        _turns(front, slope_front, wheelbase, _ABOUT_THE_REAR, -1.0)
-        and _turns(rear, slope_rear, wheelbase, _ABOUT_THE_FRONT, 1.0)
+        _turns_plausibly(front, slope_front, wheelbase, _ABOUT_THE_REAR, -1.0)
+        and _turns_plausibly(rear, slope_rear, wheelbase, _ABOUT_THE_FRONT, 1.0)
     )
 
 
-def _turns(constant: float, slope: float, wheelbase: float, limits: tuple[float, float], way: float) -> bool:
-    """Say whether a body goes down where it should, and turns about a place where it should."""
+def _turns_plausibly(constant: float, slope: float, wheelbase: float, limits: tuple[float, float], way: float) -> bool:
+    """Return whether a body goes down where its wheels fall, and turns about a possible place."""
     if slope * way <= 0:
         return False
     low, high = limits

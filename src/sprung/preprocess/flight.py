@@ -1,4 +1,4 @@
-"""Flight: a drop from just after its release on, when the tyres that fell have yet to come down."""
+"""Flight: a drop from just after its release on, while the tyres that fell are off the ground."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CLEAR = 0.01
 """s after the release by which the blocks are out of the way."""
 
 FROM_RELEASE = "the blocks are out of the way, and the fall is used too"
-"""Why a drop that is used from its release on starts where it does."""
+"""Reason for the start of a drop that is used from its release on."""
 
 
 class Flight(NamedTuple):
@@ -30,7 +30,7 @@ class Flight(NamedTuple):
     wheels
         Which wheels fell.
     height
-        Of the blocks, m; None where nobody wrote it down.
+        Of the blocks, m; None where it is not stated.
     since
         Time of the first sample, s after the release.
     """
@@ -41,33 +41,35 @@ class Flight(NamedTuple):
     since: float
 
 
-def find_flights(decays: Sequence[FreeDecay], seen: Sequence[DropObservation]) -> list[Flight | None]:
-    """Give drops from just after their releases on.
+def find_flights(decays: Sequence[FreeDecay], observations: Sequence[DropObservation]) -> list[Flight | None]:
+    """Find the drops that can be used from just after their release on.
 
     Parameters
     ----------
     decays
         Their decays, as they are used.
-    seen
-        What the recording of every drop of the campaign shows.
+    observations
+        Of every drop of the campaign.
 
     Returns
     -------
     list of Flight or None
-        For each decay; None where the fall cannot be used: no release was found, somebody said from when on the drop is to be
-        used, several loggers recorded it, or samples of the fall were clipped or mended.
+        For each decay; None where the fall cannot be used: no release was detected, the campaign states the start, several
+        loggers recorded the drop, or samples of the fall were clipped or replaced.
     """
-    by_file = {observation.recording.name: observation for observation in seen}
+    by_file = {observation.recording.name: observation for observation in observations}
     return [_flight(decay, by_file[decay.file]) for decay in decays]
 
 
-def _flight(decay: FreeDecay, seen: DropObservation) -> Flight | None:
-    drop, recording, release = seen.drop, seen.recording, seen.release
+def _flight(decay: FreeDecay, observation: DropObservation) -> Flight | None:
+    drop, recording, release = observation.drop, observation.recording, observation.release
     if release is None or drop.start is not None or decay.clocks or recording.rate != decay.rate:
         return None
     first = release + math.ceil(_CLEAR * decay.rate)
     begin = round((decay.start - recording.start) * decay.rate)
-    if not first < begin or any(np.any((mark.samples >= release) & (mark.samples <= begin)) for mark in seen.marks):
+    if not first < begin or any(
+        np.any((mark.samples >= release) & (mark.samples <= begin)) for mark in observation.marks
+    ):
         return None
     whole = recording.values[:, first : begin + decay.samples]
     values = np.where(decay.usable[:, None], whole, np.nan)
@@ -77,7 +79,7 @@ def _flight(decay: FreeDecay, seen: DropObservation) -> Flight | None:
     events = replace(decay.events, why_fit=FROM_RELEASE)
     return Flight(
         replace(decay, values=values, earlier=values[:, :0], start=start, events=events),
-        seen.wheels,
+        observation.wheels,
         drop.height,
         (first - release) / decay.rate,
     )

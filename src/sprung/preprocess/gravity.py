@@ -86,25 +86,25 @@ def check_gravity(
     stated_ac = np.array([sensor.high_pass is not None for sensor in sensors])
     other = known & ~stated_ac & ~zero & ~gravity
     most_read_gravity = bool(gravity.sum() > other.sum())
-    senseless = other & most_read_gravity & (np.abs(usual) > _FARTHEST)
+    implausible = other & most_read_gravity & (np.abs(usual) > _FARTHEST)
     uncoupled = zero & ~stated_ac & most_read_gravity & bool(gravity.sum() > zero.sum())
-    offset = known & ~zero & ~stated_ac & ~senseless & most_read_gravity & (np.abs(upward - 1) > _NEGLIGIBLE)
+    offset = known & ~zero & ~stated_ac & ~implausible & most_read_gravity & (np.abs(upward - 1) > _NEGLIGIBLE)
     faults: list[Fault] = []
-    wrong = (np.array(units) > 0) | inverted | (stated_ac & gravity) | senseless | uncoupled | offset
+    wrong = (np.array(units) > 0) | inverted | (stated_ac & gravity) | implausible | uncoupled | offset
     for channel in np.flatnonzero(wrong).tolist():
         sensor, reading = sensors[channel], float(usual[channel]) * STANDARD_GRAVITY
         found = {
             _unit_fault(sensor, reading, units[channel]): units[channel] > 0,
             _sign_fault(sensor, reading): inverted[channel],
             _no_high_pass_fault(sensor): stated_ac[channel] and gravity[channel],
-            _unknown_unit_fault(sensor, reading): senseless[channel],
+            _unknown_unit_fault(sensor, reading): implausible[channel],
             _coupling_fault(sensor): uncoupled[channel],
             _offset_fault(sensor, float(upward[channel])): offset[channel],
         }
         faults += [fault for fault, holds in found.items() if holds]
     if not faults:
         return list(recordings), list(releases), tuple(sensors)
-    factors = np.where(senseless, np.nan, factors * np.where(inverted, -1.0, 1.0))
+    factors = np.where(implausible, np.nan, factors * np.where(inverted, -1.0, 1.0))
     changed = [_scale_recording(recording, factors) for recording in recordings]
     changed[0] = replace(changed[0], faults=(*changed[0].faults, *_group_faults(faults)))
     return (

@@ -157,8 +157,8 @@ def detect_landing(
     above = corners @ np.linalg.pinv(plane) @ (reading[body] + STANDARD_GRAVITY)
     own = reading[[channel for channel, _ in wheels]]
     tyre_force = own + STANDARD_GRAVITY + static * above / STANDARD_GRAVITY
-    airborne = _without_short_runs(tyre_force < _ON_THE_GROUND * (STANDARD_GRAVITY + static), int(_SPIKE * rate / 2))
-    low = np.flatnonzero(airborne.any(axis=0))
+    is_unloaded = _without_short_runs(tyre_force < _ON_THE_GROUND * (STANDARD_GRAVITY + static), int(_SPIKE * rate / 2))
+    low = np.flatnonzero(is_unloaded.any(axis=0))
     last = release.sample + int(low[-1]) + 1 if low.size else 0
     falls = [
         release.sample + find_steepest_rise(signal[: int(_IMPACT * rate)])
@@ -191,7 +191,12 @@ def find_steepest_rise(reading: Real) -> int:
     Parameters
     ----------
     reading
-        Of one sensor on a wheel from the release on, positive up, shape (time,).
+        Of one sensor on a wheel from the release on, positive up, m/s², shape (time,).
+
+    Returns
+    -------
+    int
+        Position of the sample.
     """
     impact = int(np.argmax(reading))
     return impact if impact < 2 else int(np.argmax(np.diff(reading[: impact + 1]))) + 1

@@ -63,7 +63,7 @@ def _curve_from(name: str, columns: Mapping[str, Any]) -> AmplitudeCurve:
     return AmplitudeCurve(name, *(np.array(columns[column], dtype=float) for column in _COLUMNS))
 
 
-Amplitudes = Annotated[
+AmplitudeCurves = Annotated[
     SkipValidation[tuple[ModeAmplitude, ...]], BeforeValidator(_amplitudes_from), PlainSerializer(amplitude_document)
 ]
 """Amplitude curves as a field of a result."""

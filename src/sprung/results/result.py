@@ -20,7 +20,7 @@ from sprung.display import shown
 from sprung.errors import Fault
 from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
 from sprung.files import atomic_write
-from sprung.results.amplitude import Amplitudes
+from sprung.results.amplitude import AmplitudeCurves
 from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import plain_document
 from sprung.results.records import EXACT_KEYS, FitReport, TestedVehicle, TraceStep
@@ -117,7 +117,7 @@ class Result:
     validation: dict[str, DropValidation]
     next_step: str | None
     setup: Setup
-    amplitude: Amplitudes = ()
+    amplitude: AmplitudeCurves = ()
     trace: tuple[TraceStep, ...] = ()
     omissions: tuple[str, ...] = ()
     series: Mapping[str, Series] = field(default_factory=dict, repr=False)

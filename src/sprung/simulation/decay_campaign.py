@@ -81,12 +81,12 @@ def free_decays(
     problems.raise_if_any()
 
     samples = round(duration * rate)
-    begun = [(load, state) for load in setup.loads for state in starts[load.name]]
-    drops = [Drop(load=load.name, start=0.0) for load, _ in begun]
+    cases = [(load, state) for load in setup.loads for state in starts[load.name]]
+    drops = [Drop(load=load.name, start=0.0) for load, _ in cases]
     if nonlinear_elements(vehicle.tracks, vehicle.extras):
-        loads_of, states_of = [load for load, _ in begun], np.array([state for _, state in begun])
+        loads_of, states_of = [load for load, _ in cases], np.array([state for _, state in cases])
         motions = simulate_nonlinear_decays(vehicle, loads_of, states_of, 1 / rate, samples)
     else:
-        motions = [free_decay(vehicle.matrices(load), state, 1 / rate, samples) for load, state in begun]
+        motions = [free_decay(vehicle.matrices(load), state, 1 / rate, samples) for load, state in cases]
     accelerations = [motion.acceleration for motion in motions]
     return setup.campaign(name_files(drops, "decay"), accelerations, "free decay", random)

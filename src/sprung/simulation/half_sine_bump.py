@@ -55,8 +55,8 @@ def drive_over_half_sine_bump(
         stiffness, damping = tyre_rates[station]
         force[3 + WHEELS.index(station)] = height * (stiffness + 1j * omega * damping)
     dynamic = matrices.K - omega**2 * matrices.M + 1j * omega * matrices.C
-    steady = np.linalg.solve(dynamic, force)  # X = Im(steady exp(iωt)) is the steady response to the sine
-    orbit = np.concatenate([steady, 1j * omega * steady])
+    amplitude = np.linalg.solve(dynamic, force)  # X = Im(amplitude exp(iωt)), the steady-state response to the sine
+    orbit = np.concatenate([amplitude, 1j * omega * amplitude])
     A = matrices.state
 
     during = min(samples, int(np.ceil(duration / step - 1e-9)))

@@ -198,9 +198,9 @@ def _check_plausible(
         problems=problems,
     )
     for name, value in vehicle.parameters.items():
-        beyond = explain_implausible(name, value)
-        if beyond is not None:
-            problems.add(f"simulate: vehicle.{name}", f"{value:g}", *beyond)
+        limits = explain_implausible(name, value)
+        if limits is not None:
+            problems.add(f"simulate: vehicle.{name}", f"{value:g}", *limits)
 
 
 def check_not_negative(problems: Problems, **lengths: float) -> None:

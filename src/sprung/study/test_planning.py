@@ -147,12 +147,12 @@ def plan(
         setup.model.tracks or ("separate" if vehicle.tracks == "separate" else None),
         own if setup.model.extras is None else None,
     )
-    subject = MeasurementSetup(
+    measurement = MeasurementSetup(
         vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration
     )
     loaded = {load.name: load for load in setup.loads}
     planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
-    return tabulate_alternatives(PlannedTest(subject, planned), wanted)
+    return tabulate_alternatives(PlannedTest(measurement, planned), wanted)
 
 
 def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:

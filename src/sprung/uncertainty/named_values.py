@@ -1,4 +1,4 @@
-"""Quantities by name, where a misspelt name is answered with the nearest one."""
+"""Quantities by name, with the nearest name in the error for an unknown one."""
 
 from __future__ import annotations
 

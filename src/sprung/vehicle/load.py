@@ -55,7 +55,7 @@ class Item:
     inertia: tuple[NotNegative, NotNegative] = (0.0, 0.0)
     """Its own [I_xx, I_yy] about its centre, kg m²."""
     on: Wheel | None = None
-    """The wheel it sits on, for items not on the body."""
+    """Wheel station, for items on a wheel."""
 
     @model_validator(mode="before")
     @classmethod
@@ -143,11 +143,11 @@ class Load:
     """A known load: a list of items, or totals. The load named ``empty`` has neither and always exists."""
 
     name: Annotated[str, Field(min_length=1)]
-    """What the drops call it."""
+    """Name by which drops refer to it."""
     items: tuple[Item, ...] = ()
-    """Its items, each a mass at a place."""
+    """Its items, each a mass at a position."""
     added: Added | None = None
-    """Its totals, where only these are known."""
+    """Its totals, if only these are known."""
 
     @model_validator(mode="after")
     def _one_description(self) -> Load:

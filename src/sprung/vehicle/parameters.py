@@ -62,7 +62,11 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
         "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
         "w_h": Parameter(
-            "N m", "weight of the body times the height by which it stands above what carries it", True, False, True
+            "N m",
+            "weight of the body times the height of its centre of gravity above lateral support",
+            True,
+            False,
+            True,
         ),
         "y_s": Parameter("m", "centre of gravity of the sprung mass, left of the centreline", False, False, True),
         "d_ksf": Parameter("N/m", "left front spring rate above the mean of both", True, False, True),

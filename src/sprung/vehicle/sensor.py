@@ -26,7 +26,7 @@ class Sensor:
     position: tuple[Finite, Finite, Finite] | None = None
     """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""
     unit: str | None = None
-    """Overrides what the file says; m/s² when neither says."""
+    """Unit; overrides that of the file; m/s² if neither states one."""
     direction: Literal["up", "down"] = "up"
     """Direction of a positive reading."""
     range: Positive | None = None
@@ -36,7 +36,7 @@ class Sensor:
     high_pass: Positive | None = None
     """Corner frequency of an AC-coupled sensor, Hz."""
     logger: str | None = None
-    """Name of its logger, where there were several."""
+    """Name of its logger, if there were several."""
 
     @property
     def row(self) -> Row:

@@ -38,12 +38,12 @@ def exponential_moments(
     samples
         N of each record; broadcasts with `last`, shape (record, ...).
     powers
-        How many sums are wanted.
+        Number of sums.
 
     Returns
     -------
     list of ndarray
-        Σ z^k, Σ k z^k and Σ k² z^k, as many as wanted, each of shape (record, ...).
+        Σ z^k, Σ k z^k and Σ k² z^k, the first `powers` of them, each of shape (record, ...).
 
     Notes
     -----
@@ -82,13 +82,12 @@ def exponential_gram(exponent: Complex, samples: Index, group: Index | None = No
     group
         Group of each record, shape (record,); a group for each record unless given.
     secular
-        Whether those with k e^{λk} are wanted.
+        Whether to return those with k e^{λk} too.
 
     Returns
     -------
     ndarray
-        Conjugated by rows; shape (record, twice as many modes, twice as many modes), or with half of both where only e^{λk} is
-        wanted.
+        Conjugated by rows; shape (record, 2 mode, 2 mode), or (record, mode, mode) where secular is False.
     """
     powers = 3 if secular else 1
     of_record = np.arange(len(exponent)) if group is None else group
@@ -142,7 +141,7 @@ def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> 
 
 
 def correlate_with_exponentials(
-    blocked: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
+    padded_blocks: Real, counts: Index, exponent: Complex, group: Index, secular: bool = True
 ) -> Complex:
     """Return the inner products of records with exponentials.
 
@@ -158,12 +157,12 @@ def correlate_with_exponentials(
     group
         Group of each record, ascending, shape (record,).
     secular
-        Whether those with k e^{λk} are wanted.
+        Whether to return those with k e^{λk} too.
 
     Returns
     -------
     ndarray
-        Σ conj(e^{λk}) y_k and, if wanted, Σ k conj(e^{λk}) y_k, in the unit of the records; shape
+        Σ conj(e^{λk}) y_k and, if secular, Σ k conj(e^{λk}) y_k, in the unit of the records; shape
         (record, channel, 1 or 2, mode).
     """
     ends = np.cumsum(counts)
@@ -175,8 +174,8 @@ def correlate_with_exponentials(
         table = np.concatenate([fine, inside * fine], axis=1) if secular else fine
         own = ends[group == number]
         begin = own[0] - counts[np.searchsorted(group, number)]
-        flat.append(blocked[begin : own[-1]].reshape(-1, BLOCK_LENGTH) @ table.view(float))
-    products = np.concatenate(flat).view(complex).reshape(*blocked.shape[:2], -1, exponent.shape[1])
+        flat.append(padded_blocks[begin : own[-1]].reshape(-1, BLOCK_LENGTH) @ table.view(float))
+    products = np.concatenate(flat).view(complex).reshape(*padded_blocks.shape[:2], -1, exponent.shape[1])
     coarse = np.exp(exponent.conj()[:, None] * (BLOCK_LENGTH * np.arange(counts.max())[:, None]))
     products *= coarse[np.repeat(group, counts), of_block][:, None, None]
     if secular:

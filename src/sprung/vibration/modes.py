@@ -16,7 +16,7 @@ Complex = NDArray[np.complex128]
 
 
 EQUAL_ENTRIES = 1e-6
-"""Relative difference below which two entries of a shape are as large as each other."""
+"""Relative difference below which two entries of a shape are equal."""
 
 UNRESOLVED_FROM = 0.1
 """Standard uncertainty of a pole, as a part of its size, from which on the records do not determine it."""
@@ -215,11 +215,11 @@ def sort_modes(modes: Sequence[Mode]) -> tuple[Mode, ...]:
     if not modes:
         return ()
     ordered = make_modes([mode.pole for mode in modes], np.stack([mode.shape for mode in modes], axis=1))
-    left = list(modes)
+    remaining = list(modes)
     found = []
     for mode in ordered:
-        own = next(i for i, one in enumerate(left) if one.pole == mode.pole)
-        found.append(replace(left.pop(own), shape=mode.shape))
+        position = next(i for i, candidate in enumerate(remaining) if candidate.pole == mode.pole)
+        found.append(replace(remaining.pop(position), shape=mode.shape))
     return tuple(found)
 
 

@@ -65,7 +65,7 @@ def _cells(plan: Plan, row: PlanRow, names: Sequence[str]) -> Iterator[str]:
     worst = row.bound.worst
     yield "-" if worst is None else worst
     yield "-" if worst is None else two_figures(row.bound.percents[worst])
-    yield str(row.bound.above(plan.wanted))
+    yield str(row.bound.count_above(plan.wanted))
     for name in names:
         yield two_figures(row.bound.percents.get(name))
 
@@ -77,7 +77,7 @@ def _reasons(plan: Plan) -> Iterator[str]:
         if row.refused is not None:
             rows.setdefault(f"not possible: {row.refused}", []).append(row.label)
         elif row.bound is not None:
-            for combination in row.bound.why:
+            for combination in row.bound.unidentifiable:
                 # The text about the scale does not name its parameters, the others begin with their names.
                 names = (
                     ""

@@ -1,4 +1,4 @@
-"""The look at one recording: what its channels are, and which drops it holds."""
+"""Examination of one recording: its channels, and the drops in it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.drafting.channel import Channel
+from sprung.drafting.channel_survey import (
+    ChannelSurvey,
+    detect_full_scales,
+    largest_reading,
+    read_pieces,
+    survey_channels,
+)
 from sprung.drafting.detected_drop import DetectedDrop, is_on_wheel
 from sprung.drafting.detection import Detection, detect_drops
 from sprung.drafting.records import DraftFile
-from sprung.drafting.survey import Survey, full_scales, largest, pieces, survey
 from sprung.errors import InputError, Problem
 from sprung.formats import MIN_RATE, read_table
 from sprung.units import acceleration_factor
@@ -22,15 +28,15 @@ if TYPE_CHECKING:
     from sprung.formats import SampleTable
 
 _UNITS = ("m/s^2", "g", "mm/s^2", "mg")
-"""What a sensor that feels no gravity may read in where its file names no unit; the first in which wheels fall is taken."""
+"""Units tried for a sensor that reads no gravity and whose file states none; the first in which wheels fall is used."""
 
 _LEAST, _MOST = 5.0, 600.0
 """m/s² between which the largest reading lies, averaged over some milliseconds, of a recording with drops in it."""
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
-    """What one recording shows.
+class ExaminedRecording:
+    """One recording with its channels and drops.
 
     Attributes
     ----------
@@ -39,11 +45,11 @@ class Look:
     channels
         Its vertical accelerations.
     drops
-        Its drops, on the file's clock; their readings by channel, in the same order.
+        Its drops, on the file's clock; their features by channel, in the same order.
     full_scale
         By channel a reading at which it stays for some samples of a drop.
     files
-        Names of the recordings, where several loggers' were looked at together.
+        Names of the recordings, where those of several loggers were joined.
     """
 
     file: DraftFile
@@ -53,8 +59,8 @@ class Look:
     files: tuple[str, ...] = ()
 
 
-def look(folder: Path, name: str, progress: Callable[[float], None]) -> Look:
-    """Read one recording and find its drops.
+def examine_recording(folder: Path, name: str, progress: Callable[[float], None]) -> ExaminedRecording:
+    """Read one recording and detect its drops.
 
     Parameters
     ----------
@@ -80,25 +86,25 @@ def look(folder: Path, name: str, progress: Callable[[float], None]) -> Look:
         raise InputError(
             replace(each, where=each.where.replace(Path(name).name, name, 1)) for each in error.problems
         ) from None
-    seen = survey(table)
-    _refuse(name, seen)
-    seen, found = _found(table, seen, progress)
+    seen = survey_channels(table)
+    _require_channels(name, seen)
+    seen, found = _detect(table, seen, progress)
     drops = tuple(_on_clock(drop, table, seen) for drop in found.drops)
     scales: dict[str, float] = {}
     for drop in found.drops:
         first, last = (int((time - seen.start) * seen.rate) for time in (drop.release, drop.end))
-        for channel, size in full_scales(table, seen, first, last).items():
+        for channel, size in detect_full_scales(table, seen, first, last).items():
             scales[channel] = max(size, scales.get(channel, 0.0))
     file = DraftFile(name, seen.rate, seen.start, seen.end, len(drops), found.rejected, found.events, seen.left_out)
-    return Look(file, seen.channels, drops, scales)
+    return ExaminedRecording(file, seen.channels, drops, scales)
 
 
-def _refuse(name: str, seen: Survey) -> None:
-    """Refuse what holds nothing in which a drop could be found."""
+def _require_channels(name: str, seen: ChannelSurvey) -> None:
+    """Raise if a recording holds no channel in which a drop could be detected."""
     if not seen.channels:
         reasons = "; ".join(f"'{channel}': {why}" for channel, why in list(seen.left_out.items())[:8])
         found = f"no vertical acceleration ({reasons})" if reasons else "no channels"
-        do = "If one of them is, let the file name its unit, such as 'ch1 [g]'."
+        do = "If one of them is, state its unit in the file, such as 'ch1 [g]'."
         raise InputError([Problem(name, found, "channels of accelerometers", do)])
     if not seen.rate >= MIN_RATE:
         found = f"{seen.rate:.4g} samples per second"
@@ -107,12 +113,14 @@ def _refuse(name: str, seen: Survey) -> None:
         )
 
 
-def _found(table: SampleTable, seen: Survey, progress: Callable[[float], None]) -> tuple[Survey, Detection]:
-    """Find the drops; where a unit is not known, in one in which wheels fall as wheels do."""
+def _detect(
+    table: SampleTable, seen: ChannelSurvey, progress: Callable[[float], None]
+) -> tuple[ChannelSurvey, Detection]:
+    """Detect the drops; where a unit is not known, in one in which wheels fall."""
     if all(channel.unit is not None for channel in seen.channels):
         return seen, _drops_of(table, seen, progress)
-    results: list[tuple[bool, int, Survey, Detection]] = []
-    size = largest(table, seen)
+    results: list[tuple[bool, int, ChannelSurvey, Detection]] = []
+    size = largest_reading(table, seen)
     for unit in _UNITS:
         choice = replace(seen, channels=tuple(replace(channel, assumed=unit) for channel in seen.channels))
         if not _LEAST < size * acceleration_factor(unit) < _MOST:
@@ -126,14 +134,14 @@ def _found(table: SampleTable, seen: Survey, progress: Callable[[float], None]) 
     return max(results, key=lambda result: result[:2])[2:]
 
 
-def _drops_of(table: SampleTable, seen: Survey, progress: Callable[[float], None]) -> Detection:
+def _drops_of(table: SampleTable, seen: ChannelSurvey, progress: Callable[[float], None]) -> Detection:
     factors = np.array([channel.factor for channel in seen.channels])
-    read = pieces(table, seen, factors)
+    read = read_pieces(table, seen, factors)
     return detect_drops(read, seen.rate, start=seen.start, samples=seen.samples, progress=progress)
 
 
-def _on_clock(drop: DetectedDrop, table: SampleTable, seen: Survey) -> DetectedDrop:
-    """Put a drop's times on a clock that is not quite even."""
+def _on_clock(drop: DetectedDrop, table: SampleTable, seen: ChannelSurvey) -> DetectedDrop:
+    """Return a drop with its times on a clock whose steps are not equal."""
     clock = table.clock
     if not isinstance(clock, np.ndarray):
         return drop

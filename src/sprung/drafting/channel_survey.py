@@ -1,4 +1,4 @@
-"""A survey of a recording: which of its columns are vertical accelerations, its rate and length, and how large they get."""
+"""Channel survey of a recording: which of its columns are vertical accelerations, its rate, length and largest readings."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from sprung.drafting.channel import Channel, channel_of, disambiguate_units
+from sprung.drafting.channel import Channel, classify_channel, disambiguate_units
 from sprung.drafting.names import axis_named
 from sprung.errors import Problem
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Real = NDArray[np.float64]
 
 _SPOTS, _SPOT = 60, 0.5
-"""Stretches of a recording that its rest is looked for in, and how long each is, s."""
+"""Stretches of a recording in which a rest is looked for, and the length of each, s."""
 
 _SHORT = 0.01
 """s over which readings are averaged, so that a spike is not taken for the size of what was recorded."""
@@ -33,8 +33,8 @@ _PIECE = 1 << 17
 
 
 @dataclass(frozen=True, eq=False)
-class Survey:
-    """What a recording's channels are.
+class ChannelSurvey:
+    """Channels of a recording.
 
     Attributes
     ----------
@@ -43,13 +43,13 @@ class Survey:
     columns
         Of those channels.
     left_out
-        The other channels, and why each is none.
+        The other channels, each with the reason.
     rate
         Samples per second.
     start, end
         s on the file's clock.
     samples
-        How many.
+        Number of samples.
     """
 
     channels: tuple[Channel, ...]
@@ -61,8 +61,8 @@ class Survey:
     samples: int
 
 
-def survey(table: SampleTable) -> Survey:
-    """Tell what the channels of a recording are.
+def survey_channels(table: SampleTable) -> ChannelSurvey:
+    """Classify the channels of a recording.
 
     Parameters
     ----------
@@ -80,34 +80,36 @@ def survey(table: SampleTable) -> Survey:
         start, end = float(clock[0]), float(clock[-1])
     else:
         rate, start, end = clock, 0.0, (samples - 1) / clock
-    begins, spots = _spots(table, rate)
+    begins, spots = _sample_stretches(table, rate)
     channels, columns, left_out = [], [], {}
-    for column, (name, written) in enumerate(zip(table.channels, table.units, strict=True)):
+    for column, (name, stated_unit) in enumerate(zip(table.channels, table.units, strict=True)):
         own = spots[:, column]
-        if (problem := _spoilt(table, column, begins, own)) is not None:
+        if (problem := _find_non_number(table, column, begins, own)) is not None:
             left_out[name] = f"it holds {problem.found}"
             continue
         axis = axis_named(name, table.channels)
         found = (
-            f"it measures along {axis}, beside one along z" if axis in ("x", "y") else channel_of(name, written, own)
+            f"it measures along {axis}, beside one along z"
+            if axis in ("x", "y")
+            else classify_channel(name, stated_unit, own)
         )
         if isinstance(found, Channel):
             channels.append(found)
             columns.append(column)
         else:
             left_out[name] = found
-    return Survey(disambiguate_units(channels), tuple(columns), left_out, rate, start, end, samples)
+    return ChannelSurvey(disambiguate_units(channels), tuple(columns), left_out, rate, start, end, samples)
 
 
-def _spots(table: SampleTable, rate: float) -> tuple[list[int], Real]:
-    """Take some short stretches of all channels: the samples they begin with, and shape (stretch, channel, time)."""
+def _sample_stretches(table: SampleTable, rate: float) -> tuple[list[int], Real]:
+    """Return short stretches of all channels, shape (stretch, channel, time), and the samples they begin with."""
     length = max(1, min(table.samples, int(_SPOT * rate) if np.isfinite(rate) else 1))
     begins: list[int] = np.unique(np.linspace(0, table.samples - length, _SPOTS).astype(int)).tolist()
     return begins, np.array([table.take(None, begin, begin + length) for begin in begins])
 
 
-def _spoilt(table: SampleTable, column: int, begins: list[int], spots: Real) -> Problem | None:
-    """Say what stands in the stretches of a channel that is no number."""
+def _find_non_number(table: SampleTable, column: int, begins: list[int], spots: Real) -> Problem | None:
+    """Find what is no number in the stretches of a channel."""
     length = spots.shape[1]
     missing = (begin for begin, spot in zip(begins, spots, strict=True) if not np.isfinite(spot).all())
     return next(
@@ -115,14 +117,14 @@ def _spoilt(table: SampleTable, column: int, begins: list[int], spots: Real) -> 
     )
 
 
-def pieces(table: SampleTable, surveyed: Survey, factors: Real) -> Iterator[tuple[int, Real]]:
-    """Give a recording's accelerations piece by piece.
+def read_pieces(table: SampleTable, survey: ChannelSurvey, factors: Real) -> Iterator[tuple[int, Real]]:
+    """Read a recording's accelerations piece by piece.
 
     Parameters
     ----------
     table
         The recording.
-    surveyed
+    survey
         Its survey.
     factors
         m/s² upward in one of each channel's unit, shape (channel,).
@@ -132,42 +134,42 @@ def pieces(table: SampleTable, surveyed: Survey, factors: Real) -> Iterator[tupl
     tuple
         Index of the first sample, and readings of shape (channel, time), m/s².
     """
-    for begin, piece in table.pieces(surveyed.columns, _PIECE):
+    for begin, piece in table.pieces(survey.columns, _PIECE):
         yield begin, piece * factors[:, None]
 
 
-def largest(table: SampleTable, surveyed: Survey) -> float:
-    """Give the largest reading of the channels whose unit nothing tells, averaged over some milliseconds.
+def largest_reading(table: SampleTable, survey: ChannelSurvey) -> float:
+    """Largest reading of the channels without a known unit, averaged over some milliseconds.
 
     Parameters
     ----------
     table
         The recording.
-    surveyed
+    survey
         Its survey.
 
     Returns
     -------
     float
-        In whatever unit it is.
+        In the unit of the file.
     """
-    unknown = np.array([channel.unit is None for channel in surveyed.channels])
-    width = max(round(_SHORT * surveyed.rate), 1)
+    unknown = np.array([channel.unit is None for channel in survey.channels])
+    width = max(round(_SHORT * survey.rate), 1)
     most = 0.0
-    for _, piece in pieces(table, surveyed, np.ones(len(surveyed.channels))):
+    for _, piece in read_pieces(table, survey, np.ones(len(survey.channels))):
         smooth = uniform_filter1d(np.nan_to_num(piece[unknown]), width, axis=1)
         most = max(most, float(np.abs(smooth).max(initial=0.0)))
     return most
 
 
-def full_scales(table: SampleTable, surveyed: Survey, first: int, last: int) -> dict[str, float]:
-    """Find channels that stay at their extreme for some samples, as at full scale.
+def detect_full_scales(table: SampleTable, survey: ChannelSurvey, first: int, last: int) -> dict[str, float]:
+    """Detect channels that stay at their extreme for some samples, as at full scale.
 
     Parameters
     ----------
     table
         The recording.
-    surveyed
+    survey
         Its survey.
     first, last
         Samples between which to look.
@@ -178,7 +180,7 @@ def full_scales(table: SampleTable, surveyed: Survey, first: int, last: int) -> 
         By channel that reading's size, in its own unit.
     """
     found = {}
-    for channel, reading in zip(surveyed.channels, table.take(surveyed.columns, first, last), strict=True):
+    for channel, reading in zip(survey.channels, table.take(survey.columns, first, last), strict=True):
         size = np.nan_to_num(np.abs(reading))
         at = size == size.max(initial=0.0)
         if size.size > _PLATEAU and (at[:-2] & at[1:-1] & at[2:]).any():

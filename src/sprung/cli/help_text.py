@@ -1,4 +1,4 @@
-"""The text of ``--help``: written for the width of the terminal, with nothing cut and an example for every command."""
+"""The text of ``--help``, for any width of the terminal, with an example for every command."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from typing import Any
 from typer.core import TyperCommand
 
 _LONGEST = 90
-"""Columns that a line of help has at most."""
+"""Longest line, columns."""
 
 _BESIDE = 60
-"""Columns from which on a text stands beside what it explains; on a narrower terminal it stands below."""
+"""Smallest width, columns, with explanations beside the names; on a narrower terminal they are below."""
 
 
 class Command(TyperCommand):
@@ -23,22 +23,22 @@ class Command(TyperCommand):
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write the help of the command."""
-        arguments = [one for one in self.params if one.param_type_name == "argument"]
-        options = [one for one in self.get_params(ctx) if one.param_type_name == "option"]
-        given = [str(one.metavar) if one.required else f"[{one.metavar}]" for one in arguments]
-        given += [f"{one.opts[0]} {one.metavar}" for one in options if one.required]
-        usage = " ".join((str(ctx.command_path), *given, "[OPTIONS]"))
+        arguments = [parameter for parameter in self.params if parameter.param_type_name == "argument"]
+        options = [parameter for parameter in self.get_params(ctx) if parameter.param_type_name == "option"]
+        required = [str(argument.metavar) if argument.required else f"[{argument.metavar}]" for argument in arguments]
+        required += [f"{option.opts[0]} {option.metavar}" for option in options if option.required]
+        usage = " ".join((str(ctx.command_path), *required, "[OPTIONS]"))
         formatter.write("\n".join(_page(usage, self.help, arguments, options)))
         formatter.write(f"\n\n{_lines(plain(self.epilog), indent=2)}\n")
 
 
 def readable(message: str) -> str:
-    """Wrap a message between words for the terminal that it goes to, if it goes to one; paths stay whole.
+    """Return a message, wrapped between words for the terminal; unchanged for a file or pipe.
 
     Parameters
     ----------
     message
-        Lines, which are left as they are where nobody watches.
+        Any; paths are not broken.
 
     Returns
     -------
@@ -51,21 +51,21 @@ def readable(message: str) -> str:
 
 
 def plain(text: str | None) -> str:
-    """Return a help text without the marks for bold type."""
+    """Return a help text without markup for bold type."""
     return re.sub(r"\[/?bold\]", "", text or "")
 
 
 def group_help(usage: str, text: str, options: Iterable[Any], commands: Iterable[Any]) -> str:
-    """Write the help of the program: its commands in the order given, each with an example.
+    """Return the help of the program: its commands, each with an example.
 
     Parameters
     ----------
     usage, text
-        How it is called, and what it does.
+        Usage line and description.
     options
         Of the program itself.
     commands
-        Its commands.
+        In the order of the help.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def _page(usage: str, text: str | None, arguments: Iterable[Any], options: Itera
     yield ""
     yield _lines(plain(text))
     for title, parameters in (("Arguments", arguments), ("Options", options)):
-        named = [(_flags(one), _meaning(one)) for one in parameters if not getattr(one, "hidden", False)]
+        named = [(_flags(shown), _meaning(shown)) for shown in parameters if not getattr(shown, "hidden", False)]
         if named:
             yield f"\n{title}:"
         beside = max((len(flags) for flags, _ in named), default=0)
@@ -95,32 +95,38 @@ def _page(usage: str, text: str | None, arguments: Iterable[Any], options: Itera
             yield from _explained(flags, meaning, min(beside, 24))
 
 
-def _flags(one: Any) -> str:
-    """Write how a parameter is given: ``-o, --output DIR``."""
-    if one.param_type_name == "argument":
-        return str(one.metavar)
-    value = "" if one.is_flag or one.count else f" {one.metavar or one.name.upper()}"
-    return f"{', '.join(sorted((*one.opts, *one.secondary_opts), key=_short_first))}{value}"
+def _flags(parameter: Any) -> str:
+    """Return the flags of a parameter: ``-o, --output DIR``."""
+    if parameter.param_type_name == "argument":
+        return str(parameter.metavar)
+    value = "" if parameter.is_flag or parameter.count else f" {parameter.metavar or parameter.name.upper()}"
+    return f"{', '.join(sorted((*parameter.opts, *parameter.secondary_opts), key=_short_first))}{value}"
 
 
 def _short_first(flag: str) -> bool:
     return flag.startswith("--")
 
 
-def _meaning(one: Any) -> str:
-    text = plain(one.help)
-    if isinstance(one.show_default, str):
-        return f"{text} (default: {one.show_default})"
-    if one.param_type_name == "option" and one.required:
+def _meaning(parameter: Any) -> str:
+    text = plain(parameter.help)
+    if isinstance(parameter.show_default, str):
+        return f"{text} (default: {parameter.show_default})"
+    if parameter.param_type_name == "option" and parameter.required:
         return f"{text} (required)"
-    if one.is_flag if one.param_type_name == "option" else False:
-        return f"{text} (default: {one.opts[0]})" if one.default is True and one.secondary_opts else text
-    given = isinstance(one.default, str | int | float) or hasattr(one.default, "suffix")  # a path
-    return f"{text} (default: {one.default})" if given and one.default != "" and not callable(one.default) else text
+    if parameter.is_flag if parameter.param_type_name == "option" else False:
+        return (
+            f"{text} (default: {parameter.opts[0]})" if parameter.default is True and parameter.secondary_opts else text
+        )
+    given = isinstance(parameter.default, str | int | float) or hasattr(parameter.default, "suffix")  # a path
+    return (
+        f"{text} (default: {parameter.default})"
+        if given and parameter.default != "" and not callable(parameter.default)
+        else text
+    )
 
 
 def _explained(name: str, text: str, beside: int) -> Iterator[str]:
-    """Set a text beside its name, or below it where the name or the terminal leaves no room."""
+    """Yield a name with its explanation beside it, or below it where there is no room."""
     width = _width()
     if width < _BESIDE or len(name) > beside:
         yield f"  {name}"
@@ -130,7 +136,7 @@ def _explained(name: str, text: str, beside: int) -> Iterator[str]:
 
 
 def _lines(text: str, indent: int = 0, further: int | None = None, width: int = 0) -> str:
-    """Wrap a text between words."""
+    """Return a text, wrapped between words."""
     first, others = " " * indent, " " * (indent if further is None else further)
     shown = wrap(
         text,

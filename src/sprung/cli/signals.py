@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: both end a command in order, with what is on the disk whole, and with the shell's own status."""
+"""Ctrl-C and SIGTERM: both end a command cleanly, with complete files and the status that shells use."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from sprung.cli.output import INTERRUPTED, TERMINATED, complain
 
 
 class Terminated(KeyboardInterrupt):
-    """SIGTERM, as a batch system or `kill` sends it: raised where Ctrl-C would be."""
+    """Raised on SIGTERM, which a batch system or `kill` sends, like KeyboardInterrupt on Ctrl-C."""
 
 
 @contextmanager
-def stopping_like_ctrl_c() -> Iterator[None]:
-    """Let SIGTERM raise `Terminated` in the block, unless whoever started us wants it to be ignored.
+def sigterm_as_exception() -> Iterator[None]:
+    """Let SIGTERM raise `Terminated` in the block, unless the parent process has set it to be ignored.
 
-    A signal that arrives while Python runs a callback of its own, such as one of its import system, raises where nothing can
-    pass the exception on: it is raised once more, a millisecond later.
+    An exception that is raised in a callback of the interpreter, such as one of the import system, is lost: it is raised again
+    a millisecond later.
     """
     before = signal.getsignal(signal.SIGTERM)
     if threading.current_thread() is not threading.main_thread() or before not in {signal.SIG_DFL, _stop}:
@@ -39,33 +39,33 @@ def stopping_like_ctrl_c() -> Iterator[None]:
         signal.signal(signal.SIGTERM, before)
 
 
-def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (what a handler takes)
+def _stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (signature of a handler)
     raise Terminated
 
 
 def _stop_again(hook: Callable[[Any], object], lost: Any) -> None:
-    """Raise once more what stops the program, where it was lost; leave everything else to the hook that was there."""
+    """Raise a lost KeyboardInterrupt again; pass everything else to the previous hook."""
     if not isinstance(lost.exc_value, KeyboardInterrupt) or not hasattr(signal, "setitimer"):
         hook(lost)
         return
     stop = type(lost.exc_value)
 
-    def again(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (what a handler takes)
+    def again(number: int, frame: FrameType | None) -> None:  # noqa: ARG001 (signature of a handler)
         raise stop
 
     signal.signal(signal.SIGALRM, again)
     signal.setitimer(signal.ITIMER_REAL, 1e-3)
 
 
-def was_stopped(stopped: KeyboardInterrupt) -> int:
-    """Say that a command was stopped, and return its exit status."""
+def report_stop(stopped: KeyboardInterrupt) -> int:
+    """Report that a command was stopped, and return its exit status."""
     terminated = isinstance(stopped, Terminated)
     complain("sprung was terminated." if terminated else "sprung was interrupted.")
     return TERMINATED if terminated else INTERRUPTED
 
 
-def stopped_before(leaving: SystemExit) -> KeyboardInterrupt | None:
-    """Return what stopped the program before it came to its command, while the command line took it for Ctrl-C."""
+def interruption_of(leaving: SystemExit) -> KeyboardInterrupt | None:
+    """Return the interruption that caused an exit before the command began; None for another cause."""
     error: BaseException | None = leaving
     while error is not None and not error.__suppress_context__:
         error = error.__cause__ or error.__context__

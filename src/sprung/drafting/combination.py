@@ -1,4 +1,4 @@
-"""From what each recording shows to the campaign's sensors and drops: all recordings speak together."""
+"""Combination of all recordings to the sensors and drops of a campaign."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from sprung.drafting.channel import Channel
 from sprung.drafting.detected_drop import DetectedDrop, SensorPlace, assign_dropped_wheels, wheel_score
-from sprung.drafting.loggers import called, together
-from sprung.drafting.look import Look
+from sprung.drafting.examination import ExaminedRecording
+from sprung.drafting.logger_groups import common_name, group_by_drop
 from sprung.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.drafting.records import DraftDrop, DraftSensor
 from sprung.preprocess import find_slower_drops
@@ -29,22 +29,24 @@ _STILL = 8.0
 _CLEARLY = 2.0
 """By how much more a corner of the body falls with its own wheels than with the others."""
 
-_TAKEN_EMPTY = "the name of the file tells no load: taken to be empty"
+_TAKEN_EMPTY = "the name of the file states no load: assumed empty"
 
 _PROPOSED = "loaded"
-"""What the load is called of drops that show one."""
+"""Name of a load that only the motion shows."""
 
 _SHORT = 20.0
 """s: a recording with one drop, no longer than this, needs no window."""
 
 
-def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftDrop, ...], Mapping[str, str]]:
-    """Tell sensors and drops from all recordings together.
+def combine_recordings(
+    recordings: Sequence[ExaminedRecording],
+) -> tuple[tuple[DraftSensor, ...], tuple[DraftDrop, ...], Mapping[str, str]]:
+    """Combine the recordings to sensors and drops.
 
     Parameters
     ----------
-    looks
-        At each recording; at least one of them holds a drop.
+    recordings
+        As examined; at least one of them holds a drop.
 
     Returns
     -------
@@ -53,11 +55,11 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
     drops
         In the order of the recordings and of time.
     still
-        Channels that no drop moves, and what that means.
+        Channels that no drop moves, each with the reason.
     """
-    channels = {channel.name: channel for one in looks if one.drops for channel in one.channels}
+    channels = {channel.name: channel for recording in recordings if recording.drops for channel in recording.channels}
     names = tuple(channels)
-    recorded = list(together(looks))
+    recorded = list(group_by_drop(recordings))
     drops = [_of(drop, held, names) for _, drop, held in recorded]
     loudness = np.max(
         [np.nan_to_num(drop.features.peak / np.maximum(drop.features.noise, 1e-9)) for drop in drops], axis=0
@@ -66,21 +68,21 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
     moving = tuple(name for name in names if name not in still)
     drops, names = [_of(drop, names, moving) for drop in drops], moving
 
-    hints = [wheels_named(called(files)) for files, _, _ in recorded]
+    hints = [wheels_named(common_name(files)) for files, _, _ in recorded]
     score = wheel_score(drops)
-    parts = [_part(name, float(score[i]), drops, i) for i, name in enumerate(names)]
-    places, by_files = _places(
+    parts = [_body_or_wheel(name, float(score[i]), drops, i) for i, name in enumerate(names)]
+    places, by_files = _assign_stations(
         names, [part for part, _ in parts], assign_dropped_wheels(drops, [part for part, _ in parts]), hints
     )
-    told = assign_dropped_wheels(drops, places)
-    scales = _most(looks)
+    assigned = assign_dropped_wheels(drops, places)
+    scales = _largest_full_scales(recordings)
     sensors = tuple(
         _sensor(
-            _agreed(name, looks),
+            _most_frequent_channel(name, recordings),
             place,
             (*notes, *(by_files if place != before and place in WHEELS else ())),
             scales,
-            told,
+            assigned,
             i,
         )
         for i, (name, place, (before, notes)) in enumerate(zip(names, places, parts, strict=True))
@@ -88,27 +90,33 @@ def gather(looks: Sequence[Look]) -> tuple[tuple[DraftSensor, ...], tuple[DraftD
     several = Counter(files for files, _, _ in recorded)
     drafted = [
         _drop(
-            files, drop, hint, names, next(one for one in looks if one.file.name == files[0]), several[files], sensors
+            files,
+            drop,
+            hint,
+            names,
+            next(recording for recording in recordings if recording.file.name == files[0]),
+            several[files],
+            sensors,
         )
-        for (files, _, _), drop, hint in zip(recorded, told, hints, strict=True)
+        for (files, _, _), drop, hint in zip(recorded, assigned, hints, strict=True)
     ]
-    return sensors, _with_loads(drafted, sensors, [_says_load(files) for files, _, _ in recorded]), still
+    return sensors, _with_loads(drafted, sensors, [_names_load(files) for files, _, _ in recorded]), still
 
 
-def _says_load(files: Sequence[str]) -> bool:
-    """Say whether the names of a drop's files tell its load."""
-    return any(load_named(name) is not None for name in (called(files), *files))
+def _names_load(files: Sequence[str]) -> bool:
+    """Return whether the names of a drop's files state its load."""
+    return any(load_named(name) is not None for name in (common_name(files), *files))
 
 
 def _with_loads(
     drops: Sequence[DraftDrop], sensors: Sequence[DraftSensor], named: Sequence[bool]
 ) -> tuple[DraftDrop, ...]:
-    """Group the drops of which no name tells the load by how the vehicle swings, and propose a load for the slower ones."""
+    """Group the drops whose load no name states by the periods of the body, and propose a load for the slower ones."""
     body = [i for i, sensor in enumerate(sensors) if sensor.on == "body"]
     open_ = [
         i
-        for i, (drop, told) in enumerate(zip(drops, named, strict=True))
-        if not told and drop.found.slow_motion is not None
+        for i, (drop, is_named) in enumerate(zip(drops, named, strict=True))
+        if not is_named and drop.found.slow_motion is not None
     ]
     motions = [slow[body] for i in open_ if (slow := drops[i].found.slow_motion) is not None]
     slower = find_slower_drops([drops[i].found.dropped_channels for i in open_], motions) if body else ()
@@ -117,25 +125,25 @@ def _with_loads(
         drop = given[i]
         notes = tuple(note for note in drop.notes if note != _TAKEN_EMPTY)
         if is_slower is None:
-            note = "nothing tells whether a load was on the vehicle, as it was in others of these drops"
+            note = "unknown whether a load was on the vehicle, as in others of these drops"
             given[i] = replace(drop, load=None, notes=(*notes, note))
             continue
         load, pace = (_PROPOSED, "more slowly") if is_slower else ("empty", "more quickly")
-        note = f"swings {pace} than others of the same wheels: taken to be {load}"
+        note = f"swings {pace} than others of the same wheels: assumed {load}"
         given[i] = replace(drop, load=load, notes=(*notes, note), proposed=True)
     return tuple(given)
 
 
 def _of(drop: DetectedDrop, held: Sequence[str], names: Sequence[str]) -> DetectedDrop:
-    """Give a drop with the readings of other channels than those it holds, or in another order."""
+    """Return a drop with other channels than those it holds, or in another order."""
     channels = [held.index(name) if name in held else None for name in names]
     return drop.at(channels)
 
 
-def _part(
+def _body_or_wheel(
     name: str, score: float, drops: Sequence[DetectedDrop], channel: int
 ) -> tuple[Literal["body", "wheel"], tuple[str, ...]]:
-    """Tell body from wheel by how it moves; by its name only where it never fell."""
+    """Distinguish body and wheel by the motion; by the name only where it never fell."""
     peak = float(np.nanmax([drop.features.peak[channel] for drop in drops])) / STANDARD_GRAVITY
     depth = float(np.nanmax([drop.features.depth[channel] for drop in drops])) / STANDARD_GRAVITY
     seen: Literal["body", "wheel"] = "wheel" if score > 1 else "body"
@@ -144,9 +152,9 @@ def _part(
         note += ", but not clearly"
     named = part_named(name)
     if named == "wheel" and seen == "body" and depth < 0.2 * _deepest(drops):
-        return "wheel", ("a wheel by its name; none of the drops let it fall",)
+        return "wheel", ("a wheel by its name; it fell in none of the drops",)
     if named is not None and named != seen:
-        note += f", though its name says {named}"
+        note += f", though its name states {named}"
     return seen, (note,)
 
 
@@ -154,13 +162,13 @@ def _deepest(drops: Sequence[DetectedDrop]) -> float:
     return max(float(np.nanmax(drop.features.depth)) for drop in drops) / STANDARD_GRAVITY
 
 
-def _places(
+def _assign_stations(
     names: Sequence[str],
     parts: Sequence[SensorPlace],
     drops: Sequence[DetectedDrop],
     hints: Sequence[tuple[Wheel, ...]],
 ) -> tuple[list[SensorPlace], tuple[str, ...]]:
-    """Tell the wheels' stations: by the channels' names, or else by which of them fall in files named after wheels."""
+    """Assign stations to the wheels: by the channels' names, or else by which of them fall in files named after wheels."""
     places: list[SensorPlace] = [
         station_named(name) or part if part == "wheel" else part for name, part in zip(names, parts, strict=True)
     ]
@@ -184,24 +192,26 @@ def _places(
         return places, ()
     for i, wheel in zip(unknown, chosen, strict=True):
         places[i] = wheel
-    return places, ("which wheel: from the drops in which it falls, by the names of their files",)
+    return places, ("station: from the drops in which it falls, by the names of their files",)
 
 
-def _agreed(name: str, looks: Sequence[Look]) -> Channel:
-    """Give what most recordings take a channel for."""
-    seen = [channel for one in looks if one.drops for channel in one.channels if channel.name == name]
+def _most_frequent_channel(name: str, recordings: Sequence[ExaminedRecording]) -> Channel:
+    """Return a channel as most recordings have it."""
+    seen = [
+        channel for recording in recordings if recording.drops for channel in recording.channels if channel.name == name
+    ]
     usual = Counter((channel.unit, channel.direction, channel.coupling) for channel in seen).most_common(1)[0][0]
     agreeing = [channel for channel in seen if (channel.unit, channel.direction, channel.coupling) == usual]
     if len(agreeing) == len(seen):
         return agreeing[0]
-    note = f"in {len(seen) - len(agreeing)} of {len(seen)} recordings it reads something else at rest"
+    note = f"in {len(seen) - len(agreeing)} of {len(seen)} recordings it has another reading at rest"
     return replace(agreeing[0], notes=(*agreeing[0].notes, note))
 
 
-def _most(looks: Sequence[Look]) -> dict[str, float]:
+def _largest_full_scales(recordings: Sequence[ExaminedRecording]) -> dict[str, float]:
     found: dict[str, float] = {}
-    for one in looks:
-        for name, size in one.full_scale.items():
+    for recording in recordings:
+        for name, size in recording.full_scale.items():
             found[name] = max(size, found.get(name, 0.0))
     return found
 
@@ -219,23 +229,21 @@ def _sensor(
         onsets = [float(drop.features.onset[index]) for drop in drops if np.isfinite(drop.features.onset[index])]
         first = max(onsets, key=abs, default=0.0)
         direction = "down" if first > 0 else "up"
-        own.append(
-            f"moves {'up' if first > 0 else 'down'} in its own direction when it falls, so it points {direction}"
-        )
+        own.append(f"its reading goes {'up' if first > 0 else 'down'} when it falls, so it points {direction}")
     corner = None
     if place == "body":
         corner, named = _corner(drops, index, direction != channel.direction), station_named(channel.name)
         if corner is not None:
             own.append(
-                f"moves most when the {_spoken(corner)} falls"
-                + (f", though its name says {_spoken(named)}" if named not in (None, corner) and named else "")
+                f"moves most when the {_in_words(corner)} falls"
+                + (f", though its name states {_in_words(named)}" if named not in (None, corner) and named else "")
             )
     return DraftSensor(
         channel=channel.name,
         on=place,
         corner=corner,
         unit=channel.unit,
-        written=channel.written,
+        stated_unit=channel.stated_unit,
         direction=direction,
         coupling=channel.coupling,
         full_scale=scales.get(channel.name),
@@ -245,7 +253,7 @@ def _sensor(
 
 
 def _corner(drops: Sequence[DetectedDrop], index: int, turned: bool) -> Wheel | None:
-    """Tell the corner of the body at which a sensor sits, from drops of one end and of one side."""
+    """Find the corner of the body at which a sensor sits, from drops of one end and of one side."""
     depths: dict[str, list[float]] = {key: [] for key in ("f", "r", "l", "R")}
     for drop in drops:
         ends, sides = {wheel[0] for wheel in drop.wheels}, {wheel[1] for wheel in drop.wheels}
@@ -263,7 +271,7 @@ def _corner(drops: Sequence[DetectedDrop], index: int, turned: bool) -> Wheel | 
     return next(w for w in WHEELS if w[0] == ("f" if front > rear else "r") and w[1] == ("l" if left > right else "r"))
 
 
-def _spoken(corner: Wheel) -> str:
+def _in_words(corner: Wheel) -> str:
     return f"{'front' if corner[0] == 'f' else 'rear'} {'left' if corner[1] == 'l' else 'right'}"
 
 
@@ -272,22 +280,22 @@ def _drop(
     drop: DetectedDrop,
     hint: tuple[Wheel, ...],
     names: Sequence[str],
-    one: Look,
+    recording: ExaminedRecording,
     several: int,
     sensors: Sequence[DraftSensor],
 ) -> DraftDrop:
     notes = list(drop.why(names))
     wheels = drop.wheels
     if wheels and hint and set(wheels) != set(hint):
-        notes.append(f"these wheels fell, though the name of the file says {', '.join(hint)}")
+        notes.append(f"these wheels fell, though the name of the file states {', '.join(hint)}")
     if not wheels and hint:
         wheels = hint
-        notes.append("which wheels fell: by the name of the file")
+        notes.append("dropped wheels by the name of the file")
         if any(sensor.on != "body" for sensor in sensors) and len(drop.dropped_channels) != len(hint):
             notes.append(f"though {len(drop.dropped_channels)} channels show the fall of a wheel")
-    alone = several == 1 and one.file.end - one.file.start <= _SHORT
+    alone = several == 1 and recording.file.end - recording.file.start <= _SHORT
     window = None if alone or len(files) > 1 else drop.window
-    load = load_named(called(files)) or next((load for load in map(load_named, files) if load is not None), None)
+    load = load_named(common_name(files)) or next((load for load in map(load_named, files) if load is not None), None)
     if load is None and several == 1:
         load = "empty"
         notes.append(_TAKEN_EMPTY)

@@ -1,4 +1,4 @@
-"""The commands that identify a vehicle, and show what came out."""
+"""Commands that identify a vehicle, and show the result."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import typer
 
 import sprung
 from sprung.cli.app import CampaignFile, Force, Json, app
-from sprung.cli.completing import parameters, results
+from sprung.cli.completion import parameters, results
 from sprung.cli.output import DEFECT, REJECTED, complain, say, say_json, working
 from sprung.errors import InputError, Omissions
 from sprung.progress import Progress, Step
@@ -22,58 +22,58 @@ def identify(
     campaign: CampaignFile,
     output: Annotated[
         Optional[Path],  # noqa: UP045 (typer reads it)
-        typer.Option("-o", "--output", metavar="DIR", help="Where to write results.json, series.npz and report.html."),
+        typer.Option(
+            "-o", "--output", metavar="DIR", help="Output folder for results.json, series.npz and report.html."
+        ),
     ] = None,
     profile: Annotated[
         Optional[list[str]],  # noqa: UP045 (typer reads it)
         typer.Option(
             metavar="NAME",
             autocompletion=parameters,
-            help="Take the 95 % interval of a parameter from the whole likelihood, for one that is weakly determined; "
-            "can be given more than once; all for every one.",
+            help="Compute the 95 % interval of a weakly determined parameter from its likelihood profile; "
+            "repeatable; all for every parameter.",
         ),
     ] = None,
     fall: Annotated[
         Optional[bool],  # noqa: UP045 (typer reads it)
         typer.Option(
             "--fall/--no-fall",
-            help="Use the drops from their release on, not only from when the last tyre is down: sharper, and slower.",
-            show_default="where the decays leave a parameter uncertain by more than 2 %",
+            help="Use the drops from their release on, not only from the last landing: smaller uncertainties, slower.",
+            show_default="where an uncertainty is above 2 % without it",
         ),
     ] = None,
-    report: Annotated[
-        bool, typer.Option("--report/--no-report", help="Write report.html, for people to look at.")
-    ] = True,
+    report: Annotated[bool, typer.Option("--report/--no-report", help="Write report.html.")] = True,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Identify every parameter and write the results folder (default: results/ beside the campaign)."""
+    """Identify all parameters and write the results folder (default: results/ beside the campaign)."""
     folder = output or (campaign if campaign.is_dir() else campaign.parent) / "results"
     if not force:
-        _refuse_overwriting(folder, sprung.report.REPORT_FILES if report else sprung.report.RESULT_FILES)
+        _refuse_overwriting((folder, sprung.report.REPORT_FILES if report else sprung.report.RESULT_FILES))
     with working("reading the recordings") as progress:
         read = sprung.read(campaign, progress=progress)
         saved = identify_and_save(read, folder, report, force, progress, as_json, profile=profile or (), fall=fall)
-    to_estimates(saved.result, saved.files, as_json)
+    print_and_exit(saved.result, saved.files, as_json)
 
 
-def _refuse_overwriting(*folders_and_files: Any) -> None:
-    """Refuse files that sprung did not write or that were changed since, in folder after folder, before the work is done."""
-    each = zip(folders_and_files[::2], folders_and_files[1::2], strict=True)
-    if problems := [problem for folder, files in each for problem in sprung.files.overwriting_problems(folder, files)]:
+def _refuse_overwriting(*folders: tuple[Path, Any]) -> None:
+    """Raise if files in these folders are not as sprung wrote them, before any work is done."""
+    problems = [problem for folder, files in folders for problem in sprung.files.overwriting_problems(folder, files)]
+    if problems:
         raise InputError(problems)
 
 
 def identify_and_save(
     campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, as_json: bool, **options: Any
 ) -> Any:
-    """Identify a campaign and save the result at once; what decorates it comes after that and may fail, or be interrupted."""
+    """Identify a campaign and save the result; then add amplitude curves and report, which may fail or be interrupted."""
     run = sprung.analysis.identify_campaign(campaign, progress=progress, **options)
     progress(Step("writing results.json and series.npz"))
     try:
         saved = sprung.report.save_result(sprung.analysis.result_of(run), folder, overwrite=force)
     except InputError:
-        _show(sprung.analysis.result_of(run), as_json)  # better seen than lost
+        _show(sprung.analysis.result_of(run), as_json)  # shown at least, if it cannot be saved
         raise
     if not report:
         return saved
@@ -84,13 +84,13 @@ def identify_and_save(
     except KeyboardInterrupt:
         complain(
             f"The results are complete: {', '.join(map(str, saved.files))}\n"
-            f"Only the report is missing; write it with: sprung report {shlex.quote(str(folder))}"
+            f"The report is missing; write it with: sprung report {shlex.quote(str(folder))}"
         )
         raise
 
 
-def to_estimates(result: Any, written: Sequence[Path], as_json: bool) -> None:
-    """Print a result and leave with the status that belongs to its verdict."""
+def print_and_exit(result: Any, written: Sequence[Path], as_json: bool) -> None:
+    """Print a result and exit with the status of its verdict."""
     for omission in result.omissions:
         complain(omission)
     _show(result, as_json)
@@ -112,15 +112,13 @@ def _show(result: Any, as_json: bool) -> None:
 def report(
     folder: Annotated[
         Path,
-        typer.Argument(
-            metavar="DIR", help="The results folder, with results.json and series.npz.", autocompletion=results
-        ),
+        typer.Argument(metavar="DIR", help="Results folder, with results.json and series.npz.", autocompletion=results),
     ],
     pdf: Annotated[bool, typer.Option("--pdf", help="Write report.pdf too.")] = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write the report of a result again, from its folder alone."""
+    """Write the report of a saved result."""
     with working("writing the report"):
         saved = sprung.report.write_report(folder, pdf, overwrite=force)
     for omission in saved.result.omissions:
@@ -139,15 +137,15 @@ def validate(
     output: Annotated[
         Optional[Path],  # noqa: UP045 (typer reads it)
         typer.Option(
-            "-o", "--output", metavar="DIR", help="Where to write numbers, series and drawings (default: nowhere)."
+            "-o", "--output", metavar="DIR", help="Output folder for numbers, series and drawings (default: none)."
         ),
     ] = None,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Hold the identified vehicle against each drop: fitted, predicted by the other drops, and against amplitude."""
+    """Cross-validate the identified vehicle: each drop fitted, and predicted from the other drops."""
     if output is not None and not force:
-        _refuse_overwriting(output, ("validation.npz", "validation.json"))
+        _refuse_overwriting((output, ("validation.npz", "validation.json")))
     with working("reading the recordings") as progress:
         found = sprung.validate(sprung.read(campaign, progress=progress), progress=progress)
         omissions = Omissions(found.result.omissions)
@@ -173,21 +171,21 @@ def validate(
 
 @app.command(epilog="Example: [bold]sprung demo[/bold]")
 def demo(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Where to write the example.")] = Path("sprung-demo"),
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder for the example.")] = Path("sprung-demo"),
     force: Force = False,
     as_json: Json = False,
 ) -> None:
-    """Write an example campaign, the paper's school bus, identify it, and show the true values beside the estimates."""
+    """Write an example campaign, the paper's school bus, identify it, and compare the estimates with the true values."""
     with working("simulating the drops of the school bus") as progress:
         campaign = sprung.study.demo_campaign()
         if not force:
             _refuse_overwriting(
-                folder, sprung.campaign.campaign_files(campaign), folder / "results", sprung.report.REPORT_FILES
+                (folder, sprung.campaign.campaign_files(campaign)), (folder / "results", sprung.report.REPORT_FILES)
             )
         written = sprung.write(campaign, folder, overwrite=force)
         read = sprung.read(written, progress=progress)
         saved = identify_and_save(read, folder / "results", True, force, progress, as_json)
-    to_estimates(saved.result, saved.files, as_json)
+    print_and_exit(saved.result, saved.files, as_json)
     if not as_json:
         truth = sprung.study.true_values(saved.result, sprung.study.DEMO_VEHICLE)
         say(f"\n{sprung.report.text_of(sprung.report.truth_view(truth))}")

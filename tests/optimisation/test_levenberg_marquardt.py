@@ -1,0 +1,117 @@
+"""The optimiser on functions whose maximum is known, real and complex, and where it must stop."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from sprung.optimisation import NormalEquations, maximise
+
+Real = NDArray[np.float64]
+Array = NDArray[Any]
+
+
+class Residuals(NamedTuple):
+    """Twice the log-likelihood -|r(x)|² of residuals with their Jacobian; points are x itself."""
+
+    name: str
+    scale: complex = 1.0
+
+    def residuals(self, x: Array) -> tuple[Array, Array]:
+        if self.name == "rosenbrock":  # H. H. Rosenbrock, Computer J. 3 (1960) 175: a curved valley, its end at (1, 1)
+            return np.array([10 * (x[1] - x[0] ** 2), 1 - x[0]]), np.array([[-20 * x[0], 10.0], [-1.0, 0.0]])
+        if self.name == "powell":  # M. J. D. Powell, Computer J. 5 (1962) 147: singular at its end (0, 0, 0, 0)
+            a, b, c, d = x
+            values = np.array([a + 10 * b, 5**0.5 * (c - d), (b - 2 * c) ** 2, 10**0.5 * (a - d) ** 2])
+            rows = [[1, 10, 0, 0], [0, 0, 5**0.5, -(5**0.5)], [0, 2 * (b - 2 * c), -4 * (b - 2 * c), 0]]
+            return values, np.array([*rows, [2 * 10**0.5 * (a - d), 0, 0, -2 * 10**0.5 * (a - d)]], dtype=float)
+        # A complex linear problem: x = (2 + i, -1).
+        matrix = np.array([[1.0, 2j], [0.5, 1.0], [1j, 3.0]]) * self.scale
+        return matrix @ (x - np.array([2 + 1j, -1.0])), matrix
+
+    def normal_equations(self, point: Array) -> NormalEquations:
+        values, jacobian = self.residuals(point)
+        information = jacobian.conj().T @ jacobian
+        scaling = np.diag(np.maximum(np.diag(information).real, 1e-12))
+        gradient = -jacobian.conj().T @ values
+        return NormalEquations(information + 1e-14 * scaling, gradient, scaling, np.eye(len(point)))
+
+    def trial(self, point: Array, step: Array) -> tuple[Array, float]:
+        before, after = (self.residuals(x)[0] for x in (point, point + step))
+        return point + step, float(np.sum(np.abs(before) ** 2) - np.sum(np.abs(after) ** 2))
+
+
+class Wall(NamedTuple):
+    """A slope that ends at a wall: beyond x = 1 nothing exists."""
+
+    def normal_equations(self, point: Real) -> NormalEquations:
+        del point
+        return NormalEquations(np.eye(1), np.ones(1), np.eye(1), np.eye(1))
+
+    def trial(self, point: Real, step: Real) -> tuple[Real, float]:
+        return point + step, -np.inf if point[0] + step[0] > 1.0 else float(step[0])
+
+
+def test_the_end_of_a_curved_valley_is_found() -> None:
+    found = maximise(Residuals("rosenbrock"), np.array([-1.2, 1.0]), tolerance=1e-12, damping=1e-3, most_steps=100)
+    assert found.converged
+    np.testing.assert_allclose(found.point, [1.0, 1.0], atol=1e-5)
+
+
+def test_a_singular_end_is_approached() -> None:
+    start = np.array([3.0, -1.0, 0.0, 1.0])
+    found = maximise(Residuals("powell"), start, tolerance=1e-16, damping=1e-3, most_steps=100)
+    assert found.converged
+    np.testing.assert_allclose(found.point, 0.0, atol=1e-3)  # the fourth power of which is the tolerance
+
+
+@pytest.mark.parametrize("scale", [1.0, 1j, 1e4])
+def test_a_linear_problem_takes_one_step_complex_as_well(scale: complex) -> None:
+    start = np.zeros(2, dtype=complex)
+    found = maximise(Residuals("linear", scale), start, tolerance=1e-9, damping=1e-12, most_steps=10)
+    assert found.converged
+    assert found.steps == 1
+    np.testing.assert_allclose(found.point, [2 + 1j, -1.0], atol=1e-9)
+
+
+def test_at_the_maximum_no_step_is_taken() -> None:
+    found = maximise(Residuals("rosenbrock"), np.array([1.0, 1.0]), tolerance=1e-9, damping=1e-3, most_steps=10)
+    assert (found.steps, found.converged) == (0, True)
+
+
+def test_no_step_is_longer_than_allowed() -> None:
+    start = np.zeros(2, dtype=complex)
+    found = maximise(Residuals("linear"), start, tolerance=1e-9, damping=1e-12, most_steps=1, longest_step=0.1)
+    assert np.abs(found.point).max() == pytest.approx(0.1)
+    assert not found.converged
+
+
+def test_steps_are_counted_and_limited() -> None:
+    found = maximise(Residuals("rosenbrock"), np.array([-1.2, 1.0]), tolerance=1e-12, damping=1e-3, most_steps=3)
+    assert (found.steps, found.converged) == (3, False)
+
+
+def test_who_is_told_to_stop_has_not_converged() -> None:
+    found = maximise(
+        Residuals("rosenbrock"), np.array([-1.2, 1.0]), tolerance=1e-12, damping=1e-3, most_steps=50,
+        stop=lambda point, _: bool(point[0] > 0),
+    )  # fmt: skip
+    assert found.point[0] > 0
+    assert not found.converged
+    assert 0 < found.steps < 50
+
+
+def test_before_a_wall_it_ends_without_having_converged() -> None:
+    found = maximise(Wall(), np.array([0.0]), tolerance=1e-9, damping=1e-3, most_steps=1000)
+    assert not found.converged
+    assert 0.9 < found.point[0] <= 1.0
+
+
+def test_without_any_direction_there_is_nothing_to_gain() -> None:
+    equations = NormalEquations(np.zeros((0, 0)), np.zeros(0), np.zeros((0, 0)), np.zeros((3, 0)))
+    step, gain = equations.step(0.1)
+    np.testing.assert_array_equal(step, np.zeros(3))
+    assert gain == 0.0
