@@ -20,7 +20,7 @@ from sprung.faults import (
     residual_table,
 )
 from sprung.progress import Progress, Step, silent
-from sprung.selection import fit_structure, score_linear_terms
+from sprung.selection import TERMS, fit_structure, score_terms
 from sprung.vehicle import Tracks
 
 _MOST = 0.5
@@ -69,11 +69,16 @@ def _explaining_term(run: Analysis) -> tuple[str | None, float]:
 
     The score test ranks the terms; where the fit is far from the recordings, it says little of how much they would gain.
     """
-    scores = {} if run.model.structure.is_time_stepped else score_linear_terms(run.model)
-    term = max(scores, key=scores.__getitem__, default=None)
-    if term is None or scores[term] < run.model.asked(term):
+    if run.model.structure.is_time_stepped:
         return None, 0.0
-    fit = fit_structure(run.model.larger([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
+    search, scores = score_terms(
+        run.model, run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
+    )
+    gains = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    term = max(gains, key=gains.__getitem__, default=None)
+    if term is None or gains[term] < search.required(term):
+        return None, 0.0
+    fit = fit_structure(search.with_terms([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
     recordings = [decay.file for decay in run.decays]
     table, noise = residual_table(recordings, run.decays, run.fit), reference_noise(run.decays, run.fit)
     gain = table.cost - residual_table(recordings, run.decays, fit).cost

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,8 @@ class Recording:
         """Time of every sample on the file's own clock, s; shape (time,)."""
         return self.start + np.arange(self.values.shape[1]) / self.rate
 
-    @property
+    @cached_property
     def usable(self) -> NDArray[np.bool_]:
         """Which channels are not left out; shape (channel,)."""
-        return np.logical_not(np.isnan(self.values).any(axis=1))
+        usable: NDArray[np.bool_] = np.logical_not(np.isnan(self.values).any(axis=1))
+        return usable

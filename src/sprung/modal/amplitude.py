@@ -17,7 +17,7 @@ from sprung.modal.criteria import NEAR_NYQUIST
 from sprung.modal.decays import Decays
 from sprung.modal.likelihood import Poles
 from sprung.modal.record_checks import check_records
-from sprung.modal.refinement import climb
+from sprung.modal.refinement import maximise_likelihood
 from sprung.modal.uncertainty import pole_bound
 from sprung.vibration import Mode
 
@@ -119,7 +119,7 @@ def _windows(record: Real, rate: float, poles: Poles, which: int) -> list[tuple[
     rows: list[tuple[float, ...]] = []
     for first in range(0, record.shape[1] - length + 1, max(int(_STRIDE * length), 1)):
         decays = Decays.of([record[:, first : first + length]], rate)
-        objective = climb(decays, poles, only=which)
+        objective = maximise_likelihood(decays, poles, only=which)
         lost = decays.sample_count / max(decays.sample_count - objective.parameters / decays.channels, 1.0)
         uncertainty = pole_bound(objective.weighted(1 / (objective.variance * lost)), which)
         fitted = Mode(

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from sprung.modal.decays import Decays
 from sprung.modal.identification_task import IdentificationTask, check_decay
 from sprung.modal.mode_set import ModeSet
-from sprung.modal.refinement import climb
+from sprung.modal.refinement import maximise_likelihood
 from sprung.modal.uncertainty import cramer_rao_bounds
 from sprung.vibration import Mode, exponential_moments, sort_modes
 
@@ -54,7 +54,7 @@ def frequency_domain_likelihood(records: Sequence[ArrayLike], rate: float, order
     lines = SpectralLines.up_to(task.decays, _WIDER * high)
     start = task.subspace.poles(task.order)
     check_decay(start, "ml-frequency")
-    objective = climb(lines, start)
+    objective = maximise_likelihood(lines, start)
     lost = lines.sample_count / max(lines.sample_count - objective.parameters / lines.channels, 1.0)
     uncertainties = cramer_rao_bounds(objective.weighted(1 / (objective.variance * lost)))
     found = zip(objective.poles.exponent * rate, objective.poles.shapes.T, uncertainties, strict=True)

@@ -13,7 +13,7 @@ from sprung.modal.identification_task import FIRST_POLES, MOST_POLES
 from sprung.modal.likelihood import LEAST_NOISE, ModalObjective, Poles, unit_scales
 from sprung.modal.mode_set import RejectedPole
 from sprung.modal.real_axis import real_axis_alternatives
-from sprung.modal.refinement import climb
+from sprung.modal.refinement import maximise_likelihood
 from sprung.modal.subspace import SignalSubspace
 from sprung.modal.uncertainty import mode_uncertainties
 from sprung.vibration import UNRESOLVED_FROM
@@ -62,7 +62,7 @@ def fit_order(decays: Decays, subspace: SignalSubspace, order: int) -> ModalFit:
     while poles.count and len(poles.both(poles.exponent)) > order:
         poles = poles.without(poles.count - 1)
     rejected: list[RejectedPole] = []
-    return ModalFit(_remove_modes(climb(decays, poles), rejected), tuple(rejected))
+    return ModalFit(_remove_modes(maximise_likelihood(decays, poles), rejected), tuple(rejected))
 
 
 def fit_by_criterion(decays: Decays, subspace: SignalSubspace, most: int = MOST_POLES) -> ModalFit:
@@ -86,14 +86,14 @@ def fit_by_criterion(decays: Decays, subspace: SignalSubspace, most: int = MOST_
     """
     first = max(FIRST_POLES, 2 * decays.channels)
     order = min(max(subspace.significant, 2), first, most, subspace.most)
-    objective = climb(decays, subspace.poles(order))
+    objective = maximise_likelihood(decays, subspace.poles(order))
     rejected: list[RejectedPole] = []
     inflation = _inflation(objective)
     if inflation.max() > _COLOURED:
         # No number of modes leaves white residuals, and the fit of a large one may be at a local maximum: all smaller
         # numbers are tried.
         starts = [subspace.poles(n) for n in range(2, order)]
-        smaller = [climb(decays, poles, _FIRST_STEPS, _FAR) for poles in starts if poles.count]
+        smaller = [maximise_likelihood(decays, poles, _FIRST_STEPS, _FAR) for poles in starts if poles.count]
         objective = min([*smaller, objective], key=lambda candidate: _criterion(candidate, inflation))
     objective = _try_real_axis(_add_modes(objective, most, rejected))
     objective = _remove_modes(objective, rejected)
@@ -114,7 +114,7 @@ def inconsistency_factor(objective: ModalObjective) -> float:
 
 
 def squared_birge_ratio(objective: ModalObjective) -> float:
-    """Return the square of the Birge ratio of poles and shapes in the early and late halves of all records.
+    """Return the square of the :term:`Birge ratio` of poles and shapes in the early and late halves of all records.
 
     R. T. Birge, Phys. Rev. 40 (1932) 207: the changes that each half would make to poles and shapes, in units of their
     uncertainty, squared and averaged; 1 or more. It is large where frequency depends on amplitude.
@@ -180,7 +180,7 @@ def _add_modes(objective: ModalObjective, most: int, rejected: list[RejectedPole
         added = _strongest(
             ModalObjective.at(Decays.of(objective.residuals, objective.decays.rate), new, objective.weights)
         )
-        larger = climb(objective.decays, objective.poles.joined_with(added), _FIRST_STEPS, _FAR)
+        larger = maximise_likelihood(objective.decays, objective.poles.joined_with(added), _FIRST_STEPS, _FAR)
         gain, cost = _gain(objective, larger)
         if residual_colour(larger).max() > _COLOURED:
             cost *= _COST_FACTOR
@@ -189,7 +189,7 @@ def _add_modes(objective: ModalObjective, most: int, rejected: list[RejectedPole
             rejected.extend(RejectedPole(complex(pole) * objective.decays.rate, reason) for pole in added.exponent)
             break
         objective = larger
-    return objective if objective is first else climb(objective.decays, objective.poles)
+    return objective if objective is first else maximise_likelihood(objective.decays, objective.poles)
 
 
 def _try_real_axis(objective: ModalObjective) -> ModalObjective:
@@ -201,9 +201,9 @@ def _try_real_axis(objective: ModalObjective) -> ModalObjective:
             if known in tried:
                 continue
             tried.add(known)
-            other = climb(objective.decays, poles, _FIRST_STEPS, _FAR)
+            other = maximise_likelihood(objective.decays, poles, _FIRST_STEPS, _FAR)
             if other.cost < objective.cost and _is_worth(objective, other):
-                objective = climb(objective.decays, other.poles)
+                objective = maximise_likelihood(objective.decays, other.poles)
                 break
         else:
             return objective
@@ -247,12 +247,12 @@ def _remove_modes(objective: ModalObjective, rejected: list[RejectedPole]) -> Mo
                 # The other modes are refitted only where that may change the decision.
                 if gain > _CLEAR_LOSS * cost and not weak[i]:
                     return objective
-                small = climb(objective.decays, small.poles, (_STEPS if weak[i] else _FIRST_STEPS), _FAR)
+                small = maximise_likelihood(objective.decays, small.poles, (_STEPS if weak[i] else _FIRST_STEPS), _FAR)
                 gain, cost = _gain(small, objective)
             if gain < cost:
                 reason = f"it gains {gain:.3g} in twice the log-likelihood, its parameters cost {cost:.3g}"
                 rejected.append(RejectedPole(exponents[i] * objective.decays.rate, reason))
-                objective = climb(objective.decays, small.poles)
+                objective = maximise_likelihood(objective.decays, small.poles)
                 break
             tried.add(exponents[i])
         else:

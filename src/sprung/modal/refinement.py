@@ -1,4 +1,4 @@
-"""Poles and shapes that make the records likeliest, by the method of Levenberg and Marquardt."""
+"""Maximum likelihood poles and shapes, by the method of Levenberg and Marquardt."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _STEPS = 50
-_SETTLED = 1e-6
-"""Gain in twice the log-likelihood that a step must promise to be worth taking."""
+_TOLERANCE = 1e-6
+"""Expected gain in twice the log-likelihood at which to stop."""
 
 _GROWTH = 5.0
-"""Powers of e by which a motion may grow over the longest record: beyond, it is none of a free decay."""
+"""Powers of e by which a motion may grow over the longest record."""
 
 _DAMPING = 1e-4
-"""Of the first step, as a part of the information."""
+"""Damping of the first step, as a part of the information."""
 
 _ROUNDING = 1e-14
 """Part of the information that is added to it: rounding must not make it indefinite."""
 
 
-def climb(
-    decays: Decays, poles: Poles, steps: int = _STEPS, settled: float = _SETTLED, only: int | None = None
+def maximise_likelihood(
+    decays: Decays, poles: Poles, steps: int = _STEPS, tolerance: float = _TOLERANCE, only: int | None = None
 ) -> ModalObjective:
     """Maximise the likelihood of poles and shapes from given ones.
 
@@ -38,10 +38,10 @@ def climb(
     decays
         The records.
     poles
-        Where to start.
+        Start.
     steps
-        How many to take at the most.
-    settled
+        Largest number of steps.
+    tolerance
         Expected gain in twice the log-likelihood at which to stop.
     only
         The one mode whose pole is free, everything else being as given; unless given, all poles and shapes are free.
@@ -53,7 +53,7 @@ def climb(
     """
     start = _weighted(ModalObjective.at(decays, poles, 1 / np.maximum(decays.energy.sum(axis=0), 1e-300)))
     problem = ModalProblem(decays, only)
-    return maximise(problem, start, tolerance=settled, damping=_DAMPING, most_steps=steps).point
+    return maximise(problem, start, tolerance=tolerance, damping=_DAMPING, most_steps=steps).point
 
 
 class ModalProblem(NamedTuple):

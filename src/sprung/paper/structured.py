@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import null_space
 
+from sprung.display import shown
 from sprung.errors import Problems, did_you_mean
 from sprung.estimation import shape_of
 from sprung.vehicle import (
@@ -33,6 +34,7 @@ _UNDETERMINED = 1e-9
 _NOTHING_KNOWN: Mapping[str, float] = MappingProxyType({})
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class StructuredFit:
     """Parameters from state matrices.

@@ -166,7 +166,7 @@ def resolution(values: Real) -> Real:
     Parameters
     ----------
     values
-        Shape (channel, time), any unit; NaN in channels that are left out.
+        Shape (channel, time), any unit; NaN throughout in channels that are left out.
 
     Returns
     -------
@@ -176,8 +176,8 @@ def resolution(values: Real) -> Real:
     """
     steps = np.abs(np.diff(values, axis=1))
     taken = np.count_nonzero(steps > 0, axis=1)
-    # In the order of size the steps of zero come first, NaN last.
-    rank = np.count_nonzero(steps == 0, axis=1) + (_FILLED_IN * taken).astype(int)
+    # In the order of size the steps of zero come first.
+    rank = steps.shape[1] - taken + (_FILLED_IN * taken).astype(int)
     smallest = np.zeros(len(values))
     for place in set(rank[taken > 0].tolist()):
         rows = np.flatnonzero((taken > 0) & (rank == place))

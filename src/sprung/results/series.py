@@ -50,7 +50,17 @@ class Series:
 
 
 def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Return the content of an .npz file of arrays by name."""
+    """Return the content of an .npz file.
+
+    Parameters
+    ----------
+    arrays
+        By name, of any shape and unit.
+
+    Returns
+    -------
+    bytes
+    """
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()

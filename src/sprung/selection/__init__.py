@@ -1,28 +1,36 @@
-"""Selection of the model: the table of model terms and the stepwise search."""
+"""Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
-from sprung.selection.forced_terms import fit_forced_terms, select_gravity_leakage, select_nonlinear_terms
-from sprung.selection.linear_terms import (
+from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
+from sprung.selection.scoring import score_terms
+from sprung.selection.search import ModelSearch, SelectionStep
+from sprung.selection.starts import fit_structure
+from sprung.selection.stepwise import (
+    fit_forced_terms,
     fit_requested_terms,
     fit_term,
-    score_linear_terms,
+    select_gravity_leakage,
     select_linear_terms,
+    select_nonlinear_terms,
     select_roll_axis_height,
 )
-from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.selection.terms import ENGINE, fit_structure
+from sprung.selection.terms import ENGINE, TERMS, ModelTerm
 
 __all__ = [
     "ENGINE",
+    "FALSE_ALARM_SHARE",
+    "TERMS",
     "ModelSearch",
     "ModelStructure",
+    "ModelTerm",
     "SelectionStep",
     "choose_structure",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",
     "fit_term",
-    "score_linear_terms",
+    "required_gain",
+    "score_terms",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_nonlinear_terms",

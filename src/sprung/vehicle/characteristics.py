@@ -177,7 +177,7 @@ def evaluate_quantity(name: str, names: Sequence[str], values: Real) -> tuple[fl
     return float(found[0].real), found.imag / _STEP
 
 
-def wheel_loads(model: LinearModel, values: Real, gravity: float = STANDARD_GRAVITY) -> tuple[Real, Real]:
+def wheel_loads(model: LinearModel, values: Real) -> tuple[Real, Real]:
     """Return the static force of level ground on each wheel, and its gradient.
 
     The four forces of a vehicle whose left and right differ depend on how the springs were seated, which no recording shows:
@@ -189,8 +189,6 @@ def wheel_loads(model: LinearModel, values: Real, gravity: float = STANDARD_GRAV
         Equations of motion of the vehicle with its load.
     values
         Parameters, SI, shape (parameter,).
-    gravity
-        m/s².
 
     Returns
     -------
@@ -204,8 +202,8 @@ def wheel_loads(model: LinearModel, values: Real, gravity: float = STANDARD_GRAV
     heave = HEAVE[: len(M)]
     # Heave strains nothing but the tyres: K times it is their rates.
     tyres, tyre_slopes = (K @ heave)[WHEELS_AT], (dK @ heave)[:, WHEELS_AT]
-    sag = np.linalg.solve(K, gravity * M @ heave)
-    sag_slopes = np.linalg.solve(K, (gravity * dM @ heave - dK @ sag).T).T
+    sag = np.linalg.solve(K, STANDARD_GRAVITY * M @ heave)
+    sag_slopes = np.linalg.solve(K, (STANDARD_GRAVITY * dM @ heave - dK @ sag).T).T
     loads = tyres * sag[WHEELS_AT]
     gradient = tyre_slopes * sag[WHEELS_AT] + tyres * sag_slopes[:, WHEELS_AT]
     return loads, gradient.T

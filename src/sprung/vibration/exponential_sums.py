@@ -147,7 +147,7 @@ def correlate_with_exponentials(
 
     Parameters
     ----------
-    blocked
+    padded_blocks
         Records cut by `split_into_blocks`, one after the other, those of one group beside each other, of any one
         unit, shape (block, channel, BLOCK).
     counts
