@@ -147,9 +147,9 @@ def correlate_with_exponentials(
 
     Parameters
     ----------
-    blocked
-        Records cut by `split_into_blocks`, one after the other, those of one group beside each other, of any one
-        unit, shape (block, channel, BLOCK).
+    padded_blocks
+        Records cut by `split_into_blocks`, one after the other, those of one group adjacent, of any one unit, shape (block,
+        channel, BLOCK_LENGTH).
     counts
         Number of blocks of each record, shape (record,).
     exponent
