@@ -76,7 +76,7 @@ def test_scores_are_those_of_the_linear_fit(
     """What an anti-roll bar would gain is told by modes as by steps."""
     larger = plain.with_terms(("anti-roll",))
     start = optimum.parameters | {"k_af": 0.0, "k_ar": 0.0}
-    by_modes = score_linear_term(decays, larger.linear_models, campaign.sensors, larger.known, start)
+    by_modes, _ = score_linear_term(decays, larger.linear_models, campaign.sensors, larger.known, start)
     all_in = plain.with_terms(("anti-roll", "friction"))
     by_steps = score_stepped_terms(
         decays,
@@ -117,9 +117,9 @@ def test_scores_of_forces_need_no_steps(campaign: Campaign, plain: ModelStructur
         together=[(name,) for name in found.names],
         candidates={extra: [(name,) for name in names] for extra, names in brought.items()},
     )
-    assert min(by_modes["friction"], by_modes["rebound"]) > 50
+    assert min(by_modes["friction"][0], by_modes["rebound"][0]) > 50
     for extra in extras:
-        assert by_modes[extra] == pytest.approx(by_steps[extra], rel=0.15, abs=3)
+        assert by_modes[extra][0] == pytest.approx(by_steps[extra], rel=0.15, abs=3)
 
 
 def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(

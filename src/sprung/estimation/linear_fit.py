@@ -37,6 +37,9 @@ Real = NDArray[np.float64]
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
 
+_LARGEST_STEP = 1.0
+"""Largest Newton step of a coordinate, dimensionless, that an estimate without a fit takes."""
+
 STARTS = 3
 """How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
 
@@ -65,7 +68,7 @@ def fit_linear(
     enough: float = CONVERGED,
     progress: Progress = silent,
 ) -> FitResult:
-    """Fit one linear vehicle to all decays by maximum likelihood.
+    """Fit one linear vehicle to all decays by :term:`maximum likelihood <maximum likelihood estimate>`.
 
     Parameters
     ----------
@@ -228,8 +231,8 @@ def score_linear_term(
     sensors: Sequence[Sensor],
     known: Mapping[str, KnownValue],
     values: Mapping[str, float],
-) -> float:
-    """Return what a model with more parameters would gain over one that is fitted already, by the score test.
+) -> tuple[float, dict[str, float]]:
+    """Return what a model with more parameters would gain over one that is fitted already, by the :term:`score test`.
 
     Parameters
     ----------
@@ -242,8 +245,13 @@ def score_linear_term(
     -------
     float
         In twice the log-likelihood, to second order.
+    dict
+        Parameters of the larger model after one Newton step, SI, by name.
     """
     problem = _problem(_objective(decays, models, sensors), known, values)
     u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    information, gradient, _ = problem.system(problem.start(u))
-    return score_test(information, gradient, 0).gain()
+    information, gradient, null_space = problem.system(problem.start(u))
+    test = score_test(information, gradient, 0)
+    step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
+    estimates = problem.priors.coordinates.values(u + step)
+    return test.gain(), dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))

@@ -33,8 +33,8 @@ def score_nonlinear_terms(
     models: Mapping[str, NonlinearModel],
     values: Mapping[str, float],
     candidates: Mapping[str, Sequence[str]],
-) -> dict[str, float]:
-    """Return what nonlinear forces would gain over a linear vehicle that is fitted already, by score tests.
+) -> dict[str, tuple[float, dict[str, float]]]:
+    """Return what nonlinear forces would gain in a fitted linear vehicle, by :term:`score tests <score test>`, and their sizes.
 
     Parameters
     ----------
@@ -50,7 +50,8 @@ def score_nonlinear_terms(
     Returns
     -------
     dict
-        In twice the log-likelihood, to second order; 0 where modal coordinates do not exist.
+        By candidate: the gain in twice the log-likelihood, to second order, 0 where modal coordinates do not exist; and the
+        estimates of its parameters by one Newton step, SI, by name.
     """
     match fit.iterate.at:
         case HasModalResponse() as at:
@@ -59,9 +60,15 @@ def score_nonlinear_terms(
             systems = [_of_drop(fit, at, drop, models[fit.decays[drop].load], values, brought) for drop in drops]
             information, gradient = (np.sum(parts, axis=0) for parts in zip(*systems, strict=True))
             test = score_added(fit, gradient, information)
-            return {name: test.gain([brought.index(own) for own in names]) for name, names in candidates.items()}
+            scores = {}
+            for term, names in candidates.items():
+                own = [brought.index(name) for name in names]
+                step = test.joint_values(own)
+                estimates = {name: values[name] + float(step[i]) for name, i in zip(names, own, strict=True)}
+                scores[term] = (test.gain(own), estimates)
+            return scores
         case _:
-            return dict.fromkeys(candidates, 0.0)
+            return {term: (0.0, {name: values[name] for name in names}) for term, names in candidates.items()}
 
 
 def _of_drop(

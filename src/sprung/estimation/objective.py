@@ -174,7 +174,7 @@ class HasModalResponse(Protocol):
         Parameters
         ----------
         forces
-            (dM λ² + dC λ + dK) v of every mode v, shape (load, coordinate, change, mode).
+            (dM λ² + dC λ + dK) v of every mode v, SI, shape (load, coordinate, change, mode).
 
         Returns
         -------
@@ -188,7 +188,7 @@ class HasModalResponse(Protocol):
         Parameters
         ----------
         readings
-            Derivatives by the changes, shape (load, channel, change, 2 mode).
+            Derivatives by the changes, SI, shape (load, channel, change, 2 mode).
 
         Returns
         -------

@@ -42,7 +42,7 @@ _ROUNDING = 1e-10  # of the cost
 
 
 def identifiable_subspace(information: Real) -> Real:
-    """Return the directions of which data and priors have information.
+    """Return the :term:`identifiable subspace`: the directions of which data and priors have information.
 
     Parameters
     ----------

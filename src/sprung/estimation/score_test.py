@@ -32,9 +32,9 @@ class ScoreTest:
     score
         Gradient of the log-likelihood by the unknowns, the parameters eliminated, shape (unknown,).
     information
-        Fisher information of them, the same, shape (unknown, unknown).
+        Fisher information of them, 1 over the squares of their units, likewise; shape (unknown, unknown).
     own_information
-        Information of each if the parameters were known, shape (unknown,).
+        Information of each if the parameters were known, in the same units, shape (unknown,).
     shifts
         Change of each direction of the parameters with each unknown, in standard errors of that direction; shape (direction,
         unknown).
@@ -74,13 +74,30 @@ class ScoreTest:
         chosen
             Which; all unless given. Those that are not determined add nothing.
         """
+        return float(self.score @ self.joint_values(chosen))
+
+    def joint_values(self, chosen: Sequence[int] | slice = slice(None)) -> Real:
+        """Return the estimates of some of the unknowns together, by one Newton step.
+
+        Parameters
+        ----------
+        chosen
+            Which; all unless given.
+
+        Returns
+        -------
+        ndarray
+            Shape (unknown,); 0 for those that are not chosen or not determined.
+        """
         own = np.arange(len(self.score))[chosen]
         own = own[self.determined[own]]
         scale = self.own_information[own] ** -0.5
         eigenvalues, vectors = np.linalg.eigh(self.information[np.ix_(own, own)] * np.outer(scale, scale))
-        along = vectors.T @ (scale * self.score[own])
         kept = eigenvalues > _DETERMINED
-        return float(np.sum(along[kept] ** 2 / eigenvalues[kept]))
+        along = (vectors.T @ (scale * self.score[own]))[kept] / eigenvalues[kept]
+        values = np.zeros(len(self.score))
+        values[own] = scale * (vectors[:, kept] @ along)
+        return values
 
 
 def score_test(information: Real, gradient: Real, nuisance: int) -> ScoreTest:
@@ -129,7 +146,7 @@ def score_added(fit: FitResult, gradient: Real, information: Real) -> ScoreTest:
 
 
 def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) -> float:
-    """Return what twice the log-likelihood would lose, to second order, if parameters had certain values.
+    """:term:`Wald test`: what twice the log-likelihood would lose, to second order, if parameters had certain values.
 
     Parameters
     ----------

@@ -226,9 +226,17 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
 
 
 def overdispersion_of(fit: FitResult) -> float:
-    """Return the overdispersion of a fit: the factor on every variance, 1 where it is not significant.
+    """Return the :term:`overdispersion` of a fit: the factor on every variance, 1 where it is not significant.
 
-    The larger of what autocorrelated residuals and what drops that contradict each other show.
+    Parameters
+    ----------
+    fit
+        The fit.
+
+    Returns
+    -------
+    float
+        A factor, the larger of the autocorrelation inflation of the residuals and the squared Birge ratio of the drops.
     """
     return fit.overdispersion
 

@@ -1,21 +1,34 @@
-"""Selection of the model: the table of model terms and the stepwise search."""
+"""Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
-from sprung.selection.forced_terms import fit_forced_terms, select_gravity_leakage, select_nonlinear_terms
-from sprung.selection.linear_terms import fit_requested_terms, fit_term, select_linear_terms, select_roll_axis_height
+from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.search import ModelSearch, SelectionStep
+from sprung.selection.starts import fit_structure
+from sprung.selection.stepwise import (
+    fit_forced_terms,
+    fit_requested_terms,
+    fit_term,
+    select_gravity_leakage,
+    select_linear_terms,
+    select_nonlinear_terms,
+    select_roll_axis_height,
+)
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.selection.terms import ENGINE, fit_structure
+from sprung.selection.terms import ENGINE, TERMS, ModelTerm
 
 __all__ = [
     "ENGINE",
+    "FALSE_ALARM_SHARE",
+    "TERMS",
     "ModelSearch",
     "ModelStructure",
+    "ModelTerm",
     "SelectionStep",
     "choose_structure",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",
     "fit_term",
+    "required_gain",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_nonlinear_terms",

@@ -1,4 +1,4 @@
-"""Where the choice of extras stands: the model and its fit, what was tried, and what anything further has to gain."""
+"""State of the search for the model: structure and fit so far, every step taken, and what a further term has to gain."""
 
 from __future__ import annotations
 
@@ -10,41 +10,38 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation import NEAR, FitResult, overdispersion_of
+from sprung.estimation import NEAR, FitResult, overdispersion_of, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
+from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, required_gain
+from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import SEPARATE, brought, decided, fit_structure, possible, size_of
+from sprung.selection.terms import SEPARATE_TRACKS, TERMS
 
 Real = NDArray[np.float64]
 
-ERRS = 2.0
-"""Inflation from which the model errs, and not only the sensors."""
-
-_MATTERS = 0.03
-"""Size of an extra, as a part, below which it may be what is left of a model error."""
-
-_MUCH = 0.2
-"""Part of the sensors' variance that a model may leave unexplained beside it."""
+_HYPOTHESES = len(TERMS) + 1
+"""Hypotheses that are tried on a campaign: every term, and the leakage of gravity."""
 
 
 @shown
 @dataclass(frozen=True)
 class SelectionStep:
-    """One step of the way to the model.
+    """One step of the search for the model.
 
     Attributes
     ----------
     extra
-        What was tried.
+        The model term that was tried.
     gain
-        In twice the log-likelihood, over the inflation; expected where it was not fitted, lost where it was left out again.
+        In twice the log-likelihood, divided by the overdispersion: expected from a score test where the term was not fitted,
+        lost without it (Wald test) where several were fitted at once.
     asked
-        What the Bayesian information criterion asks for its parameters.
+        Gain required of it.
     fitted
         Whether it was fitted, or only scored.
     taken
-        Whether it stayed.
+        Whether it stayed in the model.
     against
         Why it did not, where it gained enough.
     """
@@ -58,19 +55,19 @@ class SelectionStep:
 
     @property
     def text(self) -> str:
-        """The attempt in words."""
-        but = f", but {self.against}" if self.against else ""
-        return f"{self.extra} (Δ2lnL = {max(self.gain, 0.0):.0f}, required {self.asked:.0f}{but})"
+        """The step in words."""
+        reason = f", but {self.against}" if self.against else ""
+        return f"{self.extra} (Δ2lnL = {max(self.gain, 0.0):.0f}, required {self.asked:.0f}{reason})"
 
 
 @dataclass(frozen=True, eq=False)
 class ModelSearch:
-    """Where the choice of extras stands.
+    """State of the search for the model.
 
     Attributes
     ----------
     structure, fit
-        The model, and where its fit ended.
+        The model so far, and its fit.
     decays
         What is fitted.
     steps
@@ -85,83 +82,118 @@ class ModelSearch:
     steps: tuple[SelectionStep, ...] = ()
     progress: Progress = silent
 
-    def asked(self, extra: str) -> float:
-        """Give what is asked of an extra."""
-        return len(brought(extra, self.structure.tracks)) * self.each
+    @cached_property
+    def samples(self) -> float:
+        """Number of samples that are fitted, all channels together."""
+        return float(sum(decay.usable.sum() * decay.samples for decay in self.decays))
+
+    def required(self, term: str) -> float:
+        """Gain in twice the log-likelihood that is required of a term."""
+        return required_gain(len(TERMS[term].parameters(self.structure.tracks)), _HYPOTHESES, self.samples)
 
     @property
-    def each(self) -> float:
-        """What is asked of one parameter."""
-        return float(np.log(sum(decay.usable.sum() * decay.samples for decay in self.decays)))
+    def required_of_switch(self) -> float:
+        """Gain that is required of a change of the model without a parameter."""
+        return required_gain(0, _HYPOTHESES, self.samples)
 
-    def open_among(self, among: Sequence[str]) -> list[str]:
-        """Give what may be tried and is not in the model."""
-        tracks = [SEPARATE] if self.structure.tracks_open and self.structure.tracks == "shared" else []
-        free = [extra for extra in self.structure.open_terms if extra not in self.structure.terms]
-        return [extra for extra in (*tracks, *free) if extra in among]
+    def open_terms(self, among: Sequence[str]) -> list[str]:
+        """Terms that the recordings are to decide about and that the model has not."""
+        tracks = [SEPARATE_TRACKS] if self.structure.tracks_open and self.structure.tracks == "shared" else []
+        terms = [term for term in self.structure.open_terms if term not in self.structure.terms]
+        return [term for term in (*tracks, *terms) if term in among]
 
-    def larger(self, extras: Sequence[str]) -> ModelStructure:
-        """Give the model with more extras."""
-        added = tuple(extra for extra in extras if extra != SEPARATE)
-        return self.structure.with_terms((*self.structure.terms, *added), "separate" if SEPARATE in extras else None)
+    @property
+    def selected(self) -> list[str]:
+        """Terms that the recordings brought into the model."""
+        structure = self.structure
+        tracks = [SEPARATE_TRACKS] if structure.tracks_open and structure.tracks == "separate" else []
+        return [*tracks, *(term for term in structure.terms if term in structure.open_terms)]
 
-    def noted(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> ModelSearch:
-        """Give the same with attempts noted, by extra and gain."""
-        notes = [SelectionStep(extra, gain, self.asked(extra), fitted, taken, against) for extra, gain in gains.items()]
-        return replace(self, steps=(*self.steps, *notes))
+    def with_terms(self, terms: Sequence[str]) -> ModelStructure:
+        """Return the structure with more terms."""
+        added = tuple(term for term in terms if term != SEPARATE_TRACKS)
+        tracks = "separate" if SEPARATE_TRACKS in terms else self.structure.tracks
+        return self.structure.with_terms((*self.structure.terms, *added), tracks)
 
-    def refit(self, choice: ModelStructure) -> ModelSearch:
-        """Fit another model from here."""
-        return replace(self, structure=choice, fit=fit_structure(choice, self.decays, self.fit, NEAR, self.progress))
+    def without(self, term: str) -> ModelStructure:
+        """Return the structure without one of its terms."""
+        kept = tuple(other for other in self.structure.terms if other != term)
+        return self.structure.with_terms(kept, "shared" if term == SEPARATE_TRACKS else None)
+
+    def recorded(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> ModelSearch:
+        """Return the search with one step more for each term and its gain."""
+        more = [SelectionStep(term, gain, self.required(term), fitted, taken, against) for term, gain in gains.items()]
+        return replace(self, steps=(*self.steps, *more))
+
+    def refit(self, structure: ModelStructure, most: int = 100) -> ModelSearch:
+        """Fit another structure from here, with a largest number of iterations."""
+        fit = fit_structure(structure, self.decays, self.fit, NEAR, self.progress, most=most)
+        return replace(self, structure=structure, fit=fit)
 
     @cached_property
-    def inflation(self) -> float:
-        """By how much the records tell less than white residuals of drops that agree would."""
+    def overdispersion(self) -> float:
+        """By how much less the recordings tell than white residuals of drops that agree would: a factor on variances."""
         return overdispersion_of(self.fit)
 
     @cached_property
-    def _rest(self) -> Real:
-        """Variance of each channel while the vehicle stood on its blocks, (m/s²)²; 0 where nobody knows; shape (channel,)."""
+    def _noise_at_rest(self) -> Real:
+        """Variance of each channel while the vehicle stood on its blocks, (m/s²)²; 0 where unknown; shape (channel,)."""
         rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
         variances = [np.nan_to_num(noise.var(axis=1)) for noise in rests] or [np.zeros_like(self.fit.noise)]
-        rest: Real = np.mean(variances, axis=0)
-        return rest
+        mean: Real = np.mean(variances, axis=0)
+        return mean
+
+    @cached_property
+    def has_model_error(self) -> bool:
+        """Whether the model leaves much more than the sensors' noise at rest."""
+        known = self._noise_at_rest > 0
+        ratio = self.fit.noise[known] ** 2 / self._noise_at_rest[known]
+        return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
 
     @property
-    def errs(self) -> bool:
-        """Whether the model leaves much beside the sensors' noise."""
-        known = self._rest > 0
-        return bool(known.any()) and float(np.mean(self.fit.noise[known] ** 2 / self._rest[known])) > 1 + _MUCH
+    def is_misfit_small(self) -> bool:
+        """Whether what is left is no noise and yet small: any further term would seem to explain some of it."""
+        return self.overdispersion > OVERDISPERSED and not self.has_model_error
 
-    def worth(self, than: ModelSearch) -> float:
-        """Give what it gains over another way, in twice the log-likelihood, beyond what is asked of its parameters."""
-        gain = 2 * (self.fit.loglikelihood - than.fit.loglikelihood) / self.inflation
-        return gain - (len(self.structure.names) - len(than.structure.names)) * self.each
+    def gain_over(self, other: ModelSearch) -> float:
+        """Gain in twice the log-likelihood over another fit of the same decays, divided by the overdispersion."""
+        return 2 * (self.fit.loglikelihood - other.fit.loglikelihood) / self.overdispersion
 
-    def against(self, extra: str, inflation: float) -> str:
-        """Say what speaks against an extra, whatever it gains; nothing where nothing does."""
-        if not possible(extra, self.fit):
+    def delta_bic(self, other: ModelSearch) -> float:
+        """Gain over another model beyond what the Bayesian information criterion asks for the further parameters."""
+        more = len(self.structure.names) - len(other.structure.names)
+        return self.gain_over(other) - more * float(np.log(self.samples))
+
+    def veto(self, term: str) -> str:
+        """Reason against a term of the model, whatever it gains; empty where there is none."""
+        row, parameters = TERMS[term], self.fit.parameters
+        limit = required_gain(1, 1, 1.0, self.overdispersion)
+        below = [name for name in row.not_negative(self.structure.tracks) if parameters[name] < 0]
+        if any(wald_test(self.fit, [(name, 0.0)]) > limit for name in below):
             return "the estimate is negative, which is not physical"
-        if inflation > ERRS and size_of(extra, self.fit.parameters) < _MATTERS:
+        size = abs(row.size(parameters))
+        if size < row.negligible:
+            return f"its effect of {100 * size:.2g} % is negligible"
+        # What is left of other model errors enlarges every estimate as it enlarges its standard error.
+        if size < row.negligible * self.overdispersion**0.5:
             return "it is too small to be told from other errors of the model"
         return ""
 
-    def explains_little(self, begun: FitResult, part: float) -> bool:
-        """Say whether more than a part of what the linear vehicle leaves is left still: then something else is the matter."""
-        before, after = (np.maximum(one.noise**2 - self._rest, 0.0) for one in (self.fit, begun))
-        much = before > self._rest
+    def leaves_misfit(self, fit: FitResult, part: float) -> bool:
+        """Whether another fit leaves more than a part of this one's model error: then it lacks something else."""
+        before, after = (np.maximum(one.noise**2 - self._noise_at_rest, 0.0) for one in (self.fit, fit))
+        much = before > self._noise_at_rest
         return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
     @property
     def reason(self) -> str:
         """What decided on the model, in words."""
-        choice = self.structure
-        if not (choice.tracks_open or choice.open_terms):
-            return f"half-distances {choice.tracks}, as the campaign says or what is known implies"
-        last = {one.extra: one for one in self.steps}
-        taken = ", ".join(one.text for one in last.values() if one.taken and one.extra in decided(choice))
-        refused = ", ".join(one.text for one in last.values() if one.extra not in decided(choice))
-        said = (
-            f"model terms supported by the data: {taken}" if taken else "no further model term is supported by the data"
+        if not (self.structure.tracks_open or self.structure.open_terms):
+            return f"half-distances {self.structure.tracks}, as the campaign says or what is known implies"
+        last = {step.extra: step for step in self.steps}
+        taken = ", ".join(step.text for step in last.values() if step.taken and step.extra in self.selected)
+        refused = ", ".join(step.text for step in last.values() if step.extra not in self.selected)
+        decided = f"supported by the data: {taken}" if taken else ""
+        return (f"model terms {decided}" if decided else "no further model term is supported by the data") + (
+            f"; not supported: {refused}" if refused else ""
         )
-        return said + (f"; not supported: {refused}" if refused else "")

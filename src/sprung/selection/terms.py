@@ -1,233 +1,202 @@
-"""Candidates: what each extra brings to a model, where its fit starts, whether it can be and what it matters."""
+"""The table of model terms: what a vehicle may have beside the paper's linear seven degrees of freedom.
+
+A new term is one row here, its law and parameters in `sprung.vehicle`, and one test. Sizes are ratios to what the term acts
+beside; usual sizes and their spread are those of road vehicles (Dixon, The Shock Absorber Handbook, 2007; Gillespie,
+Fundamentals of Vehicle Dynamics, 1992; Reimpell, The Automotive Chassis, 2001), rounded. A size is negligible where leaving
+the term out moves no other parameter by more than about one percent (tests/selection/test_practical_effect.py).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from sprung.estimation import USUAL_ENGINE, FitResult, fit_linear, fit_nonlinear, mountings_of, wald_test
-from sprung.preprocess import FreeDecay
-from sprung.progress import Progress
+from sprung.estimation import USUAL_ENGINE
 from sprung.selection.structure import ModelStructure
-from sprung.vehicle import (
-    EXTRA_PARAMETERS,
-    NEUTRAL,
-    PARAMETERS,
-    Rows,
-    Tracks,
-    coordinates,
-    nonlinear_elements,
-    parameters_of_term,
-    with_separate_tracks,
-)
+from sprung.vehicle import LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, parameters_of_term
 
-Real = NDArray[np.float64]
+Values = Mapping[str, float]
+"""Parameters by name, SI."""
 
-SEPARATE = "tracks apart"
-"""Springs and dampers at half-distances of their own, as one candidate among the extras."""
+StartValues = Callable[[Values, ModelStructure], Values]
+"""From the fitted vehicle and the structure to fit, values of some parameters."""
 
-ENGINE = "engine"
-"""An engine on mounts of its own."""
+SEPARATE_TRACKS = "tracks apart"
+"""Springs and dampers at half-distances of their own."""
+
+ENGINE, BUMP_STOP, FRICTION = "engine", "bump-stop", "friction"
 
 _TRAVEL = 0.002
-"""m of travel at which a spring's force is the size of the friction from which a fit starts."""
+"""m of travel at which a spring's force is that of a usual friction."""
 
-_STIFFER = 10.0
-"""How many times stiffer than the spring a friction is before it slides, at the start of a fit."""
-
-_NOT_NEGATIVE = frozenset(name for name, told in PARAMETERS.items() if not (told.positive or told.signed))
-"""Parameters of extras that cannot be below zero."""
-
-_UNEVEN = ("ks", "kt", "cs")
-"""Rates that may differ between left and right, by their names without the axle."""
-
-_BY_CHANCE = 4.0
-"""Likelihood ratio that a parameter below zero may have by chance: two standard errors, squared."""
+_PRESLIDING_RATIO = 10.0
+"""Stiffness of a friction before it slides, over that of the spring, at the start of a fit."""
 
 _STROKE = 0.05
 """m of travel over which a progressive spring is judged."""
 
-_MET = (0.35, 0.6, 0.85)
-"""Parts of the largest compression at which stops may be met, where a fit begins."""
-
-_SPECK = 1e-5
-"""Part of the body that weighs so little that it changes nothing."""
-
-_ENOUGH = 250.0
-"""Samples per second, at least, that tell what an extra promises."""
-
-_LONG_ENOUGH = 3.0
-"""s of each decay that tell it."""
+_ALMOST_NO_ENGINE = 1e-5
+"""Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
 
 
-def fit_structure(
-    choice: ModelStructure,
-    decays: Sequence[FreeDecay],
-    before: FitResult,
-    enough: float,
-    progress: Progress,
-    states: Real | None = None,
-    begun: bool = False,
-    most: int = 100,
-) -> FitResult:
-    """Fit a model from where another one's fit ended.
+@dataclass(frozen=True)
+class ModelTerm:
+    """One term that the model may have.
 
-    Parameters
+    Attributes
     ----------
-    choice
-        The model.
-    decays
-        The decays.
-    before
-        Where the other fit of these decays ended.
-    enough
-        Expected gain in log-likelihood at which to stop.
-    progress
-        Called with each step that begins.
-    states
-        {X, Ẋ} of each drop at its first sample, shape (drop, state), where these decays begin elsewhere than those.
-    begun
-        Whether their beginnings will do.
-    most
-        Steps at the most.
+    name
+        As in campaign.toml and results.json.
+    size
+        Practical effect, dimensionless, from the parameters of a vehicle that has it; a sign means a direction only.
+    typical, spread
+        Usual size where the term is present, and the factor by which one standard deviation lies above or below it.
+    negligible
+        Size below which it changes nothing in practice: it is left out, however significant.
+    explains_all
+        Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
+    resembles_others
+        Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
+    undefined
+        Values of those parameters that have none where the term is absent.
+    first
+        Values with which a fit begins instead of the neutral ones.
+    equal_tracks
+        Parameters that are equal to another one where the term is absent.
     """
-    states = carried_over(before.states if states is None else states, before.names, choice.names)
-    sensors, known = choice.campaign.sensors, choice.known
-    start = start_of(choice, before.parameters)
-    if not choice.is_time_stepped:
-        found = fit_linear(decays, choice.linear_models, sensors, known, start=start, enough=enough)
-    else:
-        found = fit_nonlinear(
-            decays,
-            choice.nonlinear_models,
-            sensors,
-            known,
-            start=start,
-            states=states,
-            enough=enough,
-            near=states.shape[1] > 2 * len(coordinates(choice.names)),
-            begun=begun,
-            most=most,
-            tilting=choice.gravity_leakage,
-            progress=progress,
-        )
-    return found.after(before)
+
+    name: str
+    size: Callable[[Values], float]
+    typical: float
+    spread: float
+    negligible: float
+    explains_all: bool = False
+    resembles_others: bool = False
+    undefined: StartValues = lambda _own, _structure: {}
+    first: StartValues = lambda _own, _structure: {}
+    equal_tracks: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether mass, damping and stiffness matrices carry it."""
+        return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+
+    def parameters(self, tracks: Tracks) -> tuple[str, ...]:
+        """Parameters that a model with the term has and one without it has not, or not free."""
+        if self.equal_tracks:
+            return tuple(name for name, _ in self.equal_tracks)
+        return parameters_of_term(self.name, tracks)
+
+    def neutral(self, tracks: Tracks) -> list[tuple[str, str | float]]:
+        """Return what each parameter is where the term is absent: a value, or another parameter."""
+        if self.equal_tracks:
+            return list(self.equal_tracks)
+        return [(name, NEUTRAL[name]) for name in self.parameters(tracks) if name in NEUTRAL]
+
+    def not_negative(self, tracks: Tracks) -> tuple[str, ...]:
+        """Parameters that physics does not allow to be negative, though the fit does."""
+        about = {name: PARAMETERS[name] for name in self.parameters(tracks)}
+        return tuple(name for name, one in about.items() if not (one.positive or one.signed))
+
+    def implausibility(self, size: float) -> float:
+        """Minus twice the logarithm of the prior density of a size, 0 at the usual one.
+
+        Log-normal with `typical` and `spread`; a size that is negligible is as implausible as the smallest that is not.
+        """
+        ratio = max(abs(size), self.negligible) / self.typical
+        return float((np.log(ratio) / np.log(self.spread)) ** 2)
 
 
-def decided(choice: ModelStructure) -> list[str]:
-    """Give what the records brought into the model."""
-    tracks = [SEPARATE] if choice.tracks_open and choice.tracks == "separate" else []
-    return [*tracks, *(extra for extra in choice.terms if extra in choice.open_terms)]
+def _of_axles(ratio: Callable[[Values, str], float]) -> Callable[[Values], float]:
+    """Return the larger of both axles' sizes."""
+    return lambda values: max(abs(ratio(values, axle)) for axle in "fr")
 
 
-def without(choice: ModelStructure, extra: str) -> ModelStructure:
-    """Give a model without an extra."""
-    if extra == SEPARATE:
-        return choice.with_terms(choice.terms, "shared")
-    return choice.with_terms(tuple(one for one in choice.terms if one != extra))
+def _half_distance(values: Values, axle: str) -> float:
+    """Half-distance of an axle's springs, m."""
+    return values[f"t_{axle}"] if f"t_{axle}" in values else values[f"t_{axle}2"]
 
 
-def size_of(extra: str, p: Mapping[str, float]) -> float:
-    """Give what an extra matters beside what it is an extra to, as a part."""
-    parts: dict[str, Callable[[str], float]] = {
-        SEPARATE: lambda axle: p[f"t_{axle}1"] / p[f"t_{axle}2"] - 1,
-        "anti-roll": lambda axle: p[f"k_a{axle}"] / p[f"k_s{axle}"],
-        "tyre-damping": lambda axle: p[f"c_t{axle}"] / p[f"c_s{axle}"],
-        "gravity": lambda axle: p["w_h"] / p[f"k_s{axle}"],
-        "friction": lambda axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"]),
-        "rebound": lambda axle: p[f"r_{axle}"] - 1,
-        "progressive": lambda axle: _STROKE * p[f"p_{axle}"],
-        "bump-stop": lambda axle: p[f"k_b{axle}"] / p[f"k_s{axle}"],
-        "asymmetry": lambda axle: max(abs(p[f"d_{rate}{axle}"] / p[f"{rate[0]}_{rate[1:]}{axle}"]) for rate in _UNEVEN),
-        ENGINE: lambda _: p["m_e"] / p["m_s"],
-        "rigid-axle": lambda axle: 1 - p[f"n_{axle}" if f"n_{axle}" in p else f"n_{axle}2"],
-    }
-    return max(abs(parts[extra](axle)) for axle in "fr")
+def _asymmetry(values: Values, axle: str) -> float:
+    rates = [values[f"d_{rate}{axle}"] / values[f"{rate[0]}_{rate[1:]}{axle}"] for rate in ("ks", "kt", "cs")]
+    return max(abs(values["y_s"]) / _half_distance(values, axle), *map(abs, rates))
 
 
-def possible(extra: str, optimum: FitResult) -> bool:
-    """Say whether an extra's parameters are what they can be: friction that drives is none, nor is a damper that does."""
-    brought = () if extra == SEPARATE else EXTRA_PARAMETERS[extra]
-    below = [name for name in _NOT_NEGATIVE.intersection(brought, optimum.names) if optimum.parameters[name] < 0]
-    return not any(wald_test(optimum, [(name, 0.0)]) > _BY_CHANCE for name in below)
+def _gravity(values: Values) -> float:
+    """Share of the roll stiffness of all springs."""
+    roll = 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
+    return values["w_h"] / roll
 
 
-def brought(extra: str, tracks: Tracks) -> tuple[str, ...]:
-    """Name the parameters that move on their own in the larger model only."""
-    return ("t_f1", "t_r1") if extra == SEPARATE else parameters_of_term(extra, tracks)
-
-
-def neutral(extra: str, tracks: Tracks) -> list[tuple[str, str | float]]:
-    """Give what each parameter would have to be for the extra not to be there: a value, or another parameter."""
-    if extra == SEPARATE:
-        return [("t_f1", "t_f2"), ("t_r1", "t_r2")]
-    return [(name, NEUTRAL[name]) for name in parameters_of_term(extra, tracks) if name in NEUTRAL]
-
-
-def places_of_stops(choice: ModelStructure, optimum: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
-    """Give compressions, m, at which stops may be met, from how far a fitted vehicle moves."""
-    rows = Rows.of([force.row for force in nonlinear_elements(choice.tracks, ("bump-stop",))], choice.names)
-    G = rows.at(optimum.values)
-    motions = (optimum.motion(i, 0, decay.samples) for i, decay in enumerate(decays))
-    largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
-    return [part * largest for part in _MET] if largest > 0 else []
-
-
-def variants(extra: str, choice: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
-    """Give the places from which the fit of an extra may begin, where what it is an extra to says nothing of them."""
-    if extra != ENGINE:
-        return [choice]
-    mountings = mountings_of(own["a"] + own["b"])
-    return [one for one in (replace(choice, engine_mounting=each) for each in mountings) if has_masses(one, own)]
-
-
-def has_masses(choice: ModelStructure, own: Mapping[str, float]) -> bool:
-    """Say whether a fit begins with a vehicle of which every part has mass."""
-    start = np.array(list(start_of(choice, own).values()))
-    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in choice.linear_models.values())
-
-
-def neutral_start(choice: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
-    """Give the same vehicle by the names of a larger model; an engine is next to none, as without any it would be nowhere."""
-    together = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
-    stiff = {f"s_{axle}": _STIFFER * own[f"k_s{axle}"] for axle in "fr"}
-    stops = dict.fromkeys(("x_bf", "x_br"), choice.stop_gap)
-    engine = choice.engine_mounting.engine(_SPECK * own["m_s"])
-    known = {**NEUTRAL, **stiff, **stops, **engine, **with_separate_tracks(own), **together, **own}
-    return {name: known[name] for name in choice.names}
-
-
-def start_of(choice: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
-    """Give where to start a model from: friction and engines that are not there yet start with some."""
-    slid = {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"}
-    begun = {**slid, **choice.engine_mounting.engine(USUAL_ENGINE * own["m_s"]), **own}
-    return {name: begun.get(name, value) for name, value in neutral_start(choice, own).items()}
-
-
-def carried_over(states: Real, before: Sequence[str], names: Sequence[str]) -> Real:
-    """Give initial states by the coordinates of another model; an engine that is new moves as the body does.
-
-    Parameters
-    ----------
-    states
-        {X, Ẋ}, and memories where they are known, SI, shape (drop, state).
-    before, names
-        Parameters of the model that they belong to, and of the other.
-    """
-    own, other = coordinates(before), coordinates(names)
-    X, V, memories = np.split(states, [len(own), 2 * len(own)], axis=1)
-    chosen = [own.index(one) if one in own else 0 for one in other]
-    return np.hstack([X[:, chosen], V[:, chosen], memories])
-
-
-def thinned(decays: Sequence[FreeDecay]) -> tuple[list[FreeDecay], float]:
-    """Take as many samples as tell what an extra promises, and give the part of all that they are."""
-    thin = []
-    for decay in decays:
-        every = max(int(decay.rate / _ENOUGH), 1)
-        values = decay.values[:, : int(_LONG_ENOUGH * decay.rate) : every]
-        thin.append(replace(decay, values=values, rate=decay.rate / every))
-    return thin, sum(decay.samples for decay in thin) / sum(decay.samples for decay in decays)
+TERMS: Mapping[str, ModelTerm] = {
+    term.name: term
+    for term in (
+        ModelTerm(
+            SEPARATE_TRACKS,
+            _of_axles(lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"] - 1),
+            typical=0.15,
+            spread=2.0,
+            negligible=0.01,
+            equal_tracks=(("t_f1", "t_f2"), ("t_r1", "t_r2")),
+        ),
+        ModelTerm(
+            "anti-roll",
+            _of_axles(lambda p, axle: p[f"k_a{axle}"] / p[f"k_s{axle}"]),
+            typical=0.3,
+            spread=2.5,
+            negligible=0.01,
+        ),
+        ModelTerm(
+            "tyre-damping",
+            _of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
+            typical=0.06,
+            spread=2.5,
+            negligible=0.005,
+        ),
+        ModelTerm("gravity", _gravity, typical=0.1, spread=2.0, negligible=0.005),
+        ModelTerm("asymmetry", _of_axles(_asymmetry), typical=0.05, spread=2.0, negligible=0.01, explains_all=True),
+        ModelTerm(
+            "rigid-axle",
+            _of_axles(lambda p, axle: 1 - p[f"n_{axle}" if f"n_{axle}" in p else f"n_{axle}2"]),
+            typical=0.3,
+            spread=1.6,
+            negligible=0.05,
+            explains_all=True,
+        ),
+        ModelTerm(
+            ENGINE,
+            lambda p: p["m_e"] / p["m_s"],
+            typical=USUAL_ENGINE,
+            spread=1.6,
+            negligible=0.02,
+            explains_all=True,
+            undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
+            first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
+        ),
+        ModelTerm(
+            FRICTION,
+            _of_axles(lambda p, axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"])),
+            typical=1.0,
+            spread=3.0,
+            negligible=0.01,
+            resembles_others=True,
+            undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
+            first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
+        ),
+        ModelTerm("rebound", _of_axles(lambda p, axle: p[f"r_{axle}"] - 1), typical=0.8, spread=2.0, negligible=0.01),
+        ModelTerm(
+            "progressive", _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]), typical=0.2, spread=2.5, negligible=0.02
+        ),
+        ModelTerm(
+            BUMP_STOP,
+            _of_axles(lambda p, axle: p[f"k_b{axle}"] / p[f"k_s{axle}"]),
+            typical=3.0,
+            spread=3.0,
+            negligible=0.02,
+            undefined=lambda _, structure: dict.fromkeys(("x_bf", "x_br"), structure.stop_gap),
+        ),
+    )
+}
+"""Every term by its name, in the order in which they are listed."""

@@ -24,7 +24,7 @@ from sprung.vehicle import EMPTY, Tracks
 @shown
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """Result of a cross-validation.
+    """Result of a :term:`cross-validation`.
 
     Attributes
     ----------

@@ -1,0 +1,100 @@
+"""Score tests of the terms that the model has not: what each would gain, and how plausible that is, without any fit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sprung.estimation import score_linear_term, score_nonlinear_terms, score_stepped_terms
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import neutral_values, start_variants, states_by_coordinates, stop_gaps, thinned
+from sprung.selection.terms import BUMP_STOP, TERMS
+from sprung.vehicle import separate_track_names
+
+_RATE, _DURATION = 250.0, 3.0
+"""Hz and s of the thinned decays that are stepped for a score: enough for wheel hop and for all of a usual decay."""
+
+Scores = dict[str, tuple[float, float]]
+"""By term: the expected gain in twice the log-likelihood, and the expected size."""
+
+
+def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
+    """Score terms at the present fit.
+
+    Parameters
+    ----------
+    search
+        The present model.
+    terms
+        Open terms.
+
+    Returns
+    -------
+    search
+        With the structure's starts where the terms gain most: mounting of an engine, gap of bump stops.
+    scores
+        Of every term.
+    """
+    if not terms:
+        return search, {}
+    if search.structure.is_nonlinear:
+        return search, _stepped(search, terms)
+    scores: Scores = {}
+    for term in terms:
+        if TERMS[term].is_linear:
+            search, scores[term] = _linear(search, term)
+    nonlinear = [term for term in terms if not TERMS[term].is_linear]
+    if nonlinear:
+        search, more = _nonlinear_with_stops(search, nonlinear)
+        scores |= more
+    return search, scores
+
+
+def _linear(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, float]]:
+    own, sensors = search.fit.parameters, search.structure.campaign.sensors
+    best, score = search.structure, (0.0, 0.0)
+    for variant in start_variants(term, search.with_terms([term]), own):
+        values = neutral_values(variant, own)
+        gain, estimates = score_linear_term(search.decays, variant.linear_models, sensors, variant.known, values)
+        if gain >= score[0]:
+            score = gain, abs(TERMS[term].size(estimates))
+            best = replace(search.structure, engine_mounting=variant.engine_mounting)
+    return replace(search, structure=best), score
+
+
+def _nonlinear(search: ModelSearch, terms: Sequence[str]) -> Scores:
+    larger, own = search.with_terms(terms), search.fit.parameters
+    candidates = {term: TERMS[term].parameters(larger.tracks) for term in terms}
+    tests = score_nonlinear_terms(search.fit, larger.nonlinear_models, neutral_values(larger, own), candidates)
+    return {term: (gain, abs(TERMS[term].size(own | estimates))) for term, (gain, estimates) in tests.items()}
+
+
+def _nonlinear_with_stops(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
+    """Score nonlinear terms; bump stops where they gain most, if they gain enough anywhere."""
+    gaps = stop_gaps(search.structure, search.fit, search.decays) if BUMP_STOP in terms else []
+    variants = [replace(search, structure=replace(search.structure, stop_gap=gap)) for gap in gaps] or [search]
+    scores = _nonlinear(variants[0], terms)
+    if scores.get(BUMP_STOP, (0.0, 0.0))[0] < search.required(BUMP_STOP):
+        return variants[0], scores
+    stops = [scores[BUMP_STOP], *(_nonlinear(variant, [BUMP_STOP])[BUMP_STOP] for variant in variants[1:])]
+    best = max(range(len(stops)), key=lambda i: stops[i][0])
+    return variants[best], scores | {BUMP_STOP: stops[best]}
+
+
+def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
+    """Score any terms at a nonlinear fit; the sizes to expect are not computed, and the typical ones are returned."""
+    largest, own = search.with_terms(terms), search.fit.parameters
+    separated = largest.tracks != search.structure.tracks
+    decays, part = thinned(search.decays, _RATE, _DURATION)
+    gains = score_stepped_terms(
+        decays,
+        largest.nonlinear_models,
+        search.structure.campaign.sensors,
+        largest.known,
+        values=neutral_values(largest, own),
+        states=states_by_coordinates(search.fit.states, search.fit.names, largest.names),
+        together=[separate_track_names(name) if separated else (name,) for name in own],
+        candidates={term: [(name,) for name in TERMS[term].parameters(largest.tracks)] for term in terms},
+        tilting=search.structure.gravity_leakage,
+    )
+    return {term: (gain / part, TERMS[term].typical) for term, gain in gains.items()}

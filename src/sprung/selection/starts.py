@@ -1,0 +1,161 @@
+"""Fits of one model structure from where the fit of another one ended."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation import FitResult, fit_linear, fit_nonlinear, mountings_of
+from sprung.preprocess import FreeDecay
+from sprung.progress import Progress
+from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import ENGINE, TERMS
+from sprung.vehicle import NEUTRAL, Rows, coordinates, nonlinear_elements, with_separate_tracks
+
+Real = NDArray[np.float64]
+
+_STOP_GAPS = (0.35, 0.6, 0.85)
+"""Parts of the largest compression at which stops may be met, where a fit begins."""
+
+
+def neutral_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
+    """Return a fitted vehicle by the parameters of a larger structure, whose further terms do nothing.
+
+    Parameters
+    ----------
+    structure
+        The larger one.
+    own
+        Fitted parameters by name, SI.
+
+    Returns
+    -------
+    dict
+        By name, SI.
+    """
+    shared = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
+    undefined = [term.undefined(own, structure) for term in TERMS.values() if term.name in structure.terms]
+    values = {**NEUTRAL}
+    for part in (*undefined, with_separate_tracks(own), shared, own):
+        values |= part
+    return {name: values[name] for name in structure.names}
+
+
+def start_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
+    """Return parameters from which a fit begins: those of a fitted vehicle, and first values of terms that it has not."""
+    first: dict[str, float] = {}
+    for name in structure.terms:
+        first |= TERMS[name].first(own, structure)
+    first |= own
+    return {name: first.get(name, value) for name, value in neutral_values(structure, own).items()}
+
+
+def states_by_coordinates(states: Real, before: Sequence[str], names: Sequence[str]) -> Real:
+    """Return initial states by the coordinates of another structure; a new engine moves as the body does.
+
+    Parameters
+    ----------
+    states
+        {X, Ẋ}, and memories where they are known, SI, shape (drop, state).
+    before, names
+        Parameters of the structure that they belong to, and of the other.
+    """
+    own, new = coordinates(before), coordinates(names)
+    X, V, memories = np.split(states, [len(own), 2 * len(own)], axis=1)
+    chosen = [own.index(coordinate) if coordinate in own else 0 for coordinate in new]
+    return np.hstack([X[:, chosen], V[:, chosen], memories])
+
+
+def fit_structure(
+    structure: ModelStructure,
+    decays: Sequence[FreeDecay],
+    before: FitResult,
+    enough: float,
+    progress: Progress,
+    states: Real | None = None,
+    beginning_only: bool = False,
+    most: int = 100,
+) -> FitResult:
+    """Fit a structure from where another one's fit ended.
+
+    Parameters
+    ----------
+    structure
+        What is fitted.
+    decays
+        The decays.
+    before
+        The fit of another structure, or of other decays.
+    enough
+        Expected gain in log-likelihood at which to stop.
+    progress
+        Called with each step that begins.
+    states
+        {X, Ẋ} of each drop at its first sample, SI, shape (drop, state), where these decays begin elsewhere than those of
+        the fit before.
+    beginning_only
+        Whether the beginnings of the decays are enough; for nonlinear structures.
+    most
+        Largest number of iterations, likewise.
+
+    Returns
+    -------
+    FitResult
+    """
+    sensors, known = structure.campaign.sensors, structure.known
+    start = start_values(structure, before.parameters)
+    if not structure.is_time_stepped:
+        fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough)
+        return fitted.after(before)
+    states = states_by_coordinates(before.states if states is None else states, before.names, structure.names)
+    fitted = fit_nonlinear(
+        decays,
+        structure.nonlinear_models,
+        sensors,
+        known,
+        start=start,
+        states=states,
+        enough=enough,
+        near=states.shape[1] > 2 * len(coordinates(structure.names)),
+        begun=beginning_only,
+        most=most,
+        tilting=structure.gravity_leakage,
+        progress=progress,
+    )
+    return fitted.after(before)
+
+
+def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
+    """Return compressions at which stops may be met, m, from how far a fitted vehicle moves."""
+    elements = nonlinear_elements(structure.tracks, ("bump-stop",))
+    G = Rows.of([element.row for element in elements], structure.names).at(fit.values)
+    motions = (fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(decays))
+    largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
+    return [part * largest for part in _STOP_GAPS] if largest > 0 else []
+
+
+def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
+    """Return the structures from which the fit of a term may begin: an engine may be mounted in several ways."""
+    if term != ENGINE:
+        return [structure]
+    variants = [replace(structure, engine_mounting=mounting) for mounting in mountings_of(own["a"] + own["b"])]
+    return [variant for variant in variants if has_positive_masses(variant, own)]
+
+
+def has_positive_masses(structure: ModelStructure, own: Mapping[str, float]) -> bool:
+    """Whether the fit of a structure begins with a vehicle of which every part has mass."""
+    start = np.array(list(start_values(structure, own).values()))
+    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in structure.linear_models.values())
+
+
+def thinned(decays: Sequence[FreeDecay], rate: float, duration: float) -> tuple[list[FreeDecay], float]:
+    """Return decays at about a rate in Hz and of at most a duration in s, and the part of all samples that they have."""
+    thin = []
+    for decay in decays:
+        every = max(int(decay.rate / rate), 1)
+        values = decay.values[:, : int(duration * decay.rate) : every]
+        thin.append(replace(decay, values=values, rate=decay.rate / every))
+    return thin, sum(decay.samples for decay in thin) / sum(decay.samples for decay in decays)

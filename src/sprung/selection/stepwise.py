@@ -1,0 +1,298 @@
+"""The stepwise search for the model: score the open terms, fit the best few, keep what the recordings support.
+
+Linear and nonlinear terms go through the same steps: score tests rank what is open, the most promising are fitted, and
+whatever is not missed by a Wald test, is not physical or has no effect in practice is left out again. Linear terms come first,
+one by one, as their fits are quick; nonlinear ones together, as their fits are slow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from sprung.estimation import NEAR, fit_linear, wald_test
+from sprung.progress import Step
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.scoring import Scores, score_terms
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import fit_structure, has_positive_masses
+from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import ENGINE, TERMS
+
+_LINEAR = tuple(name for name, term in TERMS.items() if term.is_linear)
+
+_WORTH_A_FIT = 4.0
+"""Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
+gain of terms that are far from neutral, and a linear fit costs little."""
+
+_RESEMBLES = 0.05
+"""Score of a term that resembles others, as a part of the best one, from which it is tried first."""
+
+_FIRST_ITERATIONS = 8
+"""Iterations after which a nonlinear fit has to have explained some of the misfit."""
+
+_ITERATIONS_OF_SWITCH = 1
+"""Iterations after a change without a parameter, which hardly moves the optimum: one Newton step tells what it gains."""
+
+_ROUNDS = 2 * len(TERMS)
+"""How many linear terms may be accepted one after the other; some are left out again."""
+
+_FURTHER_ROUNDS = 2
+"""How many times further terms are looked for once nonlinear ones are in the model."""
+
+
+def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> ModelSearch:
+    """Return the search after every linear term that the recordings support has been taken.
+
+    Parameters
+    ----------
+    search
+        A linear model.
+    among
+        Terms to try.
+    """
+    for _ in range(_ROUNDS):
+        terms = search.open_terms(among)
+        search, scores = score_terms(search, terms)
+        search, ranked = _ranked(search, scores, _WORTH_A_FIT / search.fit.disagreement)
+        search, accepted = _first_accepted(search, [[term] for term in ranked])
+        if not accepted:
+            break
+    return search
+
+
+def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+    """Return the search after nonlinear terms have been tried.
+
+    Parameters
+    ----------
+    search
+        Once the linear terms are decided.
+    plain
+        The structure without anything that the recordings brought into it: linear terms that took up some of a nonlinear
+        motion are no base to start from.
+    """
+    nonlinear = [term for term in TERMS if term not in _LINEAR]
+    terms = search.open_terms(nonlinear)
+    if not terms or any(decay.clocks for decay in search.decays):
+        return search
+    search.progress(Step(f"scoring {', '.join(terms)}"))
+    search, scores = score_terms(search, terms)
+    search, ranked = _ranked(search, scores, 1.0)
+    if not ranked:
+        return search
+    # The best alone, with those that gain enough beside what the drops disagree, and all that may gain enough.
+    certain = [
+        term
+        for term in ranked
+        if scores[term][0] > search.required(term) * search.fit.disagreement or term == ranked[0]
+    ]
+    groups = [ranked[:1], *([certain] if len(certain) > 1 else []), *([ranked] if len(ranked) > len(certain) else [])]
+    best, steps = search, search.steps
+    for base in _bases(search, plain):
+        found = _with_nonlinear_terms(replace(base, steps=steps), groups)
+        steps = found.steps
+        best = found if found.delta_bic(search) > best.delta_bic(search) else best
+        if best.structure.is_nonlinear and not best.has_model_error:
+            break
+    if not best.structure.is_nonlinear:
+        return replace(search, steps=steps)
+    best = replace(best, steps=steps)
+    beside = ", ".join(term for term in best.selected if not TERMS[term].is_linear)
+    gains = {step.extra: step.gain for step in search.steps if step.taken}
+    gone = {term: gains[term] for term in search.selected if term not in best.selected}
+    return select_gravity_leakage(best.recorded(gone, True, False, f"it is not needed beside {beside}"))
+
+
+def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
+    """Return the search with the body carried at the height that fits better, where two heights are known."""
+    if not search.structure.heights.is_ambiguous:
+        return search
+    other = search.refit(replace(search.structure, carried_at="roll axis"))
+    return other if other.fit.loglikelihood > search.fit.loglikelihood else search
+
+
+def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
+    """Return the search with sensors that feel less of gravity where the body turns, if the recordings support it."""
+    other = search.refit(replace(search.structure, gravity_leakage=True), most=_ITERATIONS_OF_SWITCH)
+    return other if other.gain_over(search) > search.required_of_switch else search
+
+
+def fit_requested_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+    """Fit linear terms that the user requests, whatever they gain."""
+    for term in terms:
+        search = fit_term(search, term)
+    return search
+
+
+def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSearch:
+    """Fit the structure that the user requests, whatever it gains."""
+    return select_gravity_leakage(search.refit(search.structure.with_terms(requested.terms)))
+
+
+def fit_term(search: ModelSearch, term: str) -> ModelSearch:
+    """Fit a linear term, from where it is expected to gain most."""
+    return _fit_linear(score_terms(search, [term])[0], term)
+
+
+def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
+    """Rank the terms that are worth a fit, and record the others.
+
+    Parameters
+    ----------
+    search
+        The present model.
+    scores
+        Of terms.
+    weight
+        Factor on the expected gains, before they are compared with the required ones.
+
+    Returns
+    -------
+    search
+        With a step for each term that is not worth a fit: it gains too little, or its expected size is negligible. The size is
+        believed for nonlinear terms only: the score test understates no size by as much as a fit of them takes.
+    terms
+        Best first, by gain and plausibility of the size; what resembles other terms before them.
+    """
+    worth: dict[str, float] = {}
+    for term, (gain, size) in scores.items():
+        row, required = TERMS[term], search.required(term)
+        promising = gain * weight > required
+        if promising and (row.is_linear or size >= row.negligible):
+            worth[term] = (gain - row.implausibility(size) * search.fit.disagreement) / required
+            continue
+        against = f"its effect of {100 * size:.2g} % is negligible" if promising else ""
+        search = search.recorded({term: gain / search.fit.disagreement}, False, False, against)
+    best = max(worth.values(), default=0.0)
+    first = {term: TERMS[term].resembles_others and worth[term] > _RESEMBLES * best for term in worth}
+    return search, sorted(worth, key=lambda term: (first[term], worth[term]), reverse=True)
+
+
+def _first_accepted(search: ModelSearch, groups: Sequence[Sequence[str]]) -> tuple[ModelSearch, bool]:
+    """Fit groups of terms one after the other until one is accepted; and say whether one was."""
+    for group in groups:
+        tried = _with_group(search, group)
+        if tried.structure.names != search.structure.names:
+            return tried, True
+        search = tried
+    return search, False
+
+
+def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
+    """Fit terms together, and leave out again what is not needed; without any of them where they gain too little."""
+    larger = search.with_terms(group)
+    tried = _fit_nonlinear(search, larger) if larger.is_nonlinear else _fit_linear(search, group[0])
+    if tried is None:
+        return search.recorded(dict.fromkeys(group, 0.0), True, False)
+    gain = tried.gain_over(search)
+    enough = gain > sum(map(search.required, group))
+    if not (enough and tried.fit.converged):
+        against = "the fit with it did not converge" if enough else ""
+        return search.recorded(dict.fromkeys(group, gain), True, False, against)
+    if larger.is_nonlinear:
+        tried, gains = _without_unneeded(tried, search)
+        return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
+    (term,) = group
+    against = tried.veto(term)
+    tried = tried.recorded({term: gain}, True, True)
+    if not against and TERMS[term].explains_all and tried.has_model_error:
+        tried = select_linear_terms(tried, [other for other in _LINEAR if not TERMS[other].explains_all])
+        against = "it does not explain the whole misfit" if tried.has_model_error else ""
+    if against:
+        return search.recorded({term: gain}, True, False, against)
+    return _without_unneeded(tried, search, keep=term)[0]
+
+
+def _without_unneeded(
+    tried: ModelSearch, before: ModelSearch, keep: str | None = None
+) -> tuple[ModelSearch, dict[str, float]]:
+    """Leave out terms, the least missed first, until every one that is left is needed.
+
+    Parameters
+    ----------
+    tried
+        A larger model.
+    before
+        The model that it was made from.
+    keep
+        A term whose gain was measured by a fit without it.
+
+    Returns
+    -------
+    search
+        With what is left.
+    gains
+        What would be lost without each of the terms that are left; empty where that is the model before.
+    """
+    gains: dict[str, float] = {}
+    while tried.structure.names != before.structure.names:
+        against = {term: tried.veto(term) for term in tried.selected if term != keep}
+        if not against:
+            break
+        gains = {
+            term: 0.0
+            if against[term]
+            else wald_test(tried.fit, TERMS[term].neutral(tried.structure.tracks)) / tried.overdispersion
+            for term in against
+        }
+        least = min(gains, key=lambda term: gains[term] / tried.required(term))
+        if gains[least] > tried.required(least):
+            return tried, gains
+        tried = tried.recorded({least: gains[least]}, True, False, against[least])
+        smaller = tried.without(least)
+        tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
+    return tried, {}
+
+
+def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
+    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well."""
+    search.progress(Step(f"fitting with {term}"))
+    larger = search.with_terms([term])
+    begins = term != ENGINE or has_positive_masses(larger, search.fit.parameters)
+    ends = [search.refit(larger)] if begins else []
+    if term == ENGINE:
+        sensors, known = larger.campaign.sensors, larger.known
+        anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
+        ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
+    return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))
+
+
+def _fit_nonlinear(search: ModelSearch, larger: ModelStructure) -> ModelSearch | None:
+    """Fit a nonlinear model, first to the beginnings of the decays; None where it leaves too much of the misfit."""
+    first = fit_structure(
+        larger, search.decays, search.fit, NEAR, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
+    )
+    if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
+        return None
+    if not first.converged:
+        first = fit_structure(larger, search.decays, first, NEAR, search.progress, beginning_only=True)
+    if search.leaves_misfit(first, MISFIT_LEFT):
+        return None
+    return replace(search, fit=first).refit(larger)
+
+
+def _with_nonlinear_terms(base: ModelSearch, groups: Sequence[Sequence[str]]) -> ModelSearch:
+    """Fit groups of nonlinear terms beside a linear model until one is accepted; then look for more terms of any kind."""
+    found, accepted = _first_accepted(base, groups)
+    for _ in range(_FURTHER_ROUNDS):
+        if not accepted or not found.structure.is_nonlinear or found.is_misfit_small:
+            break
+        refused = {step.extra for step in found.steps[len(base.steps) :] if step.fitted and not step.taken}
+        terms = [term for term in found.open_terms(tuple(TERMS)) if term not in refused]
+        _, scores = score_terms(found, terms)
+        promising = [term for term in terms if scores[term][0] > found.required(term) * found.overdispersion]
+        found, accepted = _first_accepted(found, [promising] if promising else [])
+    return found
+
+
+def _bases(search: ModelSearch, plain: ModelStructure) -> Iterator[ModelSearch]:
+    """Yield linear models beside which nonlinear terms are tried, the simplest first."""
+    plain = replace(plain, stop_gap=search.structure.stop_gap, engine_mounting=search.structure.engine_mounting)
+    simplest = search if plain.names == search.structure.names else search.refit(plain)
+    yield simplest
+    if plain.names != search.structure.names:
+        yield search
+    gains = [step.gain > step.asked for step in search.steps if step.extra == ENGINE and step.fitted and not step.taken]
+    if any(gains):
+        yield fit_term(simplest, ENGINE)

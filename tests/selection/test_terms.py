@@ -1,0 +1,60 @@
+"""The table of model terms: complete, and consistent with the vehicle's parameters."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sprung.selection import TERMS, ModelTerm, choose_structure
+from sprung.selection.starts import neutral_values, start_values
+from sprung.selection.terms import SEPARATE_TRACKS
+from sprung.simulation import simulate
+from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, TABLE_1_CAR, Tracks
+
+ROWS = pytest.mark.parametrize("term", TERMS.values(), ids=TERMS)
+
+
+def test_every_term_of_the_vehicle_has_a_row() -> None:
+    assert set(TERMS) == {*EXTRAS, SEPARATE_TRACKS}
+    assert {name for name, term in TERMS.items() if term.is_linear} == {*LINEAR_EXTRAS, SEPARATE_TRACKS}
+
+
+@ROWS
+@pytest.mark.parametrize("tracks", ["shared", "separate"])
+def test_a_term_that_is_absent_has_no_size_and_one_that_begins_has_what_its_fit_needs(
+    term: ModelTerm, tracks: Tracks
+) -> None:
+    """At neutral values the effect is none; an engine weighs next to nothing, as its place would be undefined."""
+    if term.name == SEPARATE_TRACKS:
+        tracks = "separate"
+    campaign = simulate(TABLE_1_CAR, loads=[], rate=250.0, noise=0.02, seed=1)
+    terms = () if term.name == SEPARATE_TRACKS else (term.name,)
+    structure = choose_structure(campaign, tracks, terms)
+    values = neutral_values(structure, TABLE_1_CAR.parameters)
+    assert tuple(values) == structure.names
+    assert abs(term.size(values)) < 2e-5
+    for name, other in term.neutral(tracks):
+        assert values[name] == pytest.approx(values[other] if isinstance(other, str) else other, abs=2e-2)
+    assert set(term.parameters(tracks)) <= set(structure.names)
+    first = start_values(structure, TABLE_1_CAR.parameters)
+    assert np.isfinite(list(first.values())).all()
+    if term.name in ("friction", "engine"):
+        assert abs(term.size(first)) == pytest.approx(term.typical, rel=1e-9)
+
+
+@ROWS
+def test_sizes_are_ordered_and_the_usual_one_is_the_most_plausible(term: ModelTerm) -> None:
+    """One spread away is one standard deviation of the logarithm; what is negligible is no less plausible below that."""
+    assert 0 < term.negligible < term.typical
+    assert term.implausibility(term.typical) == 0
+    assert term.implausibility(term.typical * term.spread) == pytest.approx(1)
+    assert term.implausibility(-term.typical / term.spread**2) == pytest.approx(4)
+    assert term.implausibility(0.0) == term.implausibility(term.negligible)
+
+
+def test_what_physics_forbids_to_be_negative() -> None:
+    """A friction that drives is none; a difference between left and right may have either sign."""
+    assert TERMS["friction"].not_negative("shared") == ("F_f", "F_r")
+    assert TERMS["anti-roll"].not_negative("shared") == ("k_af", "k_ar")
+    assert TERMS["asymmetry"].not_negative("shared") == ()
+    assert TERMS[SEPARATE_TRACKS].not_negative("separate") == ()
