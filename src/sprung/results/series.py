@@ -67,12 +67,17 @@ def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
 
 
 def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, PlottedRecording]) -> dict[str, NDArray[Any]]:
-    """Return all series as arrays by name: ``drop/what``.
+    """Return all series as arrays.
 
     Parameters
     ----------
     series, recordings
         By the drop's name.
+
+    Returns
+    -------
+    dict
+        Arrays by name: ``drop/what``.
     """
     arrays: dict[str, NDArray[Any]] = {}
     for drop, fitted in series.items():
