@@ -141,15 +141,6 @@ class HasClockDelays(Protocol):
 
 
 @runtime_checkable
-class HasNoiseBias(Protocol):
-    """An objective that knows how much noise alone adds to its information."""
-
-    @property
-    def noise_bias_of_information(self) -> Real:
-        """Information that noise alone adds on average, shape (parameter, parameter)."""
-
-
-@runtime_checkable
 class HasModalResponse(Protocol):
     """An objective that has modal coordinates, in which changes of the response are sums of exponentials."""
 
@@ -164,6 +155,10 @@ class HasModalResponse(Protocol):
     @property
     def sensor_rows(self) -> Real:
         """Rows of the sensors, shape (channel, coordinate)."""
+
+    @property
+    def noise_bias_of_information(self) -> Real:
+        """Information that noise alone adds on average, shape (parameter, parameter)."""
 
     def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
         """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
-from sprung.estimation.objective import HasNoiseBias
+from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay
@@ -252,7 +252,7 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     rounding = RANK * eigenvalues.max(initial=0.0)
     if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
         match optimum.at:
-            case HasNoiseBias() as at:
+            case HasModalResponse() as at:
                 basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
                 bias = basis.T @ at.noise_bias_of_information @ basis
                 eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
