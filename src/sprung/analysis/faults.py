@@ -114,7 +114,8 @@ def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, 
     where they would without any, unless too little of the motion is left then to show what is wrong.
     """
     structure = run.model.structure
-    tracks: Tracks = "separate" if structure.tracks_open else structure.tracks
+    is_larger = structure.tracks_open and consistency == "misfit"
+    tracks: Tracks = "separate" if is_larger else structure.tracks
     if consistency == "misfit":
         run = replace(run, preparations=run.preparations + 1)
         decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)

@@ -98,6 +98,23 @@ class ChannelDeletion:
                 elif hypothesis.residual.sum() < _SHARE * self.prediction.energy and _is_relevant(hypothesis):
                     yield ChannelCorrection.of(self, hypothesis, hypothesis.numbers)
 
+    def scored(self, scores: Sequence[FaultScore]) -> Iterator[ChannelCorrection]:
+        """Yield the corrections whose numbers follow from score tests at the present fit.
+
+        Parameters
+        ----------
+        scores
+            Of all faults of small size.
+        """
+        for kind in CHANNEL_HYPOTHESES:
+            for hypothesis in kind(self.prediction):
+                own = [score for score in scores if (score.kind, score.where) == (hypothesis.code, self.name)]
+                if own and hypothesis.correction is not None and hypothesis.stated:
+                    numbers = improved(hypothesis.code, hypothesis.stated, own)
+                    correction = ChannelCorrection.of(self, hypothesis, numbers, candidate=self.isolation.base)
+                    gain = sum(score.gain for score in own)
+                    yield replace(correction, table=self.isolation.base.table, expected_gain=gain)
+
     def _left_out(self, hypothesis: ChannelHypothesis, numbers: Numbers = (), stds: Numbers = ()) -> Hypothesis:
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
         return Hypothesis(

@@ -41,6 +41,8 @@ class Hypothesis:
         Whether it says what is wrong, not only where.
     is_rough
         Whether the residuals are those of one step from far away, which a fit may leave much smaller.
+    expected_gain
+        What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
     """
 
     fault: Fault
@@ -52,6 +54,7 @@ class Hypothesis:
     recording: str | None = None
     is_specific: bool = True
     is_rough: bool = False
+    expected_gain: float = 0.0
 
     @property
     def is_explained(self) -> bool:
@@ -76,11 +79,12 @@ class Hypothesis:
         if self.remedy != "corrected":
             return self, 0
         candidate = isolation.fit(self.correction, self.candidate.fit)
-        return replace(self, table=candidate.table, candidate=candidate, is_rough=False), 1
+        return replace(self, table=candidate.table, candidate=candidate, is_rough=False, expected_gain=0.0), 1
 
     def score(self, overdispersion: float = 1.0) -> float:
         """Return the information criterion (Schwarz, Ann. Stat. 6 (1978) 461); the smallest is the best."""
-        return self.table.cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
+        cost = self.table.cost - self.expected_gain
+        return cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
 
     def concerns_same(self, other: Hypothesis) -> bool:
         """Whether two hypotheses are about the same place, or one is among several of which the other says the same."""

@@ -11,7 +11,7 @@ from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_pas
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.channel_deletion import ChannelDeletion
-from sprung.faults.consistency import SHARE, SIGNIFICANT, consistency_of
+from sprung.faults.consistency import SHARE, SIGNIFICANT, consistency_of, score_faults_of
 from sprung.faults.correction import Correction, exclude_drops, mask_channel
 from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
@@ -107,8 +107,13 @@ def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple
     best, fits = _wrong_statement(isolation)
     if best is not None:
         return best, fits
-    ranked, made = _of_parts(isolation, progress)
-    ranked += [*load_position(isolation), *high_passes(isolation)]
+    ranked = [*_by_scores(isolation), *load_position(isolation), *high_passes(isolation)]
+    best, ranked, more = _confirm_best(isolation, ranked)
+    fits += more
+    if best is not None and isolation.base.is_explained:
+        return _with_rival(isolation, best, ranked), fits
+    of_parts, made = _of_parts(isolation, progress)
+    ranked += of_parts
     best, ranked, more = _confirm_best(isolation, ranked)
     fits += made + more
     for exchanges in (exchanged_loads, exchanged_channels):
@@ -148,6 +153,20 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
     alike = SIGNIFICANT * confirmed[0].candidate.overdispersion if confirmed else 0.0
     is_ambiguous = len(confirmed) > 1 and confirmed[1].score() - confirmed[0].score() < alike
     return (confirmed[0] if confirmed and not is_ambiguous else None), len(promising[:_MOST_STATEMENTS])
+
+
+def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
+    """Return the channel hypotheses of small size that gain most by their score tests, where the fit is near enough for them."""
+    base = isolation.base
+    if not base.is_explained:
+        return []
+    scores = score_faults_of(base.campaign, base.decays, base.fit)
+    hypotheses: list[Hypothesis] = []
+    for channel, sensor in enumerate(isolation.campaign.sensors):
+        own = [score for score in scores if score.where == sensor.channel]
+        if max((score.gain for score in own), default=0.0) > SIGNIFICANT:
+            hypotheses += ChannelDeletion(isolation, channel, base).scored(own)
+    return hypotheses
 
 
 def _of_parts(isolation: FaultIsolation, progress: Progress) -> tuple[list[Hypothesis], int]:
