@@ -38,6 +38,7 @@ ROOMS = (
     "modal",
     "modal_survey",
     "paper",
+    "optimisation",
     "planning",
     "plot",
     "preprocess",

@@ -44,6 +44,7 @@ ROOMS = (
     "formats",
     "files",
     "vibration",
+    "optimisation",
     "vehicle",
     "tables",
     "uncertainty",

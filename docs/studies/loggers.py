@@ -11,7 +11,7 @@ from pages import VERDICTS, arguments, figures, report_progress, run, table, wri
 from wireless import wireless
 
 import sprung
-from sprung.analysis.fitted import fit_campaign
+from sprung.analysis import identify_campaign
 from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 
@@ -61,7 +61,7 @@ def trial(kind: Kind, seed: int) -> Trial:
     """Simulate and identify one campaign."""
     simulated = wireless(TABLE_1_CAR, rates=kind.rates, drift=kind.drift, apart=APART, noise=NOISE, seed=seed)
     result = sprung.identify(simulated.campaign, tracks="shared")
-    bound = np.sqrt(np.diag(fit_campaign(simulated.together, tracks="shared").fit.covariance))
+    bound = np.sqrt(np.diag(identify_campaign(simulated.together, tracks="shared").uncertainty.covariance))
     found = [result.parameters[name] for name in TABLE_1_CAR.parameters]
     missed, said = _clocks(result, [drop.files for drop in simulated.campaign.drops], simulated.ahead)
     return Trial(

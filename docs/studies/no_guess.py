@@ -19,7 +19,7 @@ from campaigns import AXLES, WEIGHING, Case, Real, Trial
 from numpy.typing import NDArray
 from pages import VERDICTS, arguments, figures, report_progress, run, table, write
 
-from sprung.analysis.fitted import fit_campaign
+from sprung.analysis import identify_campaign
 from sprung.analysis.identify import result_of
 from sprung.estimation import fit_linear
 from sprung.vehicle import Vehicle
@@ -117,14 +117,12 @@ def _draw(random: np.random.Generator, number: int) -> Vehicle:
 
 def search(case: Case, number: int) -> Search:
     """Identify a vehicle without a guess, and fit the same decays from the truth."""
-    fitted = fit_campaign(case.campaign(number))
-    choice, fit = fitted.choice, fitted.fit
+    run = identify_campaign(case.campaign(number))
+    structure, fit = run.model.structure, run.uncertainty
     truth = {name: float(getattr(case.vehicle, name)) for name in fit.names}
-    from_truth = fit_linear(
-        fitted.prepared.decays, choice.linear_models, fitted.campaign.sensors, choice.known, start=truth
-    )
+    from_truth = fit_linear(run.decays, structure.linear_models, run.campaign.sensors, structure.known, start=truth)
     poles = np.linalg.eigvals(case.vehicle.matrices().state)
-    result = result_of(fitted)
+    result = result_of(run)
     return Search(
         case.judge(result),
         fit.loglikelihood - from_truth.loglikelihood,

@@ -173,7 +173,7 @@ def _check_words(error: InputError, names: Sequence[str]) -> None:
         if not (problem.found and problem.expected and problem.do.rstrip().endswith((".", "?", "!", '"'))):
             raise Broken(f"a refusal that does not say what to do: {said!r}"[:300])
         if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in said):
-            raise Broken(f"a refusal with characters that nobody can read: {said!r}"[:300])
+            raise Broken(f"a refusal with unreadable characters: {said!r}"[:300])
         if len(said) > 2500:
             raise Broken(f"a refusal of {len(said)} letters: {said!r}"[:300])
 

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import sprung
-from sprung.analysis import fitted
+from sprung.analysis import identify_campaign
 from sprung.campaign import require_plausible
 from sprung.errors import InputError
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
@@ -95,6 +95,7 @@ def test_sound_vehicles_pass(vehicle: Vehicle) -> None:
 
 def test_a_sound_campaign_is_prepared_once(campaign: sprung.Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
     """What was prepared to look for mistakes is what is fitted."""
-    monkeypatch.setattr("sprung.analysis.stand.prepare", lambda *_: pytest.fail("prepared again"))
-    found = fitted.fit_campaign(campaign, extras=(), tracks="shared", fall=False)
-    assert len(found.prepared.decays) == 2
+    monkeypatch.setattr("sprung.analysis.preparation.prepare", lambda *_: pytest.fail("prepared again"))
+    run = identify_campaign(campaign, extras=(), tracks="shared", fall=False)
+    assert len(run.decays) == 2
+    assert run.preparations == 1

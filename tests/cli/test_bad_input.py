@@ -97,7 +97,7 @@ BAD: dict[str, tuple[Spoil, tuple[str, ...], int]] = {
     "binary recording": (lambda folder: write(folder, bytes(range(256)) * 20), ("no known format",), 1),
     "binary recording without zeros": (
         lambda folder: write(folder, bytes(range(1, 256)) * 20),
-        ("characters that nobody can read",),
+        ("unreadable characters",),
         1,
     ),
     "folder for a recording": (

@@ -165,7 +165,7 @@ def test_a_signal_after_the_fit_leaves_the_results(
 @pytest.mark.skipif(os.name == "nt", reason="there, nothing else can catch these signals")
 def test_a_signal_before_the_results_leaves_nothing(one_drop_folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     before = contents(one_drop_folder.path)
-    monkeypatch.setattr(IDENTIFY, "fit_campaign", stopping(signal.SIGTERM))
+    monkeypatch.setattr(IDENTIFY, "analyse", stopping(signal.SIGTERM))
     assert run("identify", one_drop_folder.path) == Run(143, "", "sprung was terminated.\n")
     assert contents(one_drop_folder.path) == before
     assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL  # as it was outside of a command

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sprung.faults.corners import Corners, determined
+from sprung.faults.high_pass import CornerScores, determined
 
 
 def test_a_direction_that_the_parameters_imitate_tells_nothing() -> None:
@@ -18,17 +18,17 @@ def test_a_direction_that_the_parameters_imitate_tells_nothing() -> None:
         np.testing.assert_allclose(information, own, atol=1e-9 * 1e5)
         np.testing.assert_allclose(left, score - 40.0 * common, atol=1e-9 * 300)
         drops = np.stack([left * share for share in (0.2, 0.3, 0.5)])
-        found = Corners(
+        found = CornerScores(
             tuple("abcd"), drops, np.stack([own * 0.3, own * 0.3, own * 0.4]), left, information, np.zeros((1, 4))
         )
-        assert found.worth > 0
+        assert found.raw_gain > 0
         assert np.linalg.eigvalsh(found.covariance).min() > 0
-        assert 0 < found.gain <= found.worth
+        assert 0 < found.gain <= found.raw_gain
         np.testing.assert_allclose(found.step @ common, 0, atol=1e-9)
 
 
 def test_records_that_determine_no_corner_gain_nothing() -> None:
     score, information = determined(np.array([3.0, -2.0]), np.zeros((2, 2)))
-    found = Corners(("a", "b"), np.ones((3, 2)), np.ones((3, 2, 2)), score, information, np.zeros((1, 2)))
-    assert found.gain == found.worth == 0
-    assert not found.matter
+    found = CornerScores(("a", "b"), np.ones((3, 2)), np.ones((3, 2, 2)), score, information, np.zeros((1, 2)))
+    assert found.gain == found.raw_gain == 0
+    assert not found.is_relevant

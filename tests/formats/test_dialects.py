@@ -121,7 +121,7 @@ def test_a_sensor_with_a_counter_of_microseconds_that_begins_again(tmp_path: Pat
     assert table.channels == ("PacketCounter", "Acc_X", "Acc_Z")
     np.testing.assert_allclose(np.diff(table.time), 0.008333, rtol=1e-9)  # as written, the last but one over 2^32
     assert table.place(0) == "line 9"
-    assert any("begins again at 2^32 in line 12" in note for note in table.notes)
+    assert any("wraps at 2^32 in line 12" in note for note in table.notes)
     assert any("in µs" in note for note in table.notes)
 
 

@@ -84,7 +84,7 @@ def test_text_among_the_samples_spoils_its_channel(tmp_path: Path) -> None:
     ("channels", "words"),
     [
         ((), "no channel files"),
-        ((channel([1, 2], interval="NOVALUE"),), "no channel that says its sampling interval"),
+        ((channel([1, 2], interval="NOVALUE"),), "no channel with a sampling interval"),
         ((channel([1, 2], interval="fast"), channel([1], first="x")), "test.001: sampling interval: found 'fast'"),
         ((channel([1, 2], interval="-1"),), "found -1 s; expected a positive number"),
         ((b"\xff\xfea",), "marked as UTF-16 with invalid text"),

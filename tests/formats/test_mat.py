@@ -117,14 +117,14 @@ def test_a_rate_or_an_interval_is_a_clock(tmp_path: Path, rate: dict[str, Any], 
 def test_guesses_are_said(tmp_path: Path) -> None:
     table = read(saved(tmp_path, {"x": TIME, "a": A, "z": A + 1j, "short": B[:9]}))
     np.testing.assert_array_equal(table.time, TIME)
-    assert table.notes[0].startswith("x was taken for the time")
+    assert table.notes[0].startswith("x is used as the time")
     assert table.notes[1] == "left out: short (9 samples), z: complex numbers"
 
 
 def test_a_rate_that_contradicts_the_time_is_said(tmp_path: Path) -> None:
     table = read(saved(tmp_path, {"time": TIME, "a": A, "fs": 1000}))
     np.testing.assert_array_equal(table.time, TIME)
-    assert table.notes == ("fs says 1000 samples per second, time says otherwise",)
+    assert table.notes == ("fs states 1000 samples per second, which differs from time",)
 
 
 @pytest.mark.parametrize(
@@ -247,7 +247,7 @@ def test_more_than_the_file_can_hold_is_refused(tmp_path: Path) -> None:
     zeros = {"time": np.arange(8e6), "a": np.zeros(8_000_000)}
     path = saved(tmp_path, {"s": {"a": zeros["a"]}}, do_compression=True)
     assert path.stat().st_size < 1e5 < zeros["a"].nbytes
-    with pytest.raises(InputError, match="more than 10 times as many"):
+    with pytest.raises(InputError, match="more than 10 times their size"):
         read(path)
 
 

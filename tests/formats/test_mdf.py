@@ -72,7 +72,7 @@ def test_channels_on_another_clock_are_read_at_the_times_of_the_others(tmp_path:
     np.testing.assert_allclose(table.take()[1], np.sin(2 * np.pi * 3 * TIME), atol=1e-4)
     np.testing.assert_allclose(table.take()[2], -table.take()[1], atol=1e-12)
     assert table.resampled[1].rate_ratio == pytest.approx(0.1)
-    assert table.notes == ("on another clock, and read at the times of the others: slow, slower",)
+    assert table.notes == ("on another clock, interpolated to the times of the others: slow, slower",)
 
 
 def test_channels_too_slow_for_wheels_are_spoilt(tmp_path: Path) -> None:
@@ -81,8 +81,8 @@ def test_channels_too_slow_for_wheels_are_spoilt(tmp_path: Path) -> None:
     assert table.channels == ("a", "slow")
     assert np.isnan(table.take()[1:]).all()
     assert str(table.find_non_number(1)) == (
-        "x.mf4: channel 'slow': found 50 samples from 0 to 2.45 s at 20 Hz; expected the clock that most samples of "
-        "the file are on, 200 samples from 0 to 0.0995 s at 2000 Hz. "
+        "x.mf4: channel 'slow': found 50 samples from 0 to 2.45 s at 20 Hz; expected the clock of most samples of "
+        "the file, 200 samples from 0 to 0.0995 s at 2000 Hz. "
         "Export all channels that are needed at one rate and over one time."
     )
 

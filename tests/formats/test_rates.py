@@ -104,7 +104,7 @@ def test_a_channel_at_another_rate(
     campaign = written(fast, tmp_path, write, wheel, every)
     assert all(recording.usable.all() and not recording.faults for recording in campaign.recordings)
     assert {recording.rate for recording in campaign.recordings} == {500.0}
-    assert any("read at the times of the others: " in step for step in campaign.recordings[0].history)
+    assert any("interpolated to the times of the others: " in step for step in campaign.recordings[0].history)
     exact = np.array([one.values[wheel, ::2] for one in fast.recordings])
     read = np.array([one.values[wheel] for one in campaign.recordings])
     # Once the wheel has landed for good: 0.03 m/s² of noise in both.

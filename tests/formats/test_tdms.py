@@ -60,7 +60,7 @@ def test_a_channel_of_times(tmp_path: Path, name: str, unit: str, factor: float)
     assert table.channels == ("a",)
     assert table.units == ("g",)
     np.testing.assert_array_equal(table.clock, factor * times)
-    assert table.notes == ("left out, as neither a step nor a channel says their time: two/b",)
+    assert table.notes == ("left out, as they have neither a time step nor a time channel: two/b",)
 
 
 def test_time_stamps_count_from_the_first(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ def test_a_load_on_the_body_alone_is_refused_with_the_way_out() -> None:
     with pytest.raises(InputError) as caught:
         added_mass(empty.state, loaded.state, loaded.M - empty.M)
     message = str(caught.value)
-    assert "rank 3 of 7, nothing on z_uA, z_uB, z_uC, z_uD" in message
+    assert "rank 3 of 7, no added mass on z_uA, z_uB, z_uC, z_uD" in message
     assert "structured_least_squares" in message
 
 

@@ -155,9 +155,9 @@ def test_gross_noise_does_not_break_it() -> None:
 
 def test_the_scale_must_come_from_somewhere() -> None:
     state = TABLE_1_CAR.matrices().state
-    with pytest.raises(InputError, match="have a factor"):
+    with pytest.raises(InputError, match="does not determine the common factor"):
         structured_least_squares([(EMPTY, state)])
-    with pytest.raises(InputError, match="have a factor"):
+    with pytest.raises(InputError, match="does not determine the common factor"):
         structured_least_squares([(EMPTY, state)], known={"a": 1.25, "wheelbase": 2.76})
 
 

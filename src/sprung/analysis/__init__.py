@@ -1,14 +1,15 @@
-"""The one composition, its result, and the other walks: checking recordings, modes alone, what to measure next."""
+"""The analysis of a campaign: a list of stages through which one frozen record goes, from recordings to a result."""
 
-from sprung.analysis.fitted import fit_campaign
-from sprung.analysis.identify import Identification, identify, identify_campaign, result_of, with_amplitudes
-from sprung.analysis.planned import to_design
-from sprung.analysis.stand import Fitted
+from sprung.analysis.analysis import Analysis, AnalysisOptions
+from sprung.analysis.design import to_design
+from sprung.analysis.identify import identify, identify_campaign, result_of, with_amplitudes
+from sprung.analysis.stages import STAGES, analyse
 
 __all__ = [
-    "Fitted",
-    "Identification",
-    "fit_campaign",
+    "STAGES",
+    "Analysis",
+    "AnalysisOptions",
+    "analyse",
     "identify",
     "identify_campaign",
     "result_of",

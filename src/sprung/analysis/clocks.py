@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.analysis.analysis import Analysis
+from sprung.analysis.baseline import fit_baseline_model
 from sprung.analysis.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 from sprung.campaign import Campaign, LoggerClock
 from sprung.checking import ClockReport
-from sprung.estimation import FitResult, FitStatistics, clear_of_splines
-from sprung.preprocess import FreeDecay, Prepared
+from sprung.estimation import CONVERGED, FitResult, FitStatistics, clear_of_splines, uncertainty_of
+from sprung.preprocess import FreeDecay, Prepared, exclude_drops, prepare
+from sprung.progress import Progress
+from sprung.selection import fit_structure
 from sprung.vehicle import Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
@@ -24,7 +28,9 @@ _NO_WORSE = 1.1
 """Noise with the flight over noise without above which the vehicle did something there that no model has."""
 
 _PASSES = 2
-"""The better the vehicle, the better it tells the clocks, and they it."""
+"""Fits between which the clocks are set again: vehicle and clocks determine each other."""
+
+FLIGHTS_FITTED = "the flights that determined the clock offsets are fitted too"
 
 
 def clock_reports(
@@ -52,97 +58,71 @@ def _reported(clocks: Sequence[LoggerClock], late: Real, covariance: Real) -> It
         yield ClockReport(clock.name, ahead, std)
 
 
-def set_clocks(
-    campaign: Campaign,
-    prepared: Prepared,
-    prepare_again: Callable[[Campaign], Prepared],
-    fit: Callable[[Sequence[FreeDecay]], FitResult],
-) -> tuple[Prepared, FitResult | None]:
-    """Set the clocks of all loggers.
-
-    Parameters
-    ----------
-    campaign
-        The campaign.
-    prepared
-        Its decays.
-    prepare_again
-        Finds the decays of the same campaign whose clocks are known.
-    fit
-        Fits decays from scratch.
-
-    Returns
-    -------
-    prepared
-        With what is known of each logger's clock.
-    summit
-        A first fit; None where every drop has one logger, and nothing is to be set.
-    """
+def synchronise(run: Analysis, progress: Progress) -> Analysis:
+    """Set the clocks of several loggers, by the releases and then by the decays."""
+    prepared = run.prepared
     if not any(decay.clocks for decay in prepared.decays):
-        return prepared, None
-    # As far as the first motion that each logger shows has told, all clocks are one: near enough for a first vehicle.
-    optimum = fit([replace(decay, clocks=()) for decay in prepared.decays])
+        return run
+    campaign = run.campaign
+    # As far as the first motion that each logger shows determines it, all clocks are one: near enough for a first vehicle.
+    fit = fit_baseline_model(run, [replace(decay, clocks=()) for decay in prepared.decays], progress)
     for _ in range(_PASSES):
-        released = _released(campaign, prepared, prepared.decays, optimum)
-        optimum = fit([mask_unsynchronised(decay) for decay in released])
-        timed = synchronise_by_decay(released, optimum)
+        released = _synchronised_at_release(campaign, prepared, prepared.decays, fit)
+        fit = fit_baseline_model(run, [mask_unsynchronised(decay) for decay in released], progress)
+        timed = synchronise_by_decay(released, fit)
         known = {
             decay.file: [
-                replace(clock, offset=_moment(late, optimum.parameters))
-                for clock, late in zip(decay.clocks, other.clocks, strict=True)
+                replace(clock, offset=_moment(other, fit.parameters))
+                for clock, other in zip(decay.clocks, synchronised.clocks, strict=True)
             ]
-            for decay, other in zip(released, timed, strict=True)
+            for decay, synchronised in zip(released, timed, strict=True)
         }
-        recordings = [replace(one, clocks=tuple(known.get(one.name, one.clocks))) for one in campaign.recordings]
-        prepared = prepare_again(campaign.with_recordings(recordings))
+        recordings = [
+            replace(recording, clocks=tuple(known.get(recording.name, recording.clocks)))
+            for recording in campaign.recordings
+        ]
+        prepared = exclude_drops(campaign, prepare(campaign.with_recordings(recordings), progress), run.excluded)
     by_file = {decay.file: decay.clocks for decay in timed}
-    decays = [_told_before(one, by_file.get(one.file, ()), optimum.parameters) for one in prepared.decays]
-    return prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays)), optimum
+    decays = [_with_known_clocks(decay, by_file.get(decay.file, ()), fit.parameters) for decay in prepared.decays]
+    prepared = prepared._replace(decays=tuple(clear_of_splines(decay) for decay in decays))
+    what = f"the clocks of the loggers of {len(by_file)} drops are set by their releases and decays"
+    counted = replace(run, preparation=prepared, fits=run.fits + 1 + _PASSES, preparations=run.preparations + _PASSES)
+    return replace(counted, clock_fit=fit).noted("synchronise", what, "several loggers")
 
 
-def told_by_flights(
-    campaign: Campaign, prepared: Prepared, optimum: FitResult, fit: Callable[[Sequence[FreeDecay]], FitResult]
-) -> tuple[tuple[FreeDecay, ...], FitResult] | None:
-    """Use what the samples between release and landing, which have told the clocks, tell of the vehicle too.
+def use_clock_flights(run: Analysis, progress: Progress) -> Analysis:
+    """Use the samples between release and landing, which determined the clocks, for the vehicle too.
 
-    Parameters
-    ----------
-    campaign
-        The campaign.
-    prepared
-        The decays that were fitted, their clocks set.
-    summit
-        Where that ended.
-    fit
-        Fits decays from there.
-
-    Returns
-    -------
-    decays, summit
-        With what their flights tell; None where there are no several loggers, or where during the flight the vehicle did
-        something that the model does not have.
+    Not where the vehicle did something during the flight that the model does not have.
     """
+    prepared, fit = run.prepared, run.fit
     if not any(decay.clocks for decay in prepared.decays):
-        return None
-    clocks = {seen.recording.name: seen.recording.clocks for seen in prepared.observations}
-    flown = _released(
-        campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in prepared.decays], optimum
+        return run
+    clocks = {observation.recording.name: observation.recording.clocks for observation in prepared.observations}
+    flown = _synchronised_at_release(
+        run.campaign, prepared, [replace(decay, clocks=clocks[decay.file]) for decay in run.decays], fit
     )
-    told = [one.flight for one in flown if one.flight is not None]
-    if not told:
-        return None
-    decays = tuple(replace(decay, flight=one.flight) for decay, one in zip(prepared.decays, flown, strict=True))
-    found = fit(decays)
-    values = with_separate_tracks(found.parameters)
-    missed = sum(
-        one.chi_square_at(np.array([values.get(name, at) for name, at in zip(one.names, one.at, strict=True)]))
-        for one in told
+    flights = [decay.flight for decay in flown if decay.flight is not None]
+    if not flights:
+        return run
+    decays = tuple(replace(decay, flight=other.flight) for decay, other in zip(run.decays, flown, strict=True))
+    other = fit_structure(run.model.structure, decays, fit, CONVERGED, progress)
+    values = with_separate_tracks(other.parameters)
+    squares = sum(
+        flight.chi_square_at(np.array([values.get(name, at) for name, at in zip(flight.names, flight.at, strict=True)]))
+        for flight in flights
     )
-    worse = max(float(np.max(found.noise / optimum.noise)), (missed / sum(one.samples for one in told)) ** 0.5)
-    return (decays, found) if found.converged and worse < _NO_WORSE else None
+    ratio = max(float(np.max(other.noise / fit.noise)), (squares / sum(flight.samples for flight in flights)) ** 0.5)
+    run = replace(run, fits=run.fits + 1)
+    if not other.converged or ratio >= _NO_WORSE:
+        why = f"noise {ratio:.2f} times that of the decays, at most {_NO_WORSE}"
+        return run.noted("use_flight", "the flights that determined the clock offsets are not fitted", why)
+    search = replace(run.model, fit=other, decays=decays)
+    run = replace(run, search=search, statistics=uncertainty_of(other), remarks=(*run.remarks, FLIGHTS_FITTED))
+    return run.noted("use_flight", FLIGHTS_FITTED, f"noise {ratio:.2f} times that of the decays")
 
 
-def _released(
+def _synchronised_at_release(
     campaign: Campaign, prepared: Prepared, decays: Sequence[FreeDecay], optimum: FitResult
 ) -> list[FreeDecay]:
     """Time the clocks of decays by their releases, for the vehicle of a fit."""
@@ -159,7 +139,7 @@ def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:
     return clock.offset - clock.expected_delay(parameters)
 
 
-def _told_before(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> FreeDecay:
+def _with_known_clocks(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> FreeDecay:
     """Give a decay with what is known of its clocks, which were set by it as far as whole samples go.
 
     No sample was taken before the decay's clock says: what it must not hold, such as a tyre in the air, none of its channels

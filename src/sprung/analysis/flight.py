@@ -8,15 +8,17 @@ takes a few times longer than the decays alone. So it is done where it is asked 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.analysis.analysis import Analysis
+from sprung.analysis.clocks import use_clock_flights
 from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
-from sprung.preprocess import Flight, FreeDecay, Prepared, find_flights
-from sprung.progress import Progress, Step, silent
+from sprung.preprocess import Flight, find_flights
+from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
 from sprung.simulation import BlockSupport, simulate_nonlinear_drops
 from sprung.vehicle import WHEELS, Rows, Vehicle, coordinates, evaluate_quantity
@@ -29,6 +31,9 @@ _UNDETERMINED = 0.3
 NEEDED = 0.02
 """Relative standard uncertainty of a parameter from which the fall is needed."""
 
+_SOUND = 10.0
+"""Overdispersion from which the model errs by so much that more samples do not help."""
+
 _NO_WORSE = 1.1
 """Noise with the fall over noise without, in any channel, above which the vehicle did something there that no model has."""
 
@@ -39,23 +44,44 @@ _LONG_ENOUGH = 0.25
 """s after the release that tell how high the blocks were."""
 
 
-@dataclass(frozen=True, eq=False)
-class Flown:
-    """A fit that uses drops from their releases on.
+def use_flight(run: Analysis, progress: Progress) -> Analysis:
+    """Use the drops from their releases on, where that is asked for or needed and determines the parameters better."""
+    asked = run.campaign.model.fall if run.options.fall is None else run.options.fall
+    is_sound = run.fit.converged and not run.suspected and run.uncertainty.inflation < _SOUND
+    if is_sound and not run.model.structure.is_time_stepped:
+        run = use_clock_flights(run, progress)
+    if asked is False or (asked is None and not (is_sound and is_needed(run.uncertainty))):
+        return run
+    found = find_flights(run.decays, run.prepared.observations)
+    if any(found):
+        progress(Step("using the fall"))
+        fallen = _with_fall(run, found, progress)
+        if fallen is not None:
+            return fallen
+        run = replace(run, fits=run.fits + 2)
+    remark = "the fall before the landing was tried and does not determine the parameters better"
+    return replace(run, remarks=(*run.remarks, remark)).noted("use_flight", remark)
 
-    Attributes
-    ----------
-    choice, summit, decays, fit
-        As without.
-    sharper
-        Standard uncertainties over those without, in the middle of the parameters.
-    """
 
-    choice: ModelStructure
-    optimum: FitResult
-    decays: tuple[FreeDecay, ...]
-    fit: FitStatistics
-    sharper: float
+def _with_fall(run: Analysis, found: Sequence[Flight | None], progress: Progress) -> Analysis | None:
+    """Fit the drops from their releases on; None where the model does not describe that, or where it tells nothing more."""
+    statistics, fit = run.uncertainty, run.fit
+    states = _initial_states(run.campaign, run.model.structure, fit, found)
+    decays = tuple(flight.decay if flight else decay for flight, decay in zip(found, run.decays, strict=True))
+    structure = replace(run.model.structure, unilateral_tyres=True)
+    other = fit_structure(structure, decays, fit, CONVERGED, progress, states)
+    search = select_gravity_leakage(ModelSearch(structure, other, decays, run.model.steps, progress))
+    if not search.fit.converged or np.any(search.fit.noise > _NO_WORSE * fit.noise):
+        return None
+    now = uncertainty_of(search.fit)
+    estimated = np.sqrt(np.diag(statistics.covariance)) > 0
+    ratios = np.sqrt(np.diag(now.covariance)[estimated] / np.diag(statistics.covariance)[estimated])
+    ratio = float(np.median(ratios))
+    if ratio >= 1:
+        return None
+    remark = f"the fall is used too, which makes uncertainties {ratio:.2f} times what they were"
+    fallen = replace(run, search=search, statistics=now, fits=run.fits + 2, remarks=(*run.remarks, remark))
+    return fallen.noted("use_flight", "the fall is used", f"standard uncertainties times {ratio:.2f}")
 
 
 def is_needed(fit: FitStatistics) -> bool:
@@ -78,51 +104,9 @@ def is_needed(fit: FitStatistics) -> bool:
     return bool(np.any(errors > NEEDED * sizes)) and hopeless < _UNDETERMINED
 
 
-def fly(
-    campaign: Campaign,
-    choice: ModelStructure,
-    prepared: Prepared,
-    optimum: FitResult,
-    fit: FitStatistics,
-    progress: Progress = silent,
-) -> Flown | None:
-    """Fit the drops from their releases on.
-
-    Parameters
-    ----------
-    campaign
-        Of which drops.
-    choice, summit, fit
-        The model, and where its fit of the decays ended.
-    prepared
-        The decays that were fitted, and what the recordings show.
-    progress
-        Called with each step that begins.
-
-    Returns
-    -------
-    Flown or None
-        None where no drop can be used so, or where the vehicle did something during the fall that the model does not have.
-    """
-    found = find_flights(prepared.decays, prepared.observations)
-    if not any(found):
-        return None
-    progress(Step("using the fall"))
-    begun = _begun(campaign, choice, optimum, found)
-    decays = tuple(one.decay if one else decay for one, decay in zip(found, prepared.decays, strict=True))
-    airborne = replace(choice, unilateral_tyres=True)
-    higher = fit_structure(airborne, decays, optimum, CONVERGED, progress, begun)
-    way = select_gravity_leakage(ModelSearch(airborne, higher, decays, (), progress))
-    if not way.fit.converged or np.any(way.fit.noise > _NO_WORSE * optimum.noise):
-        return None
-    now = uncertainty_of(way.fit)
-    known = np.sqrt(np.diag(fit.covariance)) > 0
-    ratios = np.sqrt(np.diag(now.covariance)[known] / np.diag(fit.covariance)[known])
-    sharper = float(np.median(ratios))
-    return Flown(way.structure, way.fit, decays, now, sharper) if sharper < 1 else None
-
-
-def _begun(campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]) -> Real:
+def _initial_states(
+    campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]
+) -> Real:
     """Give {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
     states = optimum.states[:, : 2 * len(coordinates(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **choice.heights.by_key)

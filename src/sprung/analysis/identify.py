@@ -1,44 +1,22 @@
-"""The one composition: from a campaign to a result."""
+"""From a campaign to a result."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from importlib.metadata import version
-from types import MappingProxyType
-from typing import NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
 
 from sprung.analysis.amplitude import amplitudes_of
-from sprung.analysis.axes import about_roll_axis, axes_of
-from sprung.analysis.clocks import clock_reports
-from sprung.analysis.fitted import fit_campaign
+from sprung.analysis.analysis import Analysis, AnalysisOptions
 from sprung.analysis.options import model_options
-from sprung.analysis.planned import recommend_next_step
-from sprung.analysis.profiles import check_asked, profiles_of
-from sprung.analysis.stand import Fitted
+from sprung.analysis.profiles import check_asked
+from sprung.analysis.stages import analyse
 from sprung.analysis.starting import start_values
-from sprung.assessment import (
-    BodyMotion,
-    ModeAmplitude,
-    body_motions,
-    cross_validate_drops,
-    decide_verdict,
-    estimate_model_error,
-)
+from sprung.assessment import ModeAmplitude, body_motions
 from sprung.campaign import CampaignSource, resolve_campaign
-from sprung.checking import check_prepared
 from sprung.errors import Omissions
-from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
-from sprung.preprocess import FreeDecay
-from sprung.progress import Progress, Step, silent
-from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
-from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS, Tracks, Vehicle
-
-METHOD = "joint maximum likelihood"
+from sprung.progress import Progress, silent
+from sprung.results import Result
+from sprung.vehicle import Tracks, Vehicle
 
 
 def identify(
@@ -99,25 +77,10 @@ def identify(
     >>> result.verdict.state, abs(result.parameters["k_sf"].value / 17000 - 1) < 0.01
     ('accept', True)
     """
-    found = identify_campaign(
+    run = identify_campaign(
         campaign, tracks=tracks, extras=extras, fall=fall, start=start, profile=profile, progress=progress
     )
-    return with_amplitudes(found, progress) if amplitude else found.result
-
-
-class Identification(NamedTuple):
-    """A result, and the fit that it was made from.
-
-    Attributes
-    ----------
-    fitted
-        The campaign and its fit.
-    result
-        Everything but what decorates it.
-    """
-
-    fitted: Fitted
-    result: Result
+    return with_amplitudes(run, progress) if amplitude else result_of(run)
 
 
 def identify_campaign(
@@ -129,8 +92,8 @@ def identify_campaign(
     start: Result | Vehicle | Mapping[str, float] | None = None,
     profile: str | Sequence[str] = (),
     progress: Progress = silent,
-) -> Identification:
-    """Identify a vehicle, without anything that only decorates the result, so that it can be saved first.
+) -> Analysis:
+    """Analyse a campaign, without anything that only decorates the result, so that it can be saved first.
 
     Parameters
     ----------
@@ -139,30 +102,36 @@ def identify_campaign(
 
     Returns
     -------
-    Identification
+    Analysis
 
     Raises
     ------
     InputError
         As `identify` does.
     """
-    tracks, extras = model_options(tracks, extras)
+    tracks, terms = model_options(tracks, extras)
     begin = start_values(start)
     campaign = resolve_campaign(campaign, progress)
-    asked = check_asked(profile, campaign, tracks, extras)
-    fitted = fit_campaign(campaign, tracks=tracks, extras=extras, fall=fall, start=begin, progress=progress)
-    options: dict[str, object] = {"tracks": tracks, "extras": extras, "fall": fall, "profile": asked}
+    asked = check_asked(profile, campaign, tracks, terms)
+    texts: dict[str, object] = {"tracks": tracks, "extras": terms, "fall": fall, "profile": asked}
     if begin:
-        options["start"] = [f"{name} = {value:g}" for name, value in begin.items()]
-    return Identification(fitted, result_of(fitted, asked, progress, options=options))
+        texts["start"] = [f"{name} = {value:g}" for name, value in begin.items()]
+    return analyse(campaign, AnalysisOptions(tracks, terms, fall, begin, tuple(asked), texts), progress)
 
 
-def with_amplitudes(found: Identification, progress: Progress = silent) -> Result:
-    """Return a result with the amplitude curves of the body's modes, or with the reason why there are none.
+def result_of(run: Analysis) -> Result:
+    """Return the result of an analysis that is complete."""
+    if run.result is None:
+        raise RuntimeError("the last stage of an analysis makes its result")
+    return run.result
+
+
+def with_amplitudes(run: Analysis, progress: Progress = silent) -> Result:
+    """Return the result with the amplitude curves of the body's modes, or with the reason why there are none.
 
     Parameters
     ----------
-    found
+    run
         From `identify_campaign`.
     progress
         As for `identify`.
@@ -171,107 +140,12 @@ def with_amplitudes(found: Identification, progress: Progress = silent) -> Resul
     -------
     Result
     """
-    fitted, result = found
+    result = result_of(run)
     if result.verdict.state == "reject":
-        return result  # what does not describe the recordings has no modes to follow
+        return result  # a model that does not describe the recordings has no modes to follow
     omissions = Omissions(result.omissions)
     amplitudes: tuple[ModeAmplitude, ...] = ()
     with omissions.record_failure("The amplitude curves"):
-        motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
-        amplitudes = amplitudes_of(fitted, motions, progress)
+        motions = body_motions(run.uncertainty, run.decays, run.campaign.sensors)
+        amplitudes = amplitudes_of(run, motions, progress)
     return replace(result, amplitude=amplitudes, omissions=omissions.sentences)
-
-
-def result_of(
-    fitted: Fitted,
-    profile: Sequence[str] = (),
-    progress: Progress = silent,
-    *,
-    options: Mapping[str, object] = MappingProxyType({}),
-) -> Result:
-    """Judge a fit, and put together what is said of it, with intervals from profiles of what is named."""
-    campaign, choice, why, prepared, optimum, fit, path, accused = fitted
-    progress(Step("judging the fit: each drop predicted by the others"))
-    decays = prepared.decays
-    channels = tuple(sensor.channel for sensor in campaign.sensors)
-    looked_at = check_prepared(campaign, prepared)
-    clocks = clock_reports(optimum, fit, decays)
-    estimates = to_estimates(fit, choice.known)
-    misfit = estimate_model_error(fit, decays)
-    motions = body_motions(fit, decays, campaign.sensors)
-    validated = cross_validate_drops(optimum, fit, decays, channels, motions)
-    verdict = decide_verdict(fit, misfit, estimates.parameters, channels, [fault.what for fault in accused], validated)
-    rejected = verdict.state == "reject"
-    profiles = {} if rejected else profiles_of(profile, optimum, fit, choice.known, progress)
-    loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
-    result = Result(
-        version=version("sprung"),
-        tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
-        verdict=verdict,
-        next_step=None if rejected else recommend_next_step(fitted),
-        parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
-        derived={
-            **({} if rejected else characteristics_of(fit, choice.known, choice.linear_models[EMPTY.name])),
-            **about_roll_axis(fit, choice.heights),
-            **{name: estimate_of(fit, choice.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
-            **{name: found for name, found in profiles.items() if name not in estimates.parameters},
-        },
-        scale=estimates.scale,
-        unidentifiable=estimates.unidentifiable,
-        correlation=estimates.correlation,
-        modes={
-            load: () if rejected else mode_estimates(fit, choice.linear_models[load], campaign.sensors)
-            for load in loads
-        },
-        fit=_fit_report(choice, why, path, fit, decays, channels, misfit, optimum),
-        drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
-        faults=tuple(dict.fromkeys((*looked_at.faults, *accused))),
-        validation=validated,
-        setup=setup_of(campaign, fit, choice.known, options),
-        series={
-            decay.name: _series(decay, fitted, motion, channels)
-            for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)
-        },
-        recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
-    )
-    return withhold_estimates(result)
-
-
-def _fit_report(
-    choice: ModelStructure,
-    why: str,
-    path: tuple[SelectionStep, ...],
-    fit: FitStatistics,
-    decays: Sequence[FreeDecay],
-    channels: Sequence[str],
-    misfit: tuple[NDArray[np.float64], NDArray[np.float64]],
-    optimum: FitResult,
-) -> FitReport:
-    return FitReport(
-        samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
-        drops=len(decays),
-        noise=dict(zip(channels, fit.noise.tolist(), strict=True)),
-        model=choice.terms,
-        tracks=choice.tracks,
-        why=why,
-        axes=axes_of(choice.heights),
-        since="release" if choice.unilateral_tyres else "landing",
-        path=path,
-        method=METHOD,
-        iterations=fit.iterations,
-        converged=fit.converged,
-        starts=fit.starts,
-        starts_agreeing=fit.starts_agreeing,
-        inflation=fit.inflation,
-        inflated_by=fit.inflated_by,
-        most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
-        misfit=dict(zip(channels, misfit[0].tolist(), strict=True)),
-        loglikelihood=optimum.absolute_loglikelihood,
-        unknowns=optimum.unknowns,
-    )
-
-
-def _series(decay: FreeDecay, fitted: NDArray[np.float64], motion: BodyMotion, channels: tuple[str, ...]) -> Series:
-    level = decay.values.mean(axis=1, keepdims=True)
-    body = motion.measured.astype(np.float32), motion.simulated.astype(np.float32)
-    return Series(channels, motion.time, decay.values, fitted + level, *body)

@@ -68,17 +68,17 @@ def identify_and_save(
     campaign: Any, folder: Path, report: bool, force: bool, progress: Progress, as_json: bool, **options: Any
 ) -> Any:
     """Identify a campaign and save the result; then add amplitude curves and report, which may fail or be interrupted."""
-    found = sprung.analysis.identify_campaign(campaign, progress=progress, **options)
+    run = sprung.analysis.identify_campaign(campaign, progress=progress, **options)
     progress(Step("writing results.json and series.npz"))
     try:
-        saved = sprung.report.save_result(found.result, folder, overwrite=force)
+        saved = sprung.report.save_result(sprung.analysis.result_of(run), folder, overwrite=force)
     except InputError:
-        _show(found.result, as_json)  # shown at least, if it cannot be saved
+        _show(sprung.analysis.result_of(run), as_json)  # shown at least, if it cannot be saved
         raise
     if not report:
         return saved
     try:
-        result = sprung.analysis.with_amplitudes(found, progress)
+        result = sprung.analysis.with_amplitudes(run, progress)
         progress(Step("drawing the report"))
         return sprung.report.add_report(result, folder, overwrite=force)
     except KeyboardInterrupt:

@@ -14,7 +14,7 @@ from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
-from sprung.estimation.problem import CONVERGED, NO_INFORMATION, RANK, identifiable_subspace
+from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, score_added, wald_test
 from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
@@ -23,6 +23,7 @@ from sprung.estimation.subspace import canonical_basis
 
 __all__ = [
     "CONVERGED",
+    "MOST_STEPS",
     "NEAR",
     "NO_INFORMATION",
     "RANK",

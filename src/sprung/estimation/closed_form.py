@@ -93,7 +93,7 @@ class ClosedFormObjective:
         return ClosedFormObjective(decays, self.models, self.sensors)
 
     def at(self, values: Real, weights: Real) -> ObjectiveAt:
-        """Evaluate at parameter values, SI, shape (parameter,), with 1/σ² of each channel, s⁴/m², shape (channel,)."""
+        """Evaluate at parameter values, SI, shape (parameter,), with weights 1/σ² of the channels, s⁴/m², shape (channel,)."""
         modes = solve_modes(self.side_by_side, self.sensors, values)
         # Rates that may be negative can make a motion that grows beyond all bounds.
         if float(modes.poles.real.max()) * self.span > _UNBOUNDED:

@@ -168,7 +168,7 @@ class FitResult:
         return self.iterate.at.motion(drop, before, after)
 
     def residual_sums_of(self, decays: Sequence[FreeDecay]) -> Real:
-        """Residual sums of squares of this vehicle on other decays, their initial states eliminated; as `residual_sums`."""
+        """Residual sums of squares on other decays, initial states eliminated, (m/s²)², shape as that of `residual_sums`."""
         return self._of(decays).residual_sums
 
     def states_of(self, decays: Sequence[FreeDecay]) -> Real:

@@ -17,6 +17,7 @@ from sprung.estimation.problem import (
     CLOSE_BY,
     CONVERGED,
     FAR,
+    MOST_STEPS,
     NEARER,
     NOISE_FLOOR,
     EstimationProblem,
@@ -66,9 +67,10 @@ def fit_linear(
     guess: Mapping[str, float] = MappingProxyType({}),
     starts: int = STARTS,
     enough: float = CONVERGED,
+    most: int = MOST_STEPS,
     progress: Progress = silent,
 ) -> FitResult:
-    """Fit one linear vehicle to all decays by maximum likelihood.
+    """Fit one linear vehicle to all decays by :term:`maximum likelihood <maximum likelihood estimate>`.
 
     Parameters
     ----------
@@ -90,6 +92,8 @@ def fit_linear(
         other is refined: a wrong optimum leaves a motion, and a motion is not white.
     enough
         Expected gain in log-likelihood at which to stop.
+    most
+        Steps at the most, from each start.
     progress
         Called with each step that begins.
 
@@ -109,7 +113,7 @@ def fit_linear(
     if start is not None:
         values = masses | dict(start)
         problem = _problem(objective, known, values)
-        return _fit_from(problem, values, enough)
+        return _fit_from(problem, values, enough, most)
     size = VehicleSize.of(known, sensors)
     has_engine = "m_e" in next(iter(models.values())).names
     usual = [vehicle | masses for vehicle in start_grid(size, known, has_engine)]
@@ -122,7 +126,7 @@ def fit_linear(
     if direct is not None:
         progress(Step("fitting from a direct start"))
         u = problem.priors.project(coordinates.from_parameters(direct | masses))
-        ends.append(problem.maximise(u, None, enough, NEARER))
+        ends.append(problem.maximise(u, None, enough, NEARER, most))
         fit = _best(problem, ends, enough)
         if len(ends) == starts or (fit.converged and _leaves_white_noise(fit)):
             return fit
@@ -134,7 +138,7 @@ def fit_linear(
     for number, which in enumerate(order.tolist(), start=len(ends) + 1):
         progress(Step("fitting from a start", number, starts))
         best = min(ends, key=lambda end: problem.cost(end.point), default=None)
-        ends.append(problem.maximise(problem.priors.project(more[which]), best, enough, FAR))
+        ends.append(problem.maximise(problem.priors.project(more[which]), best, enough, FAR, most))
     return _best(problem, ends, enough)
 
 
@@ -152,9 +156,11 @@ def _problem(
     return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
 
 
-def _fit_from(problem: EstimationProblem, values: Mapping[str, float], enough: float) -> FitResult:
+def _fit_from(
+    problem: EstimationProblem, values: Mapping[str, float], enough: float, most: int = MOST_STEPS
+) -> FitResult:
     u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    return _best(problem, [problem.maximise(u, None, enough, CLOSE_BY)], enough)
+    return _best(problem, [problem.maximise(u, None, enough, CLOSE_BY, most)], enough)
 
 
 def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: float) -> FitResult:
@@ -232,7 +238,7 @@ def score_linear_term(
     known: Mapping[str, KnownValue],
     values: Mapping[str, float],
 ) -> tuple[float, dict[str, float]]:
-    """Return what a model with more parameters would gain over one that is fitted already, by the score test.
+    """Return what a model with more parameters would gain over one that is fitted already, by the :term:`score test`.
 
     Parameters
     ----------

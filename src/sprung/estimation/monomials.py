@@ -131,7 +131,7 @@ def shape_of(A: Real, model: LinearModel) -> Real:
     Parameters
     ----------
     A
-        State matrix, shape (14, 14).
+        State matrix, SI, shape (14, 14).
     model
         Without a load.
 

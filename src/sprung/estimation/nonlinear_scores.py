@@ -34,7 +34,7 @@ def score_nonlinear_terms(
     values: Mapping[str, float],
     candidates: Mapping[str, Sequence[str]],
 ) -> dict[str, tuple[float, dict[str, float]]]:
-    """Return what nonlinear forces would gain over a linear vehicle that is fitted already, by score tests, and their sizes.
+    """Return what nonlinear forces would gain in a fitted linear vehicle, by :term:`score tests <score test>`, and their sizes.
 
     Parameters
     ----------

@@ -141,15 +141,6 @@ class HasClockDelays(Protocol):
 
 
 @runtime_checkable
-class HasNoiseBias(Protocol):
-    """An objective that knows how much noise alone adds to its information."""
-
-    @property
-    def noise_bias_of_information(self) -> Real:
-        """Information that noise alone adds on average, shape (parameter, parameter)."""
-
-
-@runtime_checkable
 class HasModalResponse(Protocol):
     """An objective that has modal coordinates, in which changes of the response are sums of exponentials."""
 
@@ -165,6 +156,10 @@ class HasModalResponse(Protocol):
     def sensor_rows(self) -> Real:
         """Rows of the sensors, shape (channel, coordinate)."""
 
+    @property
+    def noise_bias_of_information(self) -> Real:
+        """Information that noise alone adds on average, shape (parameter, parameter)."""
+
     def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
         """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""
 
@@ -174,7 +169,7 @@ class HasModalResponse(Protocol):
         Parameters
         ----------
         forces
-            (dM λ² + dC λ + dK) v of every mode v, shape (load, coordinate, change, mode).
+            (dM λ² + dC λ + dK) v of every mode v, SI, shape (load, coordinate, change, mode).
 
         Returns
         -------
@@ -188,7 +183,7 @@ class HasModalResponse(Protocol):
         Parameters
         ----------
         readings
-            Derivatives by the changes, shape (load, channel, change, 2 mode).
+            Derivatives by the changes, SI, shape (load, channel, change, 2 mode).
 
         Returns
         -------

@@ -29,7 +29,7 @@ def autocorrelation_inflation(
     counted: Real | float = 1.0,
     least: Real | float = 0.0,
 ) -> Real:
-    """Return the factor by which the autocorrelation of residuals inflates the variance of their mean.
+    """Return the :term:`autocorrelation inflation`: variance of a mean of residuals over that of white ones.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def autocorrelation_inflation(
 
 
 def birge_ratio(scores: Real, informations: Real) -> float:
-    """Return Birge's ratio, squared: by how much the drops differ from each other beyond their noise.
+    """Return the square of the :term:`Birge ratio`: by how much the drops differ from each other beyond their noise.
 
     Parameters
     ----------

@@ -73,7 +73,7 @@ class Coordinates:
 
 @dataclass(frozen=True, eq=False)
 class PriorsAndConstraints:
-    """Statements about parameters and derived quantities.
+    """:term:`Priors <prior>` and constraints: statements about parameters and derived quantities.
 
     Coordinates u, and steps and directions of them, are those of `Coordinates`: dimensionless, shape (parameter,).
 

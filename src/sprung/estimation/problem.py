@@ -36,13 +36,13 @@ FAR, NEARER, CLOSE_BY = 1e-3, 1e-6, 1e-9
 _SAME = 100.0  # distance in standard errors, squared, within which a fit will end where another one has
 _REACHED = 0.05  # part of the distance, squared, that a step may miss another fit's end by and still lead there
 _EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have before it is reported
-_STEPS, _PROVISIONAL_STEPS = 100, 40  # at the most, where the end counts and where it is only a stage
+MOST_STEPS, _PROVISIONAL_STEPS = 100, 40  # at the most, where the end counts and where it is only a stage
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
 _ROUNDING = 1e-10  # of the cost
 
 
 def identifiable_subspace(information: Real) -> Real:
-    """Return the directions of which data and priors have information.
+    """Return the :term:`identifiable subspace`: the directions of which data and priors have information.
 
     Parameters
     ----------
@@ -253,7 +253,7 @@ class EstimationProblem:
         other: Maximum[Iterate] | None = None,
         tolerance: float = CONVERGED,
         damping: float = FAR,
-        most: int = _STEPS,
+        most: int = MOST_STEPS,
     ) -> Maximum[Iterate]:
         """Maximise the likelihood from a start.
 
@@ -283,7 +283,7 @@ class EstimationProblem:
         start = self.start(u)
         if not np.isfinite(start.at.residual_sums).all():
             return Maximum(start, 0, converged=False)
-        steps = min(most, _STEPS if tolerance <= CONVERGED else _PROVISIONAL_STEPS)
+        steps = min(most, MOST_STEPS if tolerance <= CONVERGED else _PROVISIONAL_STEPS)
         found = maximise(
             self,
             start,

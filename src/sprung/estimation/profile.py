@@ -52,7 +52,7 @@ class ProfilePoint(NamedTuple):
 
 
 def profiled(fit: FitResult, statistics: FitStatistics, name: str, estimate: Estimate) -> Estimate:
-    """Return an estimate with the interval that the profile of the likelihood gives.
+    """Return an estimate with the interval from the :term:`profile likelihood`.
 
     Parameters
     ----------

@@ -32,9 +32,9 @@ class ScoreTest:
     score
         Gradient of the log-likelihood by the unknowns, the parameters eliminated, shape (unknown,).
     information
-        Fisher information of them, the same, shape (unknown, unknown).
+        Fisher information of them, 1 over the squares of their units, likewise; shape (unknown, unknown).
     own_information
-        Information of each if the parameters were known, shape (unknown,).
+        Information of each if the parameters were known, in the same units, shape (unknown,).
     shifts
         Change of each direction of the parameters with each unknown, in standard errors of that direction; shape (direction,
         unknown).
@@ -146,7 +146,7 @@ def score_added(fit: FitResult, gradient: Real, information: Real) -> ScoreTest:
 
 
 def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) -> float:
-    """Return what twice the log-likelihood would lose, to second order, if parameters had certain values.
+    """:term:`Wald test`: what twice the log-likelihood would lose, to second order, if parameters had certain values.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
-from sprung.estimation.objective import HasNoiseBias
+from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay
@@ -226,9 +226,17 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
 
 
 def overdispersion_of(fit: FitResult) -> float:
-    """Return the overdispersion of a fit: the factor on every variance, 1 where it is not significant.
+    """Return the :term:`overdispersion` of a fit: the factor on every variance, 1 where it is not significant.
 
-    The larger of what autocorrelated residuals and what drops that contradict each other show.
+    Parameters
+    ----------
+    fit
+        The fit.
+
+    Returns
+    -------
+    float
+        A factor, the larger of the autocorrelation inflation of the residuals and the squared Birge ratio of the drops.
     """
     return fit.overdispersion
 
@@ -244,7 +252,7 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     rounding = RANK * eigenvalues.max(initial=0.0)
     if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
         match optimum.at:
-            case HasNoiseBias() as at:
+            case HasModalResponse() as at:
                 basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
                 bias = basis.T @ at.noise_bias_of_information @ basis
                 eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)

@@ -32,8 +32,8 @@ _MOST_MEMORY = 1.15
 _WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_products")
 """Cached properties of a `TimeSteppingAt` that do not depend on the weights."""
 
-_STATE_STEPS = 3
-"""Gauss-Newton steps of initial states alone, at the most."""
+_STATE_STEPS, _STATE_GAIN = 20, 1e-2
+"""Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -248,9 +248,10 @@ class TimeSteppingAt:
         best = self
         for _ in range(_STATE_STEPS):
             tried = best.moved(self.values)
-            if not tried._cost < best._cost:
+            gain = best._cost - tried._cost
+            best = tried if gain > 0 else best
+            if not gain > _STATE_GAIN:
                 break
-            best = tried
         return best
 
     @property

@@ -1,28 +1,30 @@
-"""When the records make no sense as they are: what, being otherwise, makes sense of them, and what is done about it.
+"""Faults of recordings and campaigns: isolated by comparing what each hypothesis predicts with what was recorded.
 
-Everything that may be wrong is a hypothesis, and all of them compete on the same samples in one currency, the likelihood of
-all records. A channel or a drop is left out and the rest is fitted; what was left out is then held against the vehicle that
-explains the rest, which says what it is. Nothing is named on suspicion: a hypothesis has to explain the records, beyond
-chance, and no other one may do so about as well.
+One hypothesis is one file: how it corrects the campaign, how it predicts the residuals, and its message. All of them
+compete on the same samples in one currency, twice the log-likelihood, with model terms as well; only the most likely ones are
+fitted, and none is accepted on suspicion: it has to explain the recordings, beyond chance, and no other one may do so about as
+well.
 """
 
-from sprung.faults.bench import Bench, without_looking_at_wheels
-from sprung.faults.common.search import examine
-from sprung.faults.common.statements import wrong_statement
-from sprung.faults.competition import diagnose
-from sprung.faults.hypotheses import Hypothesis
-from sprung.faults.slowly import walking_slowly
-from sprung.faults.suspicion import Suspicion, scores, suspicious
+from sprung.faults.consistency import Consistency, consistency_of
+from sprung.faults.drift import detect_drift
+from sprung.faults.hypothesis import Hypothesis
+from sprung.faults.isolate import Isolated, isolate
+from sprung.faults.isolation import FaultIsolation, decays_without_wheel_sensors
+from sprung.faults.residual_table import reference_noise, residual_table
+from sprung.faults.statements.search import Examined, examine
 
 __all__ = [
-    "Bench",
+    "Consistency",
+    "Examined",
+    "FaultIsolation",
     "Hypothesis",
-    "Suspicion",
-    "diagnose",
+    "Isolated",
+    "consistency_of",
+    "decays_without_wheel_sensors",
+    "detect_drift",
     "examine",
-    "scores",
-    "suspicious",
-    "walking_slowly",
-    "without_looking_at_wheels",
-    "wrong_statement",
+    "isolate",
+    "reference_noise",
+    "residual_table",
 ]

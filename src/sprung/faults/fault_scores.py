@@ -44,7 +44,7 @@ class FaultScore(NamedTuple):
         By how much, in that unit.
     std
         Standard uncertainty of that in white noise.
-    pull
+    max_parameter_shift
         By how many of its own standard uncertainties a parameter moves with one of this, the most of all parameters: how
         much less is known of the vehicle where this is not known.
     """
@@ -55,7 +55,7 @@ class FaultScore(NamedTuple):
     item: int
     value: float
     std: float
-    pull: float
+    max_parameter_shift: float
 
     @property
     def gain(self) -> float:

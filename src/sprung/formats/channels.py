@@ -207,7 +207,7 @@ def assemble_table(columns: Sequence[Column], file: str, largest: float, notes: 
     left_out = {
         "renamed, as several channels have one name or none": [n for c, n in names.items() if n != c.name],
         "left out, as their samples are no numbers": [names[column] for column in chosen if column not in rows],
-        "on another clock, and read at the times of the others": [names[column] for column in others],
+        "on another clock, interpolated to the times of the others": [names[column] for column in others],
         "left out, as they are on another clock": [names[column] for column in elsewhere],
     }
     return SampleTable(
@@ -263,4 +263,4 @@ def _other_clock(column: Column, clock: ChannelClock, where: str) -> Problem:
         for c in (column.clock, clock)
     )
     do = "Export all channels that are needed at one rate and over one time."
-    return Problem(where, found, f"the clock that most samples of the file are on, {expected}", do)
+    return Problem(where, found, f"the clock of most samples of the file, {expected}", do)

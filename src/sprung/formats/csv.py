@@ -138,7 +138,7 @@ def _check(layout: Layout, rate: Rate | None, end: int, file: str) -> None:
             found = "numbers without names above them"
         raise input_error(where, found, "the names of the columns", do)
     if any(not character.isprintable() for name in layout.names for character in name):
-        found, do = "characters that nobody can read", "Export the recording as text; this file may be of another kind."
+        found, do = "unreadable characters", "Export the recording as text; this file may be of another kind."
         raise input_error(where, found, "the names of the columns", do)
     if len(layout.names) < 2 and rate is None:
         expected = "the time and at least one channel, separated by comma, semicolon, tab, pipe or spaces"
@@ -277,7 +277,7 @@ def _table(text: _Text, ahead: Iterable[LineBlock], rate: Rate | None, candidate
     small = text.small
     read = range(len(layout.names)) if small else candidates
     text, cells, cut = _gone_through(text, ahead, read)
-    notes = [f"line {line}, between names and samples, was passed over" for line in layout.passed]
+    notes = [f"line {line}, between names and samples, was ignored" for line in layout.passed]
     if cut:
         notes.append(f"line {cut}, the last, is cut short and was left out")
     clocks: dict[int, NDArray[np.float64]] = {}

@@ -67,7 +67,7 @@ def _refuse_others(path: Path) -> None:
         raise input_error(path.name, f"a workbook of another kind ({ending})", "a workbook as .xlsx, or CSV", _SAVE)
     if b"\0" not in head:
         found = f"text under the name of a workbook ({ending})"
-        raise input_error(path.name, found, _KIND, "Rename it to .csv, which its content seems to be.")
+        raise input_error(path.name, found, _KIND, "Rename it to .csv, as its content suggests.")
     raise input_error(path.name, f"a file that is no workbook ({ending})", _KIND, "Copy or export it again.")
 
 

@@ -92,7 +92,7 @@ class IsoMmeFormat:
         usual = Counter(clock for clock in clocks.values() if clock is not None).most_common(1)
         if not usual:
             do = "Add 'Sampling interval :' with the interval in s to the channel files."
-            raise InputError([Problem(path.name, "no channel that says its sampling interval", "one for each", do)])
+            raise InputError([Problem(path.name, "no channel with a sampling interval", "one for each", do)])
         first, interval, count, reference = clock = usual[0][0]
         time = first + interval * np.arange(count, dtype=np.float64) if reference is None else _times(codes[reference])
         samples = [

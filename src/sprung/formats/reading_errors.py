@@ -107,6 +107,6 @@ class MemoryBudget:
         """
         self._left -= count
         if self._left < 0:
-            found = f"{self._size} bytes that say they hold more than {LARGEST} times as many"
+            found = f"{self._size} bytes that declare content of more than {LARGEST} times their size"
             do = "Export it again, uncompressed and with this recording only."
             raise input_error(self._file, found, "a file about as large as its recording", do)

@@ -58,7 +58,7 @@ def from_sep005(signals: Sequence[Mapping[str, object]], name: str = "signals") 
             columns.append(_column(signal, f"{name}[{index}]"))
     starts = {start for signal in signals if (start := _start(signal))}
     if len(starts) > 1:
-        do = "Give all the time of one clock, and none a start_timestamp of its own."
+        do = "State all times on one clock, without a start_timestamp for each."
         problems.add(name, f"start_timestamp {', '.join(sorted(starts))}", "one and the same", do)
     problems.raise_if_any()
     return assemble_table(columns, name, np.inf)
@@ -110,7 +110,7 @@ def _clock(signal: Mapping[str, object], count: int, where: str) -> ChannelClock
     times = _numbers(signal["time"], f"{where}.time")
     backward = np.flatnonzero(~(np.diff(times) > 0))
     if len(times) != count:
-        do = "Give one time per sample."
+        do = "State one time per sample."
         problems.add(f"{where}.time", f"{len(times)} times for {count} samples", "as many times as samples", do)
     elif not np.isfinite(times).all() or backward.size:
         first = f", not so at sample {backward[0] + 2}" if backward.size else ""

@@ -62,7 +62,7 @@ class TdmsFormat:
                     found, without = _columns(channels, name, zero, file, samples)
                     columns += found
                     timeless += without
-            notes = [f"left out, as neither a step nor a channel says their time: {', '.join(timeless)}"]
+            notes = [f"left out, as they have neither a time step nor a time channel: {', '.join(timeless)}"]
             if timeless and not columns:
                 expected = "a property wf_increment, or a channel named time in the same group"
                 do = "Export the recording with its time."
@@ -86,7 +86,7 @@ def _refuse_cut_short(path: Path) -> None:
             (length,) = struct.unpack(f"{order}Q", lead_in[12:20])
             position += _LEAD_IN + length
             if position > size:
-                raise truncation_error(path.name, "a segment that goes on behind the end of the file")
+                raise truncation_error(path.name, "a segment that extends beyond the end of the file")
 
 
 def _columns(

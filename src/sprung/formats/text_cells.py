@@ -157,7 +157,7 @@ class Cells:
         where, layout = f"{self.file}: line {number}", self.layout
         if line.count('"') % 2:
             do = "Look for a quotation mark that is not closed."
-            raise input_error(where, "a line that is no table", "one line per sample", do)
+            raise input_error(where, "a line that is not part of a table", "one line per sample", do)
         separator = None if layout.delimiter == " " else layout.delimiter
         row = split_cells(line, layout.delimiter) if line.count(layout.delimiter) <= COLUMNS else line.split(separator)
         if not any(row):

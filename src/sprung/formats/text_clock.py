@@ -239,5 +239,5 @@ def _unwrapped(time: NDArray[np.float64], line: Callable[[int], int]) -> tuple[N
     again = (steps < 0) & (steps + WRAP > 0) & (steps + WRAP < 1000 * np.median(steps))
     if not again.any():
         return time, ()
-    note = f"the time begins again at 2^32 in line {line(int(again.argmax()) + 1)}, and was joined"
+    note = f"the time counter wraps at 2^32 in line {line(int(again.argmax()) + 1)}; it was unwrapped"
     return time + WRAP * np.concatenate(([0], np.cumsum(again))), (note,)

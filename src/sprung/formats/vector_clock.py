@@ -150,7 +150,7 @@ def find_vector_clock(vectors: Sequence[Vector], content: Content, scope: Metada
         raise InputError([Problem(file, found, "one rate for all channels", "Keep one recording per file.")])
     guesses = [v for v in vectors if v.increases() and (v.unit is None or v.unit.lower() in TIME_UNITS)]
     if len(guesses) == 1 < len(vectors):
-        note = f"{guesses[0].name} was taken for the time, as nothing else increases from sample to sample"
+        note = f"{guesses[0].name} is used as the time: no other vector increases from sample to sample"
         return VectorClock(_seconds(guesses[0], file), (guesses[0],), (note,))
     names = ", ".join(repr(vector.name) for vector in vectors[:20])
     found = f"no time among {names}" + (f" and {len(vectors) - 20} more" if len(vectors) > 20 else "")
@@ -172,7 +172,7 @@ def _time(times: Sequence[Vector], rates: dict[float, Number], file: str) -> Vec
     span = float(seconds[-1]) - float(seconds[0])
     for rate, number in rates.items():
         if span > 0 and abs(span * rate / (len(seconds) - 1) - 1) > 0.01:
-            notes += (f"{_dotted(number.path)} says {rate:.6g} samples per second, {best.name} says otherwise",)
+            notes += (f"{_dotted(number.path)} states {rate:.6g} samples per second, which differs from {best.name}",)
     return VectorClock(seconds, tuple(times), notes)
 
 

@@ -70,7 +70,7 @@ def table_from_nested(node: Node, file: File, do: str) -> SampleTable:
     others = _on_other_clocks(strays, clock, len(channels[0]), content, scope, file.name)
     if others:
         read_too = ", ".join(vector.name for vector in others)
-        notes.append(f"on another clock, and read at the times of the others: {read_too}")
+        notes.append(f"on another clock, interpolated to the times of the others: {read_too}")
     timed = {len(vector) for vector in others}
     left_out = [
         *(
@@ -157,7 +157,7 @@ def _columns(block: NumberBlock, lengths: set[int], notes: list[str]) -> Sequenc
     down, across = block.numbers.shape
     if (down in lengths) == (across in lengths):
         if down == across:
-            notes.append(f"{'.'.join(block.path)} is as wide as long; its columns were taken for channels")
+            notes.append(f"{'.'.join(block.path)} is as wide as long; its columns are used as channels")
         upright = down >= across
     else:
         upright = down in lengths

@@ -10,7 +10,7 @@ NEAR_NYQUIST = 0.9
 
 
 def modal_phase_collinearity(shape: ArrayLike) -> float:
-    """Return the modal phase collinearity of a shape: 1 where all channels move in phase or in opposition, 0 at the least.
+    """Return the :term:`modal phase collinearity` of a shape: 1 if all channels are in phase or in opposition, 0 at the least.
 
     Parameters
     ----------

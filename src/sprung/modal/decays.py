@@ -37,7 +37,7 @@ class Decays:
         Of each record, shape (record,).
     energy
         Sum of squares of each channel, shape (record, channel).
-    blocked
+    padded_blocks
         The records cut into blocks for `correlate_with_exponentials`, one after the other.
     """
 

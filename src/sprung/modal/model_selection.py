@@ -114,7 +114,7 @@ def inconsistency_factor(objective: ModalObjective) -> float:
 
 
 def squared_birge_ratio(objective: ModalObjective) -> float:
-    """Return the square of the Birge ratio of poles and shapes in the early and late halves of all records.
+    """Return the square of the :term:`Birge ratio` of poles and shapes in the early and late halves of all records.
 
     R. T. Birge, Phys. Rev. 40 (1932) 207: the changes that each half would make to poles and shapes, in units of their
     uncertainty, squared and averaged; 1 or more. It is large where frequency depends on amplitude.

@@ -42,7 +42,7 @@ def mode_uncertainties(objective: ModalObjective, disagreement: float) -> tuple[
 def cramer_rao_bounds(
     objective: ModalObjective, excess: Real | None = None, lost: float = 1.0
 ) -> tuple[ModeUncertainty, ...]:
-    """Return the Cramér-Rao bound of all modes: the least covariance of any unbiased estimate, at true poles, shapes and noise.
+    """Return the :term:`Cramér-Rao bound` of all modes: the least covariance of an unbiased estimate, at true values.
 
     Parameters
     ----------

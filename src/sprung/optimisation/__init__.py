@@ -2,4 +2,9 @@
 
 from sprung.optimisation.levenberg_marquardt import Maximisable, Maximum, NormalEquations, maximise
 
-__all__ = ["Maximisable", "Maximum", "NormalEquations", "maximise"]
+__all__ = [
+    "Maximisable",
+    "Maximum",
+    "NormalEquations",
+    "maximise",
+]

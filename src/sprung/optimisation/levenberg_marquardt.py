@@ -65,7 +65,7 @@ class Maximisable(Protocol[Point]):
         """Return how twice the log-likelihood rises from a point."""
 
     def trial(self, point: Point, step: Array, /) -> tuple[Point, float]:
-        """Return the point a step away, and the gain in twice the log-likelihood: minus infinity where it does not exist."""
+        """Return the point a step (shape (coordinate,)) away, and the gain in twice the log-likelihood: -inf if it has none."""
 
 
 class Maximum(NamedTuple, Generic[Point]):

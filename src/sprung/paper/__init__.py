@@ -1,9 +1,11 @@
-"""The paper's method and its tables, reproduced: State Variable Method, added mass, least squares."""
+"""The paper: its method, its printed tables, its misprints, and their reproduction."""
 
 from sprung.paper.added_mass import added_mass
+from sprung.paper.constrained_fit import StructuredFit
 from sprung.paper.misprints import Misprint
-from sprung.paper.reproduction import ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow, reproduce
-from sprung.paper.structured import StructuredFit, structured_least_squares
+from sprung.paper.reproduction import reproduce
+from sprung.paper.structured import structured_least_squares
+from sprung.paper.tables import ModalValues, ModeRow, NoisePoint, PaperReproduction, ParameterRow
 
 __all__ = [
     "Misprint",

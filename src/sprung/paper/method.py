@@ -1,4 +1,4 @@
-"""The paper's method from records to parameters: State Variable Method, added mass, least squares."""
+"""The paper's method: State Variable Method, added mass, least squares; and the simulated tests it is applied to."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel
 Real = NDArray[np.float64]
 
 RATE = 500.0
-"""Samples per second. The paper states neither this nor the next two; they decide how much rounding grows."""
+"""Sampling rate, Hz. The paper states neither this nor lag and duration; they determine the rounding error."""
 
 LAG = 10
-"""Samples between the states of eq. (6), 20 ms: about a fifth of a period of wheel hop. One sample loses a digit."""
+"""Samples between the states of eq. (6): 20 ms, about a fifth of a period of wheel hop. A lag of one loses a digit."""
 
 DECAY = 2.0
-"""s of free vibration after the bump or the landing."""
+"""Duration of the free vibration after the bump or the landing, s."""
 
 REST = 0.4
-"""s on the blocks before a drop."""
+"""Time on the blocks before a drop, s."""
 
 BUMP_HEIGHT, BUMP_PASSAGE = 0.09, 0.2
-"""Eq. (19): m and s."""
+"""Height and duration of the bump of eq. (19), m and s."""
 
 LEFT: tuple[Wheel, ...] = ("fl", "rl")
 """The wheels of the paper's roll mode excitation, A and C."""
 
 FIVE_BUMPS: tuple[tuple[Wheel, ...], ...] = (WHEELS, ("fl", "fr"), ("rl", "rr"), LEFT, ("fr", "rr"))
-"""As the drops of the experiment: all, front, rear, left and right wheels."""
+"""Wheels of the five drops of the experiment: all, front, rear, left, right."""
 
 
 def bump_campaign(
@@ -54,9 +54,9 @@ def bump_campaign(
     Parameters
     ----------
     vehicle, load
-        What runs.
+        Of the simulation.
     bumps
-        The wheels that run over it, one run for each.
+        Wheels that run over it, one run for each.
     noise
         White noise of every sensor, m/s² rms.
     seed
@@ -65,7 +65,7 @@ def bump_campaign(
     Returns
     -------
     Campaign
-        With the free vibration marked: it starts at the end of the bump.
+        With the start of the free vibration at the end of the bump.
     """
     runs = [
         half_sine_bumps(
@@ -96,12 +96,12 @@ def drop_campaign(vehicle: Vehicle, load: Load) -> Campaign:
     Parameters
     ----------
     vehicle, load
-        What falls.
+        Of the simulation.
 
     Returns
     -------
     Campaign
-        Gravity taken off, and the free vibration marked: it starts when the last tyre has landed for good.
+        Without gravity, and with the start of the free vibration at the last landing of a tyre.
     """
     campaign = simulate(vehicle, loads=[load], rate=RATE, noise=0.0, rest=REST, duration=DECAY + 1.0)
     drops = []
@@ -119,9 +119,9 @@ def state_matrices(campaign: Campaign, a: float) -> dict[str, Real]:
     Parameters
     ----------
     campaign
-        Without offsets in its records.
+        Without offsets in its recordings.
     a
-        Front axle to the body's centre of gravity, m: the paper's coordinates need it before anything is identified.
+        Front axle to the centre of gravity of the body, m, which the paper's coordinates require.
 
     Returns
     -------
@@ -138,8 +138,10 @@ def state_matrices(campaign: Campaign, a: float) -> dict[str, Real]:
     }
 
 
-def identify_as_the_paper(campaign: Campaign, added: Real, a: float, tracks: Tracks = "shared") -> Mapping[str, float]:
-    """Walk the paper's whole way: state matrices, eq. (18), then the parameters from M, C and K by least squares.
+def identify_by_paper_method(
+    campaign: Campaign, added: Real, a: float, tracks: Tracks = "shared"
+) -> Mapping[str, float]:
+    """Identify the parameters: state matrices, eq. (18), then least squares from M, C and K.
 
     Parameters
     ----------
@@ -157,6 +159,6 @@ def identify_as_the_paper(campaign: Campaign, added: Real, a: float, tracks: Tra
     mapping
         Value of each parameter by name.
     """
-    found = state_matrices(campaign, a)
+    matrices = state_matrices(campaign, a)
     loaded = next(load.name for load in campaign.loads if load != EMPTY)
-    return parameters_from_matrices(added_mass(found[EMPTY.name], found[loaded], added), tracks)
+    return parameters_from_matrices(added_mass(matrices[EMPTY.name], matrices[loaded], added), tracks)

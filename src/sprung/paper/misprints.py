@@ -1,4 +1,4 @@
-"""Places where the paper as printed cannot be right, each with the reason; numbers in reasons are computed here."""
+"""Errors in the printed paper, each with the reason; numbers in reasons are computed here."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ BUS_LOAD = Load(name="loaded", added=Added(mass=470, I_yy=1057.5, I_xx=339.6))
 @shown
 @dataclass(frozen=True, slots=True)
 class Misprint:
-    """Something in the paper that cannot stand as printed.
+    """An error in the printed paper.
 
     Attributes
     ----------
     where
         Equation, table or section.
     printed
-        What stands there.
+        Printed text.
     should_be
-        What must be meant.
+        Correct text.
     reason
-        Why.
+        Reason.
     computed
-        Whether the reason rests on numbers that are computed here. Otherwise it rests on reading: the authors of this
-        package had the paper as recognised text, in which a letter may be misread.
+        Whether the reason rests on numbers that are computed here, or else on reading. The paper was available as recognised
+        text, in which a letter may be misread.
     """
 
     where: str
@@ -44,7 +44,7 @@ class Misprint:
 
 
 def find_misprints() -> tuple[Misprint, ...]:
-    """List the paper's misprints in the order of its pages.
+    """Return the paper's misprints in the order of its pages.
 
     Returns
     -------
@@ -54,38 +54,38 @@ def find_misprints() -> tuple[Misprint, ...]:
 
 
 def table_2_misfits() -> dict[str, float]:
-    """Compute the rows of Table 2 whose error does not follow from their values, rounding allowed for.
+    """Return the rows of Table 2 whose printed error does not follow from the printed values within rounding.
 
     Returns
     -------
     dict
-        Name of the parameter and the error that its printed values make, %.
+        By parameter: error that follows from the printed values, %.
     """
-    found = {}
+    misfits = {}
     for name, (known, identified, printed) in TABLE_2.items():
         digits = 2 if known > 10 else 3
         rounding = 100 * 0.5 * 10.0**-digits / known + 0.001
         error = 100 * (identified / known - 1)
         if abs(error - printed) > rounding * (1 + 1e-9):
-            found[name] = error
-    return found
+            misfits[name] = error
+    return misfits
 
 
 def table_3_misfits() -> dict[str, float]:
-    """Compute the rows of Table 3 in which f_d = f_n √(1 - ζ²) does not hold, rounding allowed for.
+    """Return the rows of Table 3 in which f_d = f_n √(1 - ζ²) does not hold within rounding.
 
     Returns
     -------
     dict
-        Name of the mode and the damped frequency that its printed f_n and ζ make, Hz.
+        By mode: damped frequency that follows from the printed f_n and ζ, Hz.
     """
-    found = {}
+    misfits = {}
     for name, row in TABLE_3.items():
         damped = row.natural_frequency * np.sqrt(1 - row.damping_ratio**2)
         rounding = 1e-4 + row.natural_frequency * row.damping_ratio * 0.5e-4
         if abs(damped - row.damped_frequency) > rounding:
-            found[name] = float(damped)
-    return found
+            misfits[name] = float(damped)
+    return misfits
 
 
 def _equations() -> Iterator[Misprint]:
@@ -219,7 +219,7 @@ def _simulation() -> Iterator[Misprint]:
 
 
 def _one_digit_away(printed: float, meant: float) -> str:
-    """Replace the one digit of a printed number that brings it nearest to what it should be."""
+    """Return a printed number with the one digit replaced that brings it nearest to the correct value."""
     text = f"{printed:.2f}"
     places = [i for i, letter in enumerate(text) if letter.isdigit()]
     candidates = [text[:i] + digit + text[i + 1 :] for i in places for digit in "0123456789"]

@@ -1,4 +1,4 @@
-"""What the paper prints: Table 2 (simulation) and Table 3 (school bus), digit by digit, misprints included."""
+"""Tables 2 (simulation) and 3 (school bus) of the paper as printed, misprints included."""
 
 from __future__ import annotations
 

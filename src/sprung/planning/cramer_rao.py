@@ -26,7 +26,7 @@ _EXACT = 1e-12
 @shown
 @dataclass(frozen=True, eq=False)
 class CramerRaoBound:
-    """Cramér-Rao bound of one test.
+    """:term:`Cramér-Rao bound` of one test.
 
     Attributes
     ----------

@@ -51,7 +51,7 @@ class FlightLikelihood:
 
 @dataclass(frozen=True, eq=False)
 class FreeDecay:
-    """The free decay of one drop: the part of its recording in which the free-vibration model holds.
+    """The :term:`free decay` of one drop: the part of its recording in which the free-vibration model holds.
 
     Attributes
     ----------

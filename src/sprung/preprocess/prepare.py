@@ -48,7 +48,7 @@ class Prepared(NamedTuple):
 
 
 def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
-    """Correct the recordings of a campaign and extract their free decays.
+    """Correct the recordings of a campaign and extract their :term:`free decays <free decay>`.
 
     Parameters
     ----------

@@ -71,7 +71,7 @@ def draw_validation(validation: Validation) -> dict[str, str]:
         title = f"{result.name}, {validation.load}: modes of the body against amplitude"
         drawn["amplitude.svg"] = draw_sheet(title, [(AMPLITUDES, False)], pictures)
     names = file_names(["amplitude", *result.series])
-    next(names)  # taken by the drawing above
+    next(names)  # used by the drawing above
     for name, (drop, series) in zip(names, result.series.items(), strict=True):
         picture = motion_picture(drop, series, result.validation[drop])
         drawn[name] = draw_sheet(drop, [(_error_text(result.validation[drop]), False)], [picture])
@@ -86,18 +86,18 @@ def _error_text(drop: DropValidation) -> str:
 
 
 def _names(check: Check) -> Iterator[str]:
-    """Name each drop's drawing after its recording, no two alike."""
+    """Yield a unique file name for the drawing of each drop, after its recording."""
     return file_names([drop.title or str(PurePath(drop.file).with_suffix("")) for drop in check.drops])
 
 
 def file_names(drops: Iterable[str]) -> Iterator[str]:
-    """Name a drawing after each drop, no two alike."""
-    taken: set[str] = set()
+    """Yield a unique file name for the drawing of each drop."""
+    used: set[str] = set()
     for drop in drops:
         plain = re.sub(r'[\\/:*?"<>|\s]+', "_", drop).lstrip("._")
         name, count = f"{plain}.svg", 1
-        while name.lower() in taken:  # some file systems take A.svg for a.svg
+        while name.lower() in used:  # some file systems take A.svg for a.svg
             count += 1
             name = f"{plain}_{count}.svg"
-        taken.add(name.lower())
+        used.add(name.lower())
         yield name

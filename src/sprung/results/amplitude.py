@@ -21,6 +21,11 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
     ----------
     amplitudes
         From `amplitudes_of`.
+
+    Returns
+    -------
+    dict
+        Curves by the name of the mode.
     """
     return {
         mode.mode: {
@@ -36,7 +41,18 @@ def amplitude_document(amplitudes: Sequence[ModeAmplitude]) -> dict[str, Any]:
 
 
 def curve_document(curve: AmplitudeCurve) -> dict[str, list[float]]:
-    """Return the columns of a curve as lists by name."""
+    """Return a curve as plain lists.
+
+    Parameters
+    ----------
+    curve
+        Frequency and damping of a mode over its amplitude.
+
+    Returns
+    -------
+    dict
+        The columns of the curve by name, SI.
+    """
     return {name: values.tolist() for name, values in asdict(curve).items() if name != "name"}
 
 

@@ -82,8 +82,8 @@ class FitReport:
     method
         Estimator.
     iterations, converged, starts, starts_agreeing
-        Steps from the best start, whether the last step met the convergence criterion, number of starts, and number of starts
-        that reached the same optimum.
+        Steps from the best start, whether the last step met the convergence criterion, number of optimised starts, and how many
+        of them reached the same optimum. A direct start whose optimum leaves white noise is the only one.
     inflation
         Factor by which autocorrelated residuals, or drops that disagree, enlarged every variance; 1 for neither.
     inflated_by
@@ -122,3 +122,8 @@ class FitReport:
     misfit: dict[str, float]
     loglikelihood: float
     unknowns: int
+
+    @property
+    def starts_text(self) -> str:
+        """How many starts were optimised, and how many of them agree."""
+        return "one start" if self.starts == 1 else f"{self.starts_agreeing} of {self.starts} starts agree"

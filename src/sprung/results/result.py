@@ -149,12 +149,12 @@ class Result:
 
     @property
     def aic(self) -> float:
-        """Akaike's information criterion, 2 k - 2 ln L with k = ``fit.unknowns``, the number of estimated quantities."""
+        """:term:`Akaike's information criterion`, 2 k - 2 ln L with k = ``fit.unknowns`` estimated quantities."""
         return 2 * self.fit.unknowns - 2 * self.fit.loglikelihood
 
     @property
     def bic(self) -> float:
-        """Bayesian information criterion, k ln n - 2 ln L with n = ``fit.samples`` and k as in `aic`."""
+        """:term:`Bayesian information criterion`, k ln n - 2 ln L with n = ``fit.samples`` and k as in `aic`."""
         return self.fit.unknowns * math.log(self.fit.samples) - 2 * self.fit.loglikelihood
 
     def to_dataframe(self) -> pd.DataFrame:

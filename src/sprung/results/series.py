@@ -50,19 +50,34 @@ class Series:
 
 
 def npz_bytes(arrays: Mapping[str, NDArray[Any]]) -> bytes:
-    """Return the content of an .npz file of arrays by name."""
+    """Return the content of an .npz file.
+
+    Parameters
+    ----------
+    arrays
+        By name, of any shape and unit.
+
+    Returns
+    -------
+    bytes
+    """
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
 def arrays_of(series: Mapping[str, Series], recordings: Mapping[str, PlottedRecording]) -> dict[str, NDArray[Any]]:
-    """Return all series as arrays by name: ``drop/what``.
+    """Return all series as arrays.
 
     Parameters
     ----------
     series, recordings
         By the drop's name.
+
+    Returns
+    -------
+    dict
+        Arrays by name: ``drop/what``.
     """
     arrays: dict[str, NDArray[Any]] = {}
     for drop, fitted in series.items():

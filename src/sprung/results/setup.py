@@ -96,6 +96,10 @@ def setup_of(
         Everything that was known beforehand about the parameters of the model.
     options
         Options of `identify` by name; None for those left open.
+
+    Returns
+    -------
+    Setup
     """
     heights = {key: value for key, value in campaign.heights.by_key.items() if value is not None}
     return Setup(

@@ -1,6 +1,7 @@
 """Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
+from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
 from sprung.selection.stepwise import (
@@ -29,6 +30,7 @@ __all__ = [
     "fit_structure",
     "fit_term",
     "required_gain",
+    "score_terms",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_nonlinear_terms",

@@ -108,7 +108,7 @@ def fit_structure(
     sensors, known = structure.campaign.sensors, structure.known
     start = start_values(structure, before.parameters)
     if not structure.is_time_stepped:
-        fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough)
+        fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough, most=most)
         return fitted.after(before)
     states = states_by_coordinates(before.states if states is None else states, before.names, structure.names)
     fitted = fit_nonlinear(

@@ -24,7 +24,7 @@ from sprung.vehicle import EMPTY, Tracks
 @shown
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """Result of a cross-validation.
+    """Result of a :term:`cross-validation`.
 
     Attributes
     ----------
@@ -127,8 +127,8 @@ def validate(
     >>> max(drop.predicted_residual for drop in validation.result.validation.values()) < 1.05
     True
     """
-    found = identify_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
-    fitted, result = found.fitted, with_amplitudes(found, progress)
-    motions = body_motions(fitted.fit, fitted.prepared.decays, fitted.campaign.sensors)
+    run = identify_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
+    result = with_amplitudes(run, progress)
+    motions = body_motions(run.uncertainty, run.decays, run.campaign.sensors)
     amplitudes = result.amplitude
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)

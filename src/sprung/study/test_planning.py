@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from sprung.analysis import fit_campaign, result_of, to_design
+from sprung.analysis import AnalysisOptions, analyse, result_of, to_design
 from sprung.campaign import (
     DEFAULT_HEIGHT,
     Campaign,
@@ -157,13 +157,13 @@ def plan(
 
 def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
     """Identify a vehicle, and return the plan of the next measurement."""
-    fitted = fit_campaign(campaign, progress=progress)
-    result = result_of(fitted, progress=progress)
+    run = analyse(campaign, AnalysisOptions(), progress)
+    result = result_of(run)
     if result.verdict.state == "reject":
-        rate = float(np.median([decay.rate for decay in fitted.prepared.decays]))
+        rate = float(np.median([decay.rate for decay in run.decays]))
         return tabulate_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
     progress(Step("computing the bounds of the alternatives"))
-    return tabulate_alternatives(to_design(fitted), wanted)
+    return tabulate_alternatives(to_design(run), wanted)
 
 
 def _describes_vehicle(path: str | os.PathLike[str]) -> bool:

@@ -179,8 +179,8 @@ def _ground_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, 
 
 
 FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives)
-"""Dry friction with presliding: force F, N, and stiffness s at rest, N/m, after Dahl (Aerospace Corporation
-TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
+"""Dry friction with presliding: force F, N, and presliding stiffness s, N/m, after :term:`Dahl <Dahl model>` (Aerospace
+Corporation TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
 
 REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives)
 """Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""

@@ -111,7 +111,7 @@ class LinearModel:
         with 0 in front for a product of fewer than three; shape (product, 3).
     terms
         Coefficient of each product in M, C and K, SI: shape (product, 3, n, n) with n coordinates, or (product, model, 3, n, n)
-        of several models `stack`ed, whose matrices then have a leading axis.
+        of several models put together by `stack`, whose matrices then have a leading axis.
     elements
         The elements it was compiled from; none for several models.
     """

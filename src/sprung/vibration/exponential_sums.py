@@ -126,7 +126,7 @@ def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> 
     Returns
     -------
     ndarray
-        In the unit of the values, shape (block, channel, BLOCK).
+        In the unit of the values, shape (block, channel, BLOCK_LENGTH).
     """
     channels, samples = values.shape
     count, rest = divmod(samples, BLOCK_LENGTH)
@@ -147,9 +147,9 @@ def correlate_with_exponentials(
 
     Parameters
     ----------
-    blocked
+    padded_blocks
         Records cut by `split_into_blocks`, one after the other, those of one group beside each other, of any one
-        unit, shape (block, channel, BLOCK).
+        unit, shape (block, channel, BLOCK_LENGTH).
     counts
         Number of blocks of each record, shape (record,).
     exponent

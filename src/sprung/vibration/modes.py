@@ -110,7 +110,7 @@ class Mode:
 
 
 def modal_assurance_criterion(one: ArrayLike, other: ArrayLike) -> Real:
-    """Return the modal assurance criterion of shapes, |u·v|²/(|u|²|v|²), independent of their lengths and phases.
+    """Return the :term:`modal assurance criterion` of shapes, |u·v|²/(|u|²|v|²), independent of their lengths and phases.
 
     Parameters
     ----------

@@ -103,7 +103,7 @@ class Rule:
         Its meaning.
     label
         Above a vertical line in the first panel, in the legend for a horizontal one; empty for none.
-    lying
+    horizontal
         Whether it is horizontal.
     dashed
         Whether it is dashed.
@@ -177,7 +177,7 @@ class Picture:
         The horizontal axis.
     panels
         The first on top.
-    told
+    description
         Content in a sentence, for screen readers.
     zoomable
         Whether the script of the page offers zoom, cursor and channel selection.

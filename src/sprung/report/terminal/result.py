@@ -136,7 +136,7 @@ def fit_line(result: Result) -> RenderableType:
     extras = f", with {', '.join(fit.model)}" if fit.model else ""
     text = (
         f"Fit: {fit.method}{extras}; {_count(fit.drops, 'drop')}, {fit.samples} samples, {fit.iterations} steps, "
-        f"{fit.starts_agreeing} of {fit.starts} starts agree."
+        f"{fit.starts_text}."
     )
     rejected = result.verdict.state == "reject"
     if fit.inflation > 1 and not rejected:

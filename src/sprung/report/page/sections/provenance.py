@@ -29,7 +29,7 @@ def settings(result: Result) -> Context:
             "fit",
             (
                 f"{fit.samples} samples, {fit.iterations} steps, {'converged' if fit.converged else 'not converged'}; "
-                f"{fit.starts_agreeing} of {fit.starts} starts agree"
+                f"{fit.starts_text}"
             ),
         ),
         ("standard uncertainties", _inflation_text(result)),

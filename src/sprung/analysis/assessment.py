@@ -1,0 +1,141 @@
+"""The last stage: validation, verdict and the result."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.metadata import version
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.analysis.analysis import Analysis
+from sprung.analysis.axes import about_roll_axis, axes_of
+from sprung.analysis.clocks import clock_reports
+from sprung.analysis.design import recommend_next_step
+from sprung.analysis.profiles import profiles_of
+from sprung.assessment import (
+    BodyMotion,
+    body_motions,
+    cross_validate_drops,
+    decide_verdict,
+    estimate_model_error,
+)
+from sprung.checking import check_prepared
+from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
+from sprung.faults import detect_drift
+from sprung.preprocess import FreeDecay
+from sprung.progress import Progress, Step
+from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
+from sprung.selection import ModelStructure, SelectionStep
+from sprung.vehicle import EMPTY, LOAD_MASS
+
+METHOD = "joint maximum likelihood"
+
+
+def assess(run: Analysis, progress: Progress) -> Analysis:
+    """Validate the fit, decide on the verdict, and put the result together."""
+    run = _with_drifts(run)
+    campaign, structure, fit, optimum = run.campaign, run.model.structure, run.uncertainty, run.fit
+    decays, suspected = run.decays, run.suspected
+    progress(Step("judging the fit: each drop predicted by the others"))
+    channels = tuple(sensor.channel for sensor in campaign.sensors)
+    looked_at = check_prepared(campaign, run.prepared._replace(decays=decays))
+    clocks = clock_reports(optimum, fit, decays)
+    estimates = to_estimates(fit, structure.known)
+    misfit = estimate_model_error(fit, decays)
+    motions = body_motions(fit, decays, campaign.sensors)
+    validated = cross_validate_drops(optimum, fit, decays, channels, motions)
+    verdict = decide_verdict(
+        fit, misfit, estimates.parameters, channels, [fault.what for fault in suspected], validated
+    )
+    rejected = verdict.state == "reject"
+    profiles = {} if rejected else profiles_of(run.options.profile, optimum, fit, structure.known, progress)
+    loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
+    result = Result(
+        version=version("sprung"),
+        tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
+        verdict=verdict,
+        next_step=None if rejected else recommend_next_step(run),
+        parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
+        derived={
+            **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
+            **about_roll_axis(fit, structure.heights),
+            **{name: estimate_of(fit, structure.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
+            **{name: found for name, found in profiles.items() if name not in estimates.parameters},
+        },
+        scale=estimates.scale,
+        unidentifiable=estimates.unidentifiable,
+        correlation=estimates.correlation,
+        modes={
+            load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
+            for load in loads
+        },
+        fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
+        drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
+        faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
+        validation=validated,
+        setup=setup_of(campaign, fit, structure.known, run.options.texts),
+        series={
+            decay.name: _series(decay, fitted, motion, channels)
+            for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)
+        },
+        recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
+    )
+    run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
+    return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _fit_report(
+    structure: ModelStructure,
+    why: str,
+    path: tuple[SelectionStep, ...],
+    fit: FitStatistics,
+    decays: Sequence[FreeDecay],
+    channels: Sequence[str],
+    misfit: tuple[NDArray[np.float64], NDArray[np.float64]],
+    optimum: FitResult,
+) -> FitReport:
+    return FitReport(
+        samples=sum(int(decay.usable.sum()) * decay.samples for decay in decays),
+        drops=len(decays),
+        noise=dict(zip(channels, fit.noise.tolist(), strict=True)),
+        model=structure.terms,
+        tracks=structure.tracks,
+        why=why,
+        axes=axes_of(structure.heights),
+        since="release" if structure.unilateral_tyres else "landing",
+        path=path,
+        method=METHOD,
+        iterations=fit.iterations,
+        converged=fit.converged,
+        starts=fit.starts,
+        starts_agreeing=fit.starts_agreeing,
+        inflation=fit.inflation,
+        inflated_by=fit.inflated_by,
+        most_coloured=None if fit.most_coloured is None else channels[fit.most_coloured],
+        misfit=dict(zip(channels, misfit[0].tolist(), strict=True)),
+        loglikelihood=optimum.absolute_loglikelihood,
+        unknowns=optimum.unknowns,
+    )
+
+
+def _series(decay: FreeDecay, fitted: NDArray[np.float64], motion: BodyMotion, channels: tuple[str, ...]) -> Series:
+    level = decay.values.mean(axis=1, keepdims=True)
+    body = motion.measured.astype(np.float32), motion.simulated.astype(np.float32)
+    return Series(channels, motion.time, decay.values, fitted + level, *body)
+
+
+def _reason(run: Analysis) -> str:
+    """Return what decided on the model, and how the flight was used."""
+    return "; ".join((run.model.reason, *run.remarks))
+
+
+def _with_drifts(run: Analysis) -> Analysis:
+    """Name the channels whose baseline drifts too little to spoil the fit, as far as that is not known."""
+    campaign, decays = run.campaign, run.decays
+    faults = [*campaign.faults, *(fault for decay in decays for fault in decay.faults)]
+    places = {fault.where for fault in faults if fault.code == "drift"}
+    named = {sensor.channel for sensor in campaign.sensors if any(sensor.channel in where for where in places)}
+    drifts = [fault for fault in detect_drift(decays, run.fit, campaign.sensors) if fault.where not in named]
+    return replace(run, campaign=replace(campaign, faults=(*campaign.faults, *drifts)))

@@ -1,0 +1,55 @@
+"""What was fitted as a test: what planning adds further drops to."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sprung.analysis.analysis import Analysis
+from sprung.campaign import DEFAULT_HEIGHT
+from sprung.vehicle import LOAD_MASS, parameter_names
+
+if TYPE_CHECKING:
+    from sprung.planning import PlannedTest
+
+_BEFORE_DECAY = 0.1
+"""s from the release to the decay in a usual drop, for planning further ones."""
+
+
+def to_design(run: Analysis) -> PlannedTest:
+    """Take what was fitted as a test to which others may be added, of the vehicle that was found as far as it is linear."""
+    from sprung.planning import (  # noqa: PLC0415 (only a plan needs it)
+        PlannedDrop,
+        completed_test,
+        setup_from_fit,
+    )
+
+    campaign, decays, fitted = run.campaign, run.decays, run.model.structure
+    structure = fitted.with_terms(fitted.linear_terms)
+    fit = run.uncertainty.only(parameter_names(structure.tracks, structure.terms))
+    setup = setup_from_fit(
+        fit,
+        structure.tracks,
+        structure.terms,
+        {name: one for name, one in structure.known.items() if not name.startswith(LOAD_MASS)},
+        campaign.sensors,
+        rate=float(np.median([decay.rate for decay in decays])),
+        duration=_BEFORE_DECAY + float(np.median([decay.samples / decay.rate for decay in decays])),
+        heights=structure.heights,
+        name=campaign.name,
+    )
+    used = {decay.file for decay in decays}
+    dropped = [
+        PlannedDrop(campaign.load(seen.drop.load), seen.wheels, seen.drop.height or DEFAULT_HEIGHT)
+        for seen in run.prepared.observations
+        if seen.recording.name in used
+    ]
+    return completed_test(setup, fit, dropped)
+
+
+def recommend_next_step(run: Analysis) -> str:
+    """Recommend what to measure next, in one sentence."""
+    from sprung.planning import next_step  # noqa: PLC0415 (only a plan needs it)
+
+    return next_step(to_design(run)).text

@@ -1,0 +1,140 @@
+"""The stages in which faults are isolated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sprung.analysis.analysis import MOST_RESTARTS, Analysis
+from sprung.campaign import Campaign
+from sprung.estimation import NEAR
+from sprung.faults import (
+    Consistency,
+    FaultIsolation,
+    Hypothesis,
+    Isolated,
+    consistency_of,
+    decays_without_wheel_sensors,
+    isolate,
+    reference_noise,
+    residual_table,
+)
+from sprung.progress import Progress, Step, silent
+from sprung.selection import TERMS, fit_structure, score_terms
+from sprung.vehicle import Tracks
+
+_MOST = 0.5
+"""Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
+
+_STEPS = 3
+
+
+def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
+    """Correct what explains the recordings wholly, before any further model term is tried."""
+    term, share = (None, 0.0) if _is_consistent(run) else _explaining_term(run)
+    if share > _MOST:
+        why = f"{_STEPS} steps with it explain {100 * share:.0f} % of the misfit"
+        return run.noted("isolate_evident_faults", f"{term} is tried first", why)
+    run = _with_isolated(run, progress)
+    found = _found(run)
+    if found is None or not found.is_explained:
+        return run
+    if any(one.remedy == "named" or not one.is_specific for one in found.hypotheses):
+        return run
+    return _corrected(run, found.hypotheses, "isolate_evident_faults")
+
+
+def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
+    """Correct what explains much of what no model term explains; what is ambiguous is only named."""
+    run = _with_isolated(run, progress)
+    found = _found(run)
+    if found is None or not found.hypotheses:
+        return run
+    named = tuple(one.fault for one in found.hypotheses if one.remedy == "named")
+    run = replace(run, suspected=tuple(dict.fromkeys((*run.suspected, *named))))
+    for fault in named:
+        run = run.noted("isolate_faults", f"suspected {fault.code} of {fault.where}", fault.what)
+    corrected = [one for one in found.hypotheses if one.remedy != "named"]
+    return _corrected(run, corrected, "isolate_faults") if corrected else run
+
+
+def _is_consistent(run: Analysis) -> bool:
+    """Whether the residuals of the present fit are noise alone."""
+    recordings = [decay.file for decay in run.decays]
+    return residual_table(recordings, run.decays, run.fit).is_explained(reference_noise(run.decays, run.fit))
+
+
+def _explaining_term(run: Analysis) -> tuple[str | None, float]:
+    """Return the most promising linear term, and the share of the misfit that it explains after a few Gauss-Newton steps.
+
+    The score test ranks the terms; where the fit is far from the recordings, it says little of how much they would gain.
+    """
+    if run.model.structure.is_time_stepped:
+        return None, 0.0
+    search, scores = score_terms(
+        run.model, run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
+    )
+    gains = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    term = max(gains, key=gains.__getitem__, default=None)
+    if term is None or gains[term] < search.required(term):
+        return None, 0.0
+    fit = fit_structure(search.with_terms([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
+    recordings = [decay.file for decay in run.decays]
+    table, noise = residual_table(recordings, run.decays, run.fit), reference_noise(run.decays, run.fit)
+    gain = table.cost - residual_table(recordings, run.decays, fit).cost
+    return term, gain / max(table.explicable(noise), 1.0)
+
+
+def _found(run: Analysis) -> Isolated | None:
+    """Return what was isolated in the present fit."""
+    return run.isolated[1] if run.isolated is not None and run.isolated[0] is run.fit else None
+
+
+def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
+    """Look for faults in the present fit, unless that was done, or corrected often enough."""
+    if len(run.corrected) >= MOST_RESTARTS or (run.isolated is not None and run.isolated[0] is run.fit):
+        return run
+    consistency = consistency_of(run.campaign, run.decays, run.fit)
+    if consistency == "consistent":
+        checked = replace(run, isolated=(run.fit, None))
+        return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
+    progress(Step("isolating faults"))
+    run, isolation = _with_isolation(run, consistency)
+    found = isolate(isolation, progress)
+    run = replace(run, isolated=(run.fit, found), fits=run.fits + found.fits)
+    faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "no fault"
+    explains = "explains the recordings" if found.is_explained else "explains a part of the recordings at most"
+    return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{found.fits} fits of hypotheses")
+
+
+def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, FaultIsolation]:
+    """Return the fit against which hypotheses are held, with the larger of the models that are open.
+
+    A wheel sensor at fault may have shown a wrong landing: where the fit does not describe the recordings, the decays begin
+    where they would without any, unless too little of the motion is left then to show what is wrong.
+    """
+    structure = run.model.structure
+    tracks: Tracks = "separate" if structure.tracks_open else structure.tracks
+    if consistency == "misfit":
+        run = replace(run, preparations=run.preparations + 1)
+        decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
+        if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
+            run = replace(run, fits=run.fits + 1)
+            isolation = FaultIsolation.of(run.campaign, decays, None, tracks, structure.linear_terms)
+            if not isolation.base.is_explained:
+                return run, isolation
+    is_same = tracks == structure.tracks and not structure.is_time_stepped
+    run = replace(run, fits=run.fits + (not is_same))
+    fit = run.fit if is_same else None
+    return run, FaultIsolation.of(run.campaign, run.decays, fit, tracks, structure.linear_terms)
+
+
+def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:
+    """Restart with what is wrong corrected or left out, and named."""
+    campaign: Campaign = run.campaign
+    for hypothesis in hypotheses:
+        if hypothesis.recording is None:  # a drop that is left out stays in the campaign, with its reason
+            campaign = hypothesis.correction.of_campaign(campaign)
+            campaign = replace(campaign, faults=(*campaign.faults, hypothesis.fault))
+    why = "; ".join(f"{one.fault.where}: {one.fault.what}" for one in hypotheses)
+    return run.restart(campaign, hypotheses, stage, why)

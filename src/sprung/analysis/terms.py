@@ -1,0 +1,49 @@
+"""The stages in which model terms are selected."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sprung.analysis.analysis import Analysis
+from sprung.analysis.baseline import described, from_contact, structures
+from sprung.progress import Progress
+from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms
+from sprung.selection import select_linear_terms as select_linear
+from sprung.selection import select_nonlinear_terms as select_nonlinear
+
+
+def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
+    """Select the terms that the matrices M, C and K hold."""
+    before = run.model
+    search = select_linear(replace(before, progress=progress))
+    if search.structure.names != before.structure.names:
+        search = from_contact(search)
+    return _with_search(run, before, search, "select_linear_terms")
+
+
+def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
+    """Fit the nonlinear terms that are requested, or select those that the recordings support."""
+    before, requested = replace(run.model, progress=progress), run.requested
+    if requested is not None and requested.is_nonlinear:
+        search = fit_forced_terms(before, requested)
+    else:
+        _, plain = structures(run)
+        search = select_nonlinear(before, replace(plain, carried_at=before.structure.carried_at))
+    if search.structure.is_nonlinear:
+        search = from_contact(search)
+    return _with_search(run, run.model, search, "select_nonlinear_terms")
+
+
+def _with_search(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:
+    steps = search.steps[len(before.steps) :]
+    fits = sum(step.fitted for step in steps) + (search.structure.names != before.structure.names)
+    run = replace(run, search=search, fits=run.fits + fits)
+    for step in steps:
+        run = run.noted(stage, f"{step.extra}: {_outcome(step)}", step.text)
+    return run.noted(stage, described(search), f"{fits} fits")
+
+
+def _outcome(step: SelectionStep) -> str:
+    if step.taken:
+        return "included"
+    return "fitted and not included" if step.fitted else "scored and not fitted"

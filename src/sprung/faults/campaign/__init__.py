@@ -1,0 +1,22 @@
+"""What may be wrong with a whole campaign: exchanged channels and loads, places of loads, high-passes, statements.
+
+One hypothesis per file. Where no closed form tells the residuals, they follow from one Gauss-Newton step; `confirm` fits.
+"""
+
+from sprung.faults.campaign.exchanged_channels import exchanged_channels
+from sprung.faults.campaign.exchanged_loads import exchanged_loads
+from sprung.faults.campaign.high_passes import high_passes
+from sprung.faults.campaign.known_quantity import known_quantities
+from sprung.faults.campaign.load_frame import load_frames
+from sprung.faults.campaign.load_position import load_position
+from sprung.faults.campaign.twist import twist
+
+__all__ = [
+    "exchanged_channels",
+    "exchanged_loads",
+    "high_passes",
+    "known_quantities",
+    "load_frames",
+    "load_position",
+    "twist",
+]

@@ -1,0 +1,28 @@
+"""Two channels that are exchanged in all drops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from sprung.errors import Fault
+from sprung.faults.correction import exchange_channels
+from sprung.faults.hypothesis import Hypothesis
+from sprung.faults.isolation import FaultIsolation
+
+
+def exchanged_channels(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+    """Exchange each two channels; the residuals follow from the direct estimate and one step."""
+    sensors = isolation.campaign.sensors
+    used = np.flatnonzero(isolation.base.table.counts.any(axis=0)).tolist()
+    for first, second in combinations(used, 2):
+        if sensors[first].on == sensors[second].on != "body":
+            continue
+        names = f"{sensors[first].channel}, {sensors[second].channel}"
+        what = "the two channels are exchanged, as the fit of all channels shows; corrected"
+        fault = Fault("exchanged", names, what, "Exchange the two in the campaign file, or their cables.")
+        correction = exchange_channels(first, second)
+        candidate = isolation.step(correction)
+        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate, is_rough=True)

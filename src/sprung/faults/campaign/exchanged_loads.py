@@ -1,0 +1,51 @@
+"""Loads that are stated for the wrong drops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from sprung.errors import Fault
+from sprung.faults.correction import relabel_loads
+from sprung.faults.hypothesis import Hypothesis
+from sprung.faults.isolation import CandidateFit, FaultIsolation
+
+_ROUNDS = 4
+
+_DO = "Correct load = ... of these drops in the campaign file."
+
+
+def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+    """Exchange the loads of all drops, and those of the drops that another load explains better."""
+    stated = {decay.file: decay.load for decay in isolation.decays}
+    loads = sorted(set(stated.values()))
+    if len(loads) < 2:
+        return
+    if len(loads) == 2:
+        opposite = dict(zip(loads, loads[::-1], strict=True))
+        correction = relabel_loads({file: opposite[load] for file, load in stated.items()})
+        candidate = isolation.step(correction)
+        what = f"loads '{loads[0]}' and '{loads[1]}' are exchanged in all drops; corrected"
+        fault = Fault("load-exchanged", f"all drops, {loads[0]} and {loads[1]}", what, _DO)
+        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate, is_rough=True)
+    labels, candidate = stated, isolation.base
+    for _ in range(_ROUNDS):
+        better = _most_likely_loads(isolation, candidate, loads)
+        if better == labels or len(set(better.values())) < 2:
+            break
+        labels = better
+        candidate = isolation.step(relabel_loads(labels), candidate.fit)
+    moved = {file: load for file, load in labels.items() if load != stated[file]}
+    if moved and len(moved) < len(stated):
+        what = "these drops move as if their loads were exchanged; corrected"
+        fault = Fault("load-exchanged", ", ".join(moved), what, _DO)
+        yield Hypothesis(fault, "corrected", relabel_loads(moved), candidate.table, candidate, is_rough=True)
+
+
+def _most_likely_loads(isolation: FaultIsolation, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:
+    """Return for each drop the load with which this vehicle explains it best."""
+    decays, weights = isolation.decays, candidate.fit.weights
+    costs = [candidate.residual_sums_of([replace(decay, load=load) for decay in decays]) @ weights for load in loads]
+    return {decay.file: loads[int(best)] for decay, best in zip(decays, np.argmin(costs, axis=0), strict=True)}

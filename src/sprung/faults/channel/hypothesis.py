@@ -1,0 +1,64 @@
+"""The record of a hypothesis about one channel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.errors import Fault
+from sprung.faults.channel_prediction import ChannelPrediction
+from sprung.faults.correction import Correction
+
+Real = NDArray[np.float64]
+
+Numbers = tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelHypothesis:
+    """What a channel may measure instead of what is stated, the same in all drops.
+
+    Attributes
+    ----------
+    code
+        Of the fault.
+    fault
+        Returns the fault, given the numbers and their standard uncertainties, without what is done about it.
+    residual
+        Residual of the channel, sum of squares of each decay, (m/s²)², shape (decay,).
+    correction
+        Returns what corrects the channel, given the numbers; None where nothing would, and the channel is left out.
+    numbers
+        What is estimated from the recordings: a gain, s, m or Hz.
+    stated
+        What the campaign file states of the numbers, where it states anything.
+    reading
+        What the channel reads over what it should, given the numbers.
+    free
+        How many numbers are estimated, where they are not listed.
+    """
+
+    code: str
+    fault: Callable[[Numbers, Numbers], Fault]
+    residual: Real
+    correction: Callable[[Numbers], Correction] | None = None
+    numbers: Numbers = ()
+    stated: Numbers = ()
+    reading: Callable[[Numbers], float] = lambda _: 1.0
+    free: int = 0
+
+
+def figures(number: float) -> str:
+    """Return a number with two significant digits."""
+    return f"{float(f'{number:.2g}'):g}"
+
+
+def stated_place(prediction: ChannelPrediction) -> str:
+    """Return where the campaign file puts the sensor, in words."""
+    if prediction.sensor.position is None:
+        return prediction.sensor.on or "a wheel"
+    x, y, _ = prediction.sensor.position
+    return f"x = {x:.2f} m, y = {y:.2f} m"

@@ -1,0 +1,47 @@
+"""A body sensor that sits elsewhere than is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from sprung.errors import Fault
+from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, stated_place
+from sprung.faults.channel_prediction import ChannelPrediction
+from sprung.faults.correction import Correction, describe_sensor
+
+_MIRRORED = 0.1
+"""Share of its distance from the centreline by which a place may miss the mirrored one."""
+
+
+def position(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
+    """Estimate the place on the body: the reading is linear in it."""
+    sensor = prediction.sensor
+    stated = sensor.position or (0.0, 0.0, 0.0)
+    code = "wrong-wheel" if sensor.position is None else "position"
+    origin = replace(sensor, on="body", position=(0.0, 0.0, stated[2]))
+    heave = prediction.row(origin) @ prediction.motion
+    rotation = np.stack([-prediction.motion[1], prediction.motion[2]])
+    place = np.linalg.lstsq(rotation.T, prediction.record - heave, rcond=None)[0]
+
+    def fault(numbers: Numbers, _: Numbers) -> Fault:
+        x, y = numbers
+        what = f"the channel shows the motion of the body at x = {x:.2f} m, y = {y:.2f} m, not at {stated_place(prediction)}"
+        if sensor.position is not None and np.hypot(x - stated[0], y + stated[1]) < _MIRRORED * abs(stated[1]):
+            what += ": left and right are exchanged"
+        return Fault(code, sensor.channel, what, "Measure the place of the sensor and correct it in the campaign file.")
+
+    def correction(numbers: Numbers) -> Correction:
+        x, y = numbers
+        return describe_sensor(prediction.channel, replace(origin, position=(x, y, stated[2])))
+
+    yield ChannelHypothesis(
+        code,
+        fault,
+        prediction.residual_of(heave + place @ rotation),
+        correction,
+        tuple(place.tolist()),
+        stated[:2] if sensor.position else (),
+    )

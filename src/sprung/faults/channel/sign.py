@@ -1,0 +1,25 @@
+"""A sensor that is mounted upside down, or whose polarity is inverted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sprung.errors import Fault
+from sprung.faults.channel.hypothesis import ChannelHypothesis
+from sprung.faults.channel_prediction import ChannelPrediction
+from sprung.faults.correction import scale_channel
+
+
+def sign(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
+    """Invert the polarity, unless gravity at rest shows that it is right."""
+    if not prediction.gravity_allows(-1.0):
+        return
+    what = "the polarity is inverted relative to the other channels"
+    do = "State the sensor the other way up in the campaign file, or turn it over."
+    fault = Fault("sign", prediction.sensor.channel, what, do)
+    yield ChannelHypothesis(
+        "sign",
+        lambda *_: fault,
+        prediction.residual_of(-prediction.stated),
+        lambda _: scale_channel(prediction.channel, -1.0),
+    )

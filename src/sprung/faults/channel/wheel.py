@@ -1,0 +1,29 @@
+"""A sensor that sits on another wheel than is stated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from sprung.errors import Fault
+from sprung.faults.channel.hypothesis import ChannelHypothesis, stated_place
+from sprung.faults.channel_prediction import ChannelPrediction
+from sprung.faults.correction import Correction, describe_sensor
+from sprung.vehicle import WHEELS
+
+
+def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
+    """Put the sensor on each other wheel."""
+    for station in WHEELS:
+        if station == prediction.sensor.on:
+            continue
+        sensor = replace(prediction.sensor, on=station, position=None)
+        what = f"the channel shows the motion of wheel {station}, not of {stated_place(prediction)}"
+        do = "Correct on = ... in the campaign file, or move the sensor."
+        fault = Fault("wrong-wheel", prediction.sensor.channel, what, do)
+        residual = prediction.residual_of(prediction.row(sensor) @ prediction.motion)
+        yield _on_wheel(fault, residual, describe_sensor(prediction.channel, sensor))
+
+
+def _on_wheel(fault: Fault, residual, correction: Correction) -> ChannelHypothesis:  # type: ignore[no-untyped-def]
+    return ChannelHypothesis("wrong-wheel", lambda *_: fault, residual, lambda _: correction)

@@ -1,0 +1,226 @@
+"""A channel beside the vehicle that was fitted to all other channels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.errors import Fault
+from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
+from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
+from sprung.faults.channel_prediction import ChannelPrediction
+from sprung.faults.consistency import NEGLIGIBLE, score_faults_of
+from sprung.faults.correction import mask_channel
+from sprung.faults.fault_scores import FaultScore
+from sprung.faults.hypothesis import Hypothesis
+from sprung.faults.isolation import CandidateFit, FaultIsolation
+from sprung.faults.residual_table import ResidualTable
+
+Real = NDArray[np.float64]
+
+_LONGEST_STEP = {"gain": 0.5, "late": 0.01, "position": 1.0, "corner": 1.0}
+"""By how much a number changes at once: a relative gain, s, m and Hz."""
+
+_SHARE = 0.5
+"""Share of a channel's energy that a hypothesis may leave for the vehicle to be fitted with it."""
+
+_SHIFT = 1.0
+"""Shift of a parameter with one standard uncertainty of a number, in its own, from which the channel is left out instead."""
+
+_CONVERGED = 0.1
+"""Gain in twice the log-likelihood below which the numbers have converged."""
+
+_REFITS = 2
+"""Fits in which the numbers of a hypothesis converge."""
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelDeletion:
+    """A channel that is left out of a fit.
+
+    Attributes
+    ----------
+    isolation
+        The campaign.
+    channel
+        Index of the channel.
+    candidate
+        The fit without it.
+    """
+
+    isolation: FaultIsolation
+    channel: int
+    candidate: CandidateFit
+
+    @property
+    def name(self) -> str:
+        """Of the channel."""
+        return self.isolation.campaign.sensors[self.channel].channel
+
+    @cached_property
+    def prediction(self) -> ChannelPrediction:
+        """The channel beside the motion of that vehicle."""
+        states = dict(zip((decay.file for decay in self.candidate.decays), self.candidate.fit.states, strict=True))
+        decays = [decay for decay in self.isolation.decays if decay.usable[self.channel] and decay.file in states]
+        base = self.isolation.base
+        rows = [self.isolation.recordings.index(decay.file) for decay in decays]
+        drift = base.table.residual[rows, self.channel] if base.drifting[self.channel] else None
+        return ChannelPrediction(
+            self.candidate, self.channel, decays, np.array([states[decay.file] for decay in decays]), drift
+        )
+
+    @property
+    def limit(self) -> ResidualTable:
+        """The residuals of all channels if this one measures any part of the motion, with any delay."""
+        return self.table(self.prediction.least_residual)
+
+    def table(self, residual: Real) -> ResidualTable:
+        """Return the residuals of all channels, given those of this one in each of its decays, shape (decay,)."""
+        rows = [self.isolation.recordings.index(decay.file) for decay in self.prediction.decays]
+        counts = self.isolation.base.table.counts[rows][:, [self.channel]]
+        return self.candidate.table.with_part(rows, [self.channel], residual[:, None], counts)
+
+    def hypotheses(self) -> Iterator[Hypothesis]:
+        """Yield what may be wrong with the channel, each with the residuals that it predicts."""
+        noise = float(self.isolation.noise.level[self.channel])
+        silent = flat(self.prediction, noise)
+        if silent is not None:
+            yield self._left_out(silent)
+            return
+        for kind in CHANNEL_HYPOTHESES:
+            for hypothesis in kind(self.prediction):
+                if hypothesis.correction is None:
+                    yield self._left_out(hypothesis)
+                elif hypothesis.residual.sum() < _SHARE * self.prediction.energy and _is_relevant(hypothesis):
+                    yield ChannelCorrection.of(self, hypothesis, hypothesis.numbers)
+
+    def _left_out(self, hypothesis: ChannelHypothesis, numbers: Numbers = (), stds: Numbers = ()) -> Hypothesis:
+        fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
+        return Hypothesis(
+            fault,
+            "left out",
+            mask_channel(self.channel),
+            self.table(hypothesis.residual),
+            self.candidate,
+            hypothesis.free + len(numbers),
+            is_specific=hypothesis.code not in ("unlike-others", "drift"),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelCorrection(Hypothesis):
+    """The hypothesis that a channel is put right by a correction, whose numbers follow from the recordings.
+
+    Attributes
+    ----------
+    deletion
+        The channel left out.
+    hypothesis
+        What the channel measures.
+    numbers
+        Their present values.
+    """
+
+    deletion: ChannelDeletion | None = None
+    hypothesis: ChannelHypothesis | None = None
+    numbers: Numbers = ()
+
+    @classmethod
+    def of(
+        cls,
+        deletion: ChannelDeletion,
+        hypothesis: ChannelHypothesis,
+        numbers: Numbers,
+        stds: Numbers = (),
+        candidate: CandidateFit | None = None,
+    ) -> ChannelCorrection:
+        """Correct a channel; without a candidate fit the residuals are those predicted."""
+        assert hypothesis.correction is not None  # noqa: S101 (asked by the caller; for the type checker)
+        table = deletion.table(hypothesis.residual)
+        if candidate is not None:
+            # The residuals count in the units of the channel as it was recorded.
+            rows, counts = range(len(deletion.isolation.recordings)), candidate.table.counts[:, [deletion.channel]]
+            residual = hypothesis.reading(numbers) ** 2 * candidate.table.residual[:, [deletion.channel]]
+            table = candidate.table.with_part(rows, [deletion.channel], residual, counts)
+        return cls(
+            with_action(hypothesis.fault(numbers, stds), "corrected"),
+            "corrected",
+            hypothesis.correction(numbers),
+            table,
+            candidate or deletion.candidate,
+            len(numbers),
+            deletion=deletion,
+            hypothesis=hypothesis,
+            numbers=numbers,
+        )
+
+    def confirm(self, isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
+        """Fit the campaign with the channel corrected, and its numbers along with it.
+
+        Parameters
+        ----------
+        isolation
+            The campaign.
+
+        Returns
+        -------
+        hypothesis
+            None where the channel is what is stated; the channel left out where the parameters depend on its numbers.
+        fits
+            How many were made.
+        """
+        deletion, hypothesis = self.deletion, self.hypothesis
+        assert deletion is not None and hypothesis is not None and hypothesis.correction is not None  # noqa: S101, PT018
+        numbers, scores = self.numbers, list[FaultScore]()
+        candidate = isolation.fit(self.correction, self.candidate.fit)
+        fits = 1
+        while numbers:
+            every = score_faults_of(candidate.campaign, candidate.decays, candidate.fit)
+            scores = sorted(
+                (score for score in every if (score.kind, score.where) == (hypothesis.code, deletion.name)),
+                key=lambda score: score.axis,
+            )
+            if all(score.gain < _CONVERGED for score in scores):
+                break
+            numbers = improved(hypothesis.code, numbers, scores)
+            if fits > _REFITS:
+                break
+            candidate = isolation.fit(hypothesis.correction(numbers), candidate.fit)
+            fits += 1
+        if not _is_relevant(hypothesis, numbers):
+            return None, fits
+        stds = tuple(score.std for score in scores)
+        confirmed = ChannelCorrection.of(deletion, hypothesis, numbers, stds, candidate)
+        if max((score.max_parameter_shift for score in scores), default=0.0) < _SHIFT:
+            return confirmed, fits
+        fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
+        return Hypothesis(
+            fault, "left out", mask_channel(deletion.channel), confirmed.table, deletion.candidate, len(numbers)
+        ), fits
+
+
+def improved(code: str, numbers: Numbers, scores: Sequence[FaultScore]) -> Numbers:
+    """Return the numbers of a hypothesis after one step by their scores."""
+    steps = {score.axis: score.value for score in scores}
+    unit = numbers[0] if code == "gain" else 1.0  # a score is of the gain that remains
+    longest = _LONGEST_STEP.get(code, 0.0)
+    return tuple(
+        number + unit * float(np.clip(steps.get(axis, 0.0), -longest, longest)) for axis, number in enumerate(numbers)
+    )
+
+
+def with_action(fault: Fault, action: str) -> Fault:
+    """Return a fault with what was done about it."""
+    return replace(fault, what=f"{fault.what}; {action}")
+
+
+def _is_relevant(hypothesis: ChannelHypothesis, numbers: Numbers | None = None) -> bool:
+    """Whether the numbers differ from the stated ones by more than is negligible."""
+    if not hypothesis.stated:
+        return True
+    distance = np.abs(np.subtract(hypothesis.numbers if numbers is None else numbers, hypothesis.stated))
+    return float(distance.max()) >= NEGLIGIBLE.get(hypothesis.code, 0.0)

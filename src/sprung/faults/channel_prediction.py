@@ -1,0 +1,188 @@
+"""A channel beside its prediction from the motion of a vehicle that was fitted without it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+from scipy.signal import correlate
+
+from sprung.faults.isolation import CandidateFit
+from sprung.preprocess import FreeDecay
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Rows, Sensor
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+_LATEST = 0.05
+"""s by which a channel may be late."""
+
+_STEPS = 4
+"""Steps in which a delay settles."""
+
+_OFFSET = 0.1
+"""Offset of a sensor over gravity up to which its reading at rest still tells its gain."""
+
+_CORNERS = np.concatenate([[0.0], np.geomspace(0.01, 5.0, 40)])
+"""Corners of a high-pass that are tried, Hz."""
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelPrediction:
+    """A channel beside the motion of the vehicle, its decays end to end.
+
+    Attributes
+    ----------
+    candidate
+        The fit without the channel.
+    channel
+        Its index.
+    decays
+        With the channel in them.
+    states
+        {X, Ẋ} of the vehicle at the start of each, SI, shape (decay, state).
+    drift
+        Where the residual of the channel in a fit of all channels is a drift, its sum of squares in each decay, (m/s²)²,
+        shape (decay,); None where it is none.
+    """
+
+    candidate: CandidateFit
+    channel: int
+    decays: Sequence[FreeDecay]
+    states: Real
+    drift: Real | None = None
+
+    @property
+    def sensor(self) -> Sensor:
+        """Its sensor, as stated."""
+        return self.candidate.campaign.sensors[self.channel]
+
+    @cached_property
+    def record(self) -> Real:
+        """The record, less the mean of each decay, m/s², shape (sample,)."""
+        return np.concatenate([_centred(decay.values[self.channel]) for decay in self.decays])
+
+    @cached_property
+    def motion(self) -> Real:
+        """Accelerations of the coordinates, shape (coordinate, sample)."""
+        return self.delayed_motion(0.0)[0]
+
+    @cached_property
+    def energy(self) -> float:
+        """Sum of squares of the record, (m/s²)²."""
+        return float(self.record @ self.record)
+
+    @cached_property
+    def _first(self) -> NDArray[np.int64]:
+        return np.cumsum([0, *(decay.samples for decay in self.decays)])[:-1]
+
+    @cached_property
+    def _waves(self) -> list[tuple[Complex, Complex, Complex]]:
+        """For each decay its poles, the accelerations of the coordinates in each mode, and e^{λt}."""
+        solved = {
+            load: np.linalg.eig(self.candidate.models[load].matrices(self.candidate.fit.values).state)
+            for load in {decay.load for decay in self.decays}
+        }
+        waves = []
+        for decay, state in zip(self.decays, self.states, strict=True):
+            poles, right = solved[decay.load]
+            amplitudes = right[len(poles) // 2 :] * (poles * np.linalg.solve(right, state.astype(np.complex128)))
+            waves.append((poles, amplitudes, np.exp(poles[:, None] * (np.arange(decay.samples) / decay.rate))))
+        return waves
+
+    @cached_property
+    def stated(self) -> Real:
+        """What the channel should read as stated, m/s², shape (sample,)."""
+        stated: Real = self.row(self.sensor) @ self.motion
+        return stated
+
+    @property
+    def gain(self) -> float:
+        """What the channel reads over what it should."""
+        return float(self.record @ self.stated) / max(float(self.stated @ self.stated), np.finfo(float).tiny)
+
+    def gravity_allows(self, gain: float) -> bool:
+        """Whether the reading at rest agrees with a gain: a sensor that shows gravity shows it with the same gain."""
+        levels = [decay.rest.level[self.channel] for decay in self.decays]
+        level = float(np.median(levels)) / STANDARD_GRAVITY
+        if not np.isfinite(level) or abs(level) < _OFFSET * abs(gain):  # AC-coupled, zeroed at rest, or no rest
+            return True
+        return abs(gain - level) < _OFFSET * max(abs(gain), 1.0)
+
+    def delayed_motion(self, delay: float) -> tuple[Real, Real]:
+        """Return the accelerations that a channel with a delay, s, shows, and their rates; shape (coordinate, sample) each."""
+        parts = []
+        for poles, amplitudes, waves in self._waves:
+            turned = amplitudes * np.exp(-poles * delay)
+            parts.append(_centred((np.concatenate([turned, turned * poles]) @ waves).real))
+        accelerations, rates = np.split(np.hstack(parts), 2)
+        return accelerations, rates
+
+    def row(self, sensor: Sensor) -> Real:
+        """Return the row of the coordinates that a sensor measures, shape (coordinate,)."""
+        of_sensor: Real = Rows.of([sensor.row], self.candidate.fit.names).at(self.candidate.fit.values)[0]
+        return of_sensor
+
+    def residual_of(self, predicted: Real) -> Real:
+        """Return the residual sum of squares of a predicted record in each decay, (m/s²)², shape (decay,)."""
+        residual: Real = np.add.reduceat((self.record - predicted) ** 2, self._first)
+        return residual
+
+    @cached_property
+    def least_residual(self) -> Real:
+        """Residual where the channel may measure any part of the motion, and be delayed, (m/s²)², shape (decay,)."""
+        both = np.concatenate(self.delayed_motion(0.0))
+        return self.residual_of(np.linalg.lstsq(both.T, self.record, rcond=1e-9)[0] @ both)
+
+    def delay(self, row: Real) -> float:
+        """Return the delay of the channel, s, if it measures this row."""
+        stated, rate = row @ self.motion, self.decays[0].rate
+        ends = [*self._first[1:].tolist(), self.record.size]
+        most = min(int(_LATEST * rate), min(decay.samples for decay in self.decays) - 1)
+        alike = np.zeros(2 * most + 1)
+        for begin, end in zip(self._first.tolist(), ends, strict=True):
+            product = correlate(self.record[begin:end], stated[begin:end], mode="full", method="fft")
+            middle = end - begin - 1
+            alike += product[middle - most : middle + most + 1]
+        late = float(np.argmax(alike) - most) / rate
+        for _ in range(_STEPS):
+            motion, faster = self.delayed_motion(late)
+            slope = -(row @ faster)
+            step = float((self.record - row @ motion) @ slope) / max(float(slope @ slope), np.finfo(float).tiny)
+            late = float(np.clip(late + np.clip(step, -2 / rate, 2 / rate), -2 * _LATEST, 2 * _LATEST))
+        return late
+
+    def through_high_pass(self, corner: float) -> Real:
+        """Return what the channel reads through a high-pass with this corner, Hz, in all.
+
+        What the high-pass remembers of the time before each decay goes as its exponential does, and is fitted.
+        """
+        row, record, fitted = self.row(self.sensor), iter(np.split(self.record, self._first[1:])), []
+        omega = 2 * np.pi * corner
+        undone = 2 * np.pi * (self.sensor.high_pass or 0.0)
+        for decay, (poles, amplitudes, waves) in zip(self.decays, self._waves, strict=True):
+            motion = _centred(((row @ amplitudes) * (poles + undone) / (poles + omega) @ waves).real)
+            fading = _centred(np.exp(-omega * np.arange(decay.samples) / decay.rate))
+            rest = float((next(record) - motion) @ fading) / max(float(fading @ fading), np.finfo(float).tiny)
+            fitted.append(motion + rest * fading)
+        return np.concatenate(fitted)
+
+    def corner(self) -> float:
+        """Return the corner of the high-pass, Hz, with which the channel is most likely; 0 for none."""
+
+        def cost(corner: float) -> float:
+            return float(self.residual_of(self.through_high_pass(corner)).sum())
+
+        best = int(np.argmin([cost(one) for one in _CORNERS.tolist()]))
+        between = _CORNERS[[max(best - 1, 0), min(best + 1, len(_CORNERS) - 1)]]
+        return float(minimize_scalar(cost, bounds=between.tolist(), method="bounded", options={"xatol": 1e-5}).x)
+
+
+def _centred(values: Real) -> Real:
+    centred: Real = values - values.mean(axis=-1, keepdims=True)
+    return centred

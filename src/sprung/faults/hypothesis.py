@@ -1,0 +1,109 @@
+"""Hypotheses: one thing that may be wrong, what corrects it, and which residuals the correction leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from sprung.errors import Fault
+from sprung.faults.correction import Correction
+from sprung.faults.isolation import CandidateFit, FaultIsolation
+from sprung.faults.residual_table import ResidualTable
+
+Remedy = Literal["corrected", "left out", "named"]
+"""Corrected in the campaign; left out of it; or only named."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """One thing that may be wrong.
+
+    Attributes
+    ----------
+    fault
+        What it is called.
+    remedy
+        What is done about it.
+    correction
+        Does it to a campaign.
+    table
+        The residuals of all samples if it holds.
+    candidate
+        The fit from which they follow.
+    free
+        How many numbers are estimated from the recordings beside the parameters.
+    recording
+        The recording that is left out altogether; None where none is.
+    is_specific
+        Whether it says what is wrong, not only where.
+    is_rough
+        Whether the residuals are those of one step from far away, which a fit may leave much smaller.
+    """
+
+    fault: Fault
+    remedy: Remedy
+    correction: Correction
+    table: ResidualTable
+    candidate: CandidateFit
+    free: int = 0
+    recording: str | None = None
+    is_specific: bool = True
+    is_rough: bool = False
+
+    @property
+    def is_explained(self) -> bool:
+        """Whether the residuals are noise alone if it holds."""
+        return self.table.is_explained(self.candidate.noise)
+
+    def confirm(self, isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
+        """Fit the campaign with the correction.
+
+        Parameters
+        ----------
+        isolation
+            The campaign.
+
+        Returns
+        -------
+        hypothesis
+            With the residuals of that fit; None where nothing is wrong after all.
+        fits
+            How many were made.
+        """
+        if self.remedy != "corrected":
+            return self, 0
+        candidate = isolation.fit(self.correction, self.candidate.fit)
+        return replace(self, table=candidate.table, candidate=candidate, is_rough=False), 1
+
+    def score(self, overdispersion: float = 1.0) -> float:
+        """Return the information criterion (Schwarz, Ann. Stat. 6 (1978) 461); the smallest is the best."""
+        return self.table.cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
+
+    def concerns_same(self, other: Hypothesis) -> bool:
+        """Whether two hypotheses are about the same place, or one is among several of which the other says the same."""
+        if self.fault.where == other.fault.where:
+            return True
+        own, others = (frozenset(each.fault.where.split(", ")) for each in (self, other))
+        return self.fault.code == other.fault.code and (own <= others or others <= own)
+
+
+def best_of(hypotheses: Sequence[Hypothesis], alike: float) -> Hypothesis:
+    """Return the most likely hypothesis; of those of one place that are alike, the one with the fewest free numbers.
+
+    Parameters
+    ----------
+    hypotheses
+        At least one.
+    alike
+        Difference in twice the log-likelihood up to which two explain the recordings about as well.
+    """
+    best = min(hypotheses, key=lambda hypothesis: hypothesis.score())
+    same = [
+        hypothesis
+        for hypothesis in hypotheses
+        if hypothesis.fault.where == best.fault.where and hypothesis.score() < best.score() + alike
+    ]
+    return min(same, key=lambda hypothesis: (hypothesis.free, hypothesis.score()))

@@ -1,0 +1,255 @@
+"""Isolation of faults: all hypotheses ranked by what they predict, the best few fitted, the most likely one accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, twist
+from sprung.faults.campaign.known_quantity import known_quantities
+from sprung.faults.campaign.load_frame import load_frames
+from sprung.faults.channel_deletion import ChannelDeletion
+from sprung.faults.consistency import SHARE, SIGNIFICANT, consistency_of
+from sprung.faults.correction import Correction, exclude_drops, mask_channel
+from sprung.faults.drop import DROP_HYPOTHESES
+from sprung.faults.drop.deletion import DropDeletion
+from sprung.faults.hypothesis import Hypothesis, best_of
+from sprung.faults.isolation import FaultIsolation
+from sprung.progress import Progress, Step, silent
+
+_FEW = 0.85
+"""Share of a misfit that a first fault may leave while a second one is looked for."""
+
+_RIVALS = 0.9
+"""Share of the largest possible gain by leaving out a part, from which that part is examined although another one explains
+everything."""
+
+_MOST_PARTS, _MOST_FITS, _MOST_STATEMENTS, _MOST_FAULTS = 3, 3, 2, 3
+"""Parts that are left out by a fit, fits of hypotheses and of statements for each fault, and faults of a campaign."""
+
+_STATEMENT = 0.1
+"""Share of a misfit that a wrong statement may leave: it explains the recordings wholly or is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Isolated:
+    """Faults that were isolated.
+
+    Attributes
+    ----------
+    hypotheses
+        One after the other; empty where nothing explains the recordings.
+    is_explained
+        Whether the residuals are noise alone once they are corrected.
+    fits
+        How many fits were made.
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+    is_explained: bool
+    fits: int
+
+
+def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
+    """Isolate what is wrong, one fault after the other.
+
+    Parameters
+    ----------
+    isolation
+        The campaign with the fit that is inconsistent with it.
+    progress
+        Called with each step that begins.
+
+    Returns
+    -------
+    Isolated
+    """
+    base = isolation.base
+    if consistency_of(base.campaign, base.decays, base.fit) == "consistent":
+        return Isolated((), False, 0)
+    first, fits = isolation, 0
+    accepted: list[Hypothesis] = []
+    sufficient = 0
+    while len(accepted) < _MOST_FAULTS:
+        best, more = most_likely(isolation, progress)
+        fits += more
+        if best is None or (not best.is_specific and any(not one.is_specific for one in accepted)):
+            break
+        accepted.append(best)
+        if best.candidate.is_explained or best.candidate.misfit < SHARE * first.base.misfit:
+            sufficient = len(accepted)
+        if best.candidate.is_explained or best.remedy == "named":
+            break
+        isolation = isolation.after(best.candidate)
+    hypotheses = tuple(accepted[:sufficient])
+    if not first.base.is_explained and all(not hypothesis.is_specific for hypothesis in hypotheses):
+        fault = twist(first)
+        if fault is not None:
+            named = Hypothesis(fault, "named", Correction(), first.base.table, first.base)
+            return Isolated((named,), False, fits)
+    explained = bool(hypotheses) and hypotheses[-1].candidate.is_explained
+    return Isolated(hypotheses, explained, fits)
+
+
+def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple[Hypothesis | None, int]:
+    """Return the most likely hypothesis, and how many fits were made; None where none is convincing.
+
+    Where another hypothesis explains the recordings about as well, the best one is only named, and the other one with it.
+
+    Parameters
+    ----------
+    isolation, progress
+        As for `isolate`.
+    """
+    progress(Step("testing the statements about loads and masses"))
+    best, fits = _wrong_statement(isolation)
+    if best is not None:
+        return best, fits
+    ranked, made = _of_parts(isolation, progress)
+    ranked += [*load_position(isolation), *high_passes(isolation)]
+    best, ranked, more = _confirm_best(isolation, ranked)
+    fits += made + more
+    for exchanges in (exchanged_loads, exchanged_channels):
+        if best is not None and best.candidate.is_explained:
+            break
+        progress(Step("testing for exchanged loads and channels"))
+        other, others, made = _confirm_best(isolation, [*exchanges(isolation)])
+        fits += made
+        ranked += others
+        if other is not None and (best is None or other.score() < best.score()):
+            best = other
+    best = best or _left_over(isolation, ranked)
+    return (None if best is None else _with_rival(isolation, best, ranked)), fits
+
+
+def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
+    """Return the one statement about loads or masses that explains the recordings wholly, being otherwise."""
+    base = isolation.base
+    promising = sorted(
+        (
+            hypothesis
+            for hypothesis in (*load_frames(isolation), *known_quantities(isolation))
+            if hypothesis.candidate.misfit <= SHARE * base.misfit
+            and base.table.cost - hypothesis.table.cost > SIGNIFICANT
+        ),
+        key=lambda hypothesis: hypothesis.score(),
+    )
+    confirmed: list[Hypothesis] = []
+    for hypothesis in promising[:_MOST_STATEMENTS]:
+        other, _ = hypothesis.confirm(isolation)
+        gain = 0.0 if other is None else base.table.cost - other.table.cost
+        if other is None or other.candidate.misfit > _STATEMENT * base.misfit:
+            continue
+        if gain > SIGNIFICANT * other.candidate.overdispersion:
+            confirmed.append(other)
+    confirmed.sort(key=lambda hypothesis: hypothesis.score())
+    alike = SIGNIFICANT * confirmed[0].candidate.overdispersion if confirmed else 0.0
+    is_ambiguous = len(confirmed) > 1 and confirmed[1].score() - confirmed[0].score() < alike
+    return (confirmed[0] if confirmed and not is_ambiguous else None), len(promising[:_MOST_STATEMENTS])
+
+
+def _of_parts(isolation: FaultIsolation, progress: Progress) -> tuple[list[Hypothesis], int]:
+    """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
+    table = isolation.base.table
+    channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
+    parts: list[tuple[float, ChannelDeletion | DropDeletion, Correction]] = []
+    progress(Step("leaving out each channel and each drop"))
+    for channel in channels if len(channels) > 1 else ():
+        correction = mask_channel(channel)
+        deletion = ChannelDeletion(isolation, channel, isolation.delete(correction))
+        parts.append((table.cost - deletion.limit.cost, deletion, correction))
+    for drop in drops if len(drops) > 1 else ():
+        correction = exclude_drops(isolation.recordings[drop])
+        without = DropDeletion(isolation, drop, isolation.delete(correction), DROP_HYPOTHESES)
+        parts.append((table.cost - without.limit.cost, without, correction))
+    parts.sort(key=lambda part: part[0], reverse=True)
+    largest = parts[0][0] if parts else 0.0
+    hypotheses: list[Hypothesis] = []
+    fits = 0
+    for gain, part, correction in parts[:_MOST_PARTS]:
+        is_found = any(one.is_specific and one.is_explained for one in hypotheses)
+        if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * largest):
+            break
+        progress(Step(f"fitting without {part.name}"))
+        hypotheses += replace(part, candidate=isolation.fit(correction)).hypotheses()
+        fits += 1
+    return hypotheses, fits
+
+
+def _confirm_best(
+    isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]
+) -> tuple[Hypothesis | None, list[Hypothesis], int]:
+    """Fit the most likely specific hypotheses, one after the other, until one is convincing.
+
+    Returns
+    -------
+    hypothesis
+        The convincing one; None where none is.
+    hypotheses
+        All of them, those that were fitted with their fits.
+    fits
+        How many were made.
+    """
+    remaining, rest, fits = [one for one in hypotheses if _is_promising(isolation, one)], list(hypotheses), 0
+    while remaining and fits < _MOST_FITS:
+        best = best_of(remaining, SIGNIFICANT)
+        remaining.remove(best)
+        rest.remove(best)
+        confirmed, made = best.confirm(isolation)
+        fits += made
+        if confirmed is None:
+            continue
+        rest.append(confirmed)
+        if _is_convincing(isolation, confirmed, rest):
+            return confirmed, rest, fits
+    return None, rest, fits
+
+
+def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
+    """Whether a fit of a hypothesis may be convincing, by what it predicts."""
+    base = isolation.base
+    if not hypothesis.is_specific:
+        return False
+    if hypothesis.is_rough:
+        return not base.is_explained
+    explains = base.is_explained or hypothesis.table.misfit(hypothesis.candidate.noise) < _FEW * base.misfit
+    return explains and base.table.cost - hypothesis.score() > SIGNIFICANT
+
+
+def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+    """Whether a hypothesis explains much of the misfit, and more than chance does."""
+    base, overdispersion = isolation.base, hypothesis.candidate.overdispersion
+    gain = base.table.cost / overdispersion - hypothesis.score(overdispersion)
+    required = max(SIGNIFICANT, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
+    explains = base.is_explained or hypothesis.candidate.misfit < _FEW * base.misfit
+    # What cannot be named may be much more likely than the best name there is.
+    limit = hypothesis.score(overdispersion) - SIGNIFICANT
+    is_beaten = any(other.score(overdispersion) < limit for other in others if not other.is_specific)
+    return gain > required and explains and not is_beaten
+
+
+def _left_over(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
+    """Return what, left out, leaves noise alone, though nothing tells what is wrong with it."""
+    if isolation.base.is_explained:
+        return None
+    unnamed = [one for one in hypotheses if not one.is_specific and one.candidate.is_explained]
+    return min(unnamed, key=lambda hypothesis: hypothesis.score(), default=None)
+
+
+def _with_rival(isolation: FaultIsolation, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Hypothesis:
+    """Return the best hypothesis; only named, and together with another one that explains the recordings about as well."""
+    overdispersion = best.candidate.overdispersion
+    limit = best.score(overdispersion) + SIGNIFICANT
+    largest = np.inf if isolation.base.is_explained else max(SHARE * isolation.base.misfit, best.candidate.misfit)
+    rivals = [
+        other
+        for other in hypotheses
+        if not other.concerns_same(best) and other.score(overdispersion) < limit and other.candidate.misfit <= largest
+    ]
+    if not rivals:
+        return best
+    rival = min(rivals, key=lambda hypothesis: hypothesis.score(overdispersion))
+    fault = replace(best.fault, what=f"{best.fault.what}; or {rival.fault.where}: {rival.fault.what}")
+    return Hypothesis(fault, "named", Correction(), best.table, best.candidate, best.free, is_specific=False)

@@ -1,0 +1,145 @@
+"""The residuals of a fit by drop and channel, beside what the sensors read at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation import FitResult
+from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
+
+Real = NDArray[np.float64]
+
+_EXPLAINED = 1.5
+"""Residual of a channel in a drop over its noise at rest, up to which the records are explained."""
+
+_CHANCE = 4.0
+"""Standard errors by which a residual may exceed the noise at rest by chance."""
+
+_LEAST_NOISE = 1e-3
+"""ReferenceNoise as a part of a channel's signal, below which no model error matters: for records without any."""
+
+_FEW = 50
+"""Samples at rest below which they say nothing about the noise."""
+
+
+class ReferenceNoise(NamedTuple):
+    """What the sensors read at rest.
+
+    Attributes
+    ----------
+    level
+        m/s², root-mean-square, shape (channel,).
+    correlation
+        Samples of it that determine a variance as well as one independent one, shape (channel,).
+    samples
+        From how many that is known, shape (channel,).
+    """
+
+    level: Real
+    correlation: Real
+    samples: Real
+
+    def of_present(self, table: ResidualTable, other: ReferenceNoise) -> ReferenceNoise:
+        """Return the noise, that of channels without any sample in a table taken from another one."""
+        present = table.counts.any(axis=0)
+        return ReferenceNoise(*(np.where(present, own, before) for own, before in zip(self, other, strict=True)))
+
+
+@dataclass(frozen=True, eq=False)
+class ResidualTable:
+    """Residuals by drop and channel.
+
+    Attributes
+    ----------
+    residual
+        Sums of squares, (m/s²)², shape (drop, channel); 0 for what is left out.
+    counts
+        Samples of each, 0 for what is left out.
+    """
+
+    residual: Real
+    counts: Real
+
+    @cached_property
+    def cost(self) -> float:
+        """Minus twice the log-likelihood with every channel's noise fitted, up to a constant."""
+        residual, counts = self.residual.sum(axis=0), self.counts.sum(axis=0)
+        there = counts > 0
+        return float(np.sum(counts[there] * np.log(np.maximum(residual[there] / counts[there], 1e-24))))
+
+    def explicable(self, noise: ReferenceNoise) -> float:
+        """Return what twice the log-likelihood would gain if nothing but noise were left."""
+        counts = self.counts.sum(axis=0)
+        return self.cost - float(np.sum(counts * np.log(noise.level**2)))
+
+    def ratio(self, noise: ReferenceNoise) -> Real:
+        """Return residual over noise, root-mean-square, of each drop and channel; 0 for what is left out."""
+        ratio: Real = np.sqrt(self.residual / np.maximum(self.counts, 1)) / noise.level
+        return ratio
+
+    def _excess(self, noise: ReferenceNoise) -> Real:
+        """Return the same ratio over its upper limit in noise alone."""
+        errors = noise.correlation * (0.5 / noise.samples + 0.5 / np.maximum(self.counts, 1))
+        excess: Real = self.ratio(noise) / (1 + _CHANCE * np.sqrt(errors))
+        return excess
+
+    def misfit(self, noise: ReferenceNoise) -> float:
+        """Return what the residuals are beyond noise, in twice the log-likelihood."""
+        return float(np.sum(self.counts * 2 * np.log(np.maximum(self._excess(noise), 1.0))))
+
+    def explained_channels(self, noise: ReferenceNoise) -> NDArray[np.bool_]:
+        """Of which channels the residuals are noise alone, shape (channel,)."""
+        beyond = np.minimum(self.ratio(noise) / _EXPLAINED, self._excess(noise))
+        return np.asarray(beyond.max(axis=0, initial=0.0) < 1)
+
+    def is_explained(self, noise: ReferenceNoise) -> bool:
+        """Whether the residuals are noise alone."""
+        return bool(self.explained_channels(noise).all())
+
+    def with_part(self, drops: Sequence[int], channels: Sequence[int], residual: Real, counts: Real) -> ResidualTable:
+        """Return the table with the residuals of some channels of some drops replaced; both of shape (drop, channel)."""
+        whole = ResidualTable(self.residual.copy(), self.counts.copy())
+        whole.residual[np.ix_(drops, channels)] = residual
+        whole.counts[np.ix_(drops, channels)] = counts
+        return whole
+
+
+def residual_table(recordings: Sequence[str], decays: Sequence[FreeDecay], optimum: FitResult) -> ResidualTable:
+    """Return the residuals of a fit; the rows are those of `recordings`, whether they were fitted or not."""
+    left = optimum.residual_sums
+    residual, counts = np.zeros((len(recordings), left.shape[1])), np.zeros((len(recordings), left.shape[1]))
+    for decay, of_decay in zip(decays, left, strict=True):
+        row = recordings.index(decay.file)
+        counts[row] = decay.usable * decay.samples
+        residual[row] = np.where(decay.usable, of_decay, 0.0)
+    return ResidualTable(residual, counts)
+
+
+def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> ReferenceNoise:
+    """Return what the sensors read at rest.
+
+    Where too little rest was recorded, noise is what of the residuals changes from one sample to the next.
+    """
+    samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
+    signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
+    left = optimum.residuals
+    noise = estimate_sensor_noise(decays, pool_moments(left))
+    few = noise.samples < _FEW
+    second_difference = (
+        np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
+    )
+    level = np.sqrt(np.where(few, second_difference, noise.variance) + noise.added)
+    level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)
+    return ReferenceNoise(level, np.where(few, 1.0, noise.per_independent), np.maximum(noise.samples, _FEW))
+
+
+def _energy(decay: FreeDecay) -> Real:
+    centred = decay.values - decay.values.mean(axis=1, keepdims=True)
+    energy: Real = np.nansum(centred**2, axis=1)
+    return energy

@@ -1,0 +1,177 @@
+"""The search for mistakes in the campaign file that the recordings show before anything is fitted."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from sprung.campaign import Campaign
+from sprung.errors import Fault, InputError, Problem
+from sprung.faults.consistency import SIGNIFICANT
+from sprung.faults.isolation import FaultIsolation
+from sprung.faults.statements.cause import CommonCause
+from sprung.faults.statements.exchanged_axes import exchanged_axes
+from sprung.faults.statements.exchanged_sides import exchanged_sides
+from sprung.faults.statements.mirrored_positions import mirrored_positions
+from sprung.faults.statements.other_origin import other_origin
+from sprung.faults.statements.undeclared_load import undeclared_loads
+from sprung.faults.statements.upside_down import upside_down
+from sprung.preprocess import FirstMotion, Prepared, is_first_motion_consistent, merge_dropped_wheels, prepare
+from sprung.progress import Progress, silent
+
+_HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
+"""In the order in which they are believed where the recordings cannot tell them apart."""
+
+_FEWEST = 3
+"""Sensors on the body that show how it turns."""
+
+
+class Examined(NamedTuple):
+    """A campaign whose statements were held against its recordings.
+
+    Attributes
+    ----------
+    campaign
+        With a common cause corrected and named, where there was one.
+    prepared
+        Its recordings, prepared.
+    undeclared
+        By the name of a recording why its drop cannot be used as it is declared: it moves like another mass.
+    """
+
+    campaign: Campaign
+    prepared: Prepared
+    undeclared: dict[str, Fault]
+
+
+def examine(campaign: Campaign, progress: Progress = silent) -> Examined:
+    """Hold what a campaign states against what its recordings show before anything is fitted.
+
+    Parameters
+    ----------
+    campaign
+        As it was read.
+    progress
+        Called with each step that begins.
+
+    Returns
+    -------
+    Examined
+
+    Raises
+    ------
+    InputError
+        If several mistakes explain the recordings that lead to different vehicles, and nothing tells which it is.
+    """
+    prepared = prepare(campaign, progress)
+    corrected = with_common_cause_corrected(campaign, prepared)
+    if corrected is not campaign:
+        prepared = prepare(corrected, progress)
+    return Examined(corrected, prepared, undeclared_loads(corrected, prepared))
+
+
+def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campaign:
+    """Correct the one mistake that explains why bodies and wheels do not move first where the campaign says.
+
+    Parameters
+    ----------
+    campaign
+        As it was read.
+    prepared
+        Its recordings, prepared.
+
+    Returns
+    -------
+    Campaign
+        The same object where the first motion is as stated, or where no single mistake explains it.
+
+    Raises
+    ------
+    InputError
+        If several mistakes explain it that lead to different vehicles, and the recordings cannot tell which it is.
+    """
+    wheelbase = _wheelbase(campaign)
+    if wheelbase is None or _consistent(campaign, prepared, wheelbase) is not False:
+        return campaign
+    if _one_drop_explains(campaign, prepared, wheelbase):
+        return campaign
+    explaining = []
+    for hypotheses in _HYPOTHESES:
+        for one in hypotheses(campaign, wheelbase):
+            again = prepared if one.changed.recordings == campaign.recordings else prepare(one.changed)
+            if _consistent(one.changed, again, wheelbase):
+                explaining.append(one)
+    if len(explaining) < 2:
+        return explaining[0].corrected if explaining else campaign
+    return _most_likely(campaign, explaining).corrected
+
+
+def _wheelbase(campaign: Campaign) -> float | None:
+    """Return the wheelbase, or else about how far the sensors are apart along the vehicle; None where too few have places."""
+    places = [one.position for one in campaign.sensors if one.on == "body"]
+    x = [place[0] for place in places if place is not None]
+    if len(x) < _FEWEST or len(x) < len(places) or any(one.on is None for one in campaign.sensors):
+        return None
+    return campaign.wheelbase.value if campaign.wheelbase is not None else (max(x) - min(x)) or None
+
+
+def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool | None:
+    """Say whether body, wheels and drops say the same of where the vehicle fell; None where they say nothing."""
+    motion = FirstMotion.of(campaign, prepared)
+    if motion.rises:
+        return False
+    places = [sensor.position[:2] for sensor in campaign.sensors if sensor.on == "body" and sensor.position is not None]
+    seen = [merge_dropped_wheels(*pair) for pair in zip(campaign.drops, motion.dropped, strict=True)]
+    if any(set(drop.wheels) != set(wheels) for drop, wheels in zip(campaign.drops, seen, strict=True)):
+        return False
+    return is_first_motion_consistent(motion, places, seen, wheelbase)
+
+
+def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool:
+    """Say whether all is consistent once the wheels of one drop are as seen: fewer statements than those of several sensors.
+
+    Such a drop is named and corrected on its own. A mistake with several sensors that agree among themselves is supposed only
+    where several drops show it.
+    """
+    seen = [
+        merge_dropped_wheels(*pair)
+        for pair in zip(campaign.drops, FirstMotion.of(campaign, prepared).dropped, strict=True)
+    ]
+    pairs = list(zip(campaign.drops, seen, strict=True))
+    if sum(set(drop.wheels) != set(wheels) for drop, wheels in pairs) != 1:
+        return False
+    drops = tuple(replace(drop, wheels=tuple(wheels)) for drop, wheels in pairs)
+    return _consistent(replace(campaign, drops=drops), prepared, wheelbase) is not False
+
+
+def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> CommonCause:
+    """Fit the campaign with each correction, and take the one with which the recordings are most likely."""
+    fitted = []
+    for one in explaining:
+        base = FaultIsolation.of(one.changed, prepare(one.changed).decays, None, "shared", ()).base
+        samples = max(float(base.table.counts.sum()), 1.0)
+        fitted.append((base.table.cost / samples, samples, base.overdispersion, one))
+    fitted.sort(key=lambda each: each[0])
+    best, samples, overdispersion, first = fitted[0]
+    alike = [one for cost, *_, one in fitted if (cost - best) * samples < SIGNIFICANT * overdispersion]
+    if len(alike) == 1:
+        return first
+    # Of what the recordings cannot tell apart, left and right of a vehicle that is alike on both sides is the same vehicle.
+    ordered = [one for one in explaining if one in alike]
+    first, *others = ordered
+    if all("left" in one.fault.do for one in ordered):
+        also = "; or ".join(one.fault.do.rstrip(".") for one in others)
+        return replace(
+            first, fault=replace(first.fault, do=f"{first.fault.do} The recordings cannot tell whether: {also}.")
+        )
+    raise InputError([_undecided(campaign, [one.fault for one in ordered])])
+
+
+def _undecided(campaign: Campaign, faults: Sequence[Fault]) -> Problem:
+    where = "campaign" if campaign.path is None else campaign.path.name
+    found = "; or ".join(f"{fault.where}: {fault.what.rpartition('. ')[0] or fault.what}" for fault in faults)
+    expected = (
+        "places and wheels that agree with the first motion after the releases, which cannot tell which of these it is"
+    )
+    return Problem(where, found, expected, " Or: ".join(fault.do for fault in faults))
