@@ -20,7 +20,6 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.simulation import BlockSupport, simulate_nonlinear_drops
 from sprung.vehicle import WHEELS, Rows, Vehicle, coordinates, evaluate_quantity
 
 Real = NDArray[np.float64]
@@ -121,6 +120,8 @@ def _start(flight: Flight, vehicle: Vehicle, campaign: Campaign, rows: Real) -> 
     decay = flight.decay
     load, rate = campaign.load(decay.load), decay.rate
     heights = _HEIGHTS if flight.height is None else (flight.height,)
+    from sprung.simulation import BlockSupport, simulate_nonlinear_drops  # noqa: PLC0415 (only the fall needs it)
+
     blocks = [BlockSupport(load, flight.wheels or WHEELS, height) for height in heights]
     offset = flight.since % (1 / rate)
     before, samples = round((flight.since - offset) * rate), int(_LONG_ENOUGH * rate)

@@ -22,7 +22,6 @@ from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
 from sprung.estimation import FitResult
 from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
-from sprung.simulation import drop_from_blocks
 from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
@@ -96,6 +95,8 @@ def synchronise_at_release(
     -------
     Decay
     """
+    from sprung.simulation import drop_from_blocks  # noqa: PLC0415 (only several loggers need it)
+
     if seen.release is None:
         return decay
     parameters, height = with_separate_tracks(vehicle.parameters), drop.height or _LOW
@@ -188,6 +189,8 @@ def _flights(
     Shapes (channel, time) and (parameter, channel, time), m/s² and that per SI unit, in steps of `_FINE`.
     """
     names, samples = tuple(parameters), int(_FLIGHT / _FINE)
+
+    from sprung.simulation import drop_from_blocks  # noqa: PLC0415 (only several loggers need it)
 
     def flight(values: Mapping[str, float]) -> Real:
         vehicle = Vehicle.nearest(values, name="falling", **heights.by_key)

@@ -115,7 +115,7 @@ def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
 def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
     """Return the search with sensors that feel less of gravity where the body turns, if the recordings support it."""
     other = search.refit(replace(search.structure, gravity_leakage=True), most=_ITERATIONS_OF_SWITCH)
-    return other if other.gain_over(search) > search.required_of_switch else search
+    return other.refit(other.structure) if other.gain_over(search) > search.required_of_switch else search
 
 
 def fit_requested_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
