@@ -156,7 +156,7 @@ class Omissions:
     Examples
     --------
     >>> omissions = Omissions()
-    >>> with omissions.noting("The stabilisation diagram"):
+    >>> with omissions.record_failure("The stabilisation diagram"):
     ...     raise ValueError("no poles")
     >>> omissions.sentences
     ('The stabilisation diagram could not be drawn: no poles (ValueError).',)

@@ -26,7 +26,7 @@ def placeholder(what: str) -> str:
 
     Examples
     --------
-    >>> gap("m, front axle to rear axle")
+    >>> placeholder("m, front axle to rear axle")
     'TODO: m, front axle to rear axle'
     """
     return f"{MARK} {what}"

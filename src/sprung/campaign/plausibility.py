@@ -133,8 +133,8 @@ def explain_implausible(quantity: str, *values: float) -> tuple[str, str] | None
 
     Examples
     --------
-    >>> implausible("total_mass", 1551.8)
-    >>> implausible("total_mass", 1.5518)[1]
+    >>> explain_implausible("total_mass", 1551.8)
+    >>> explain_implausible("total_mass", 1.5518)[1]
     'Write it in kg: 1551.8 if it was stated in tonnes.'
     """
     limits = find_limits(quantity)

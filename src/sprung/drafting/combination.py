@@ -180,7 +180,9 @@ def _assign_stations(
     scored = sorted(
         (
             sum(
-                (i in fell) == (wheel in hint) for fell, hint in clues for i, wheel in zip(unknown, chosen, strict=True)
+                (i in dropped) == (wheel in hint)
+                for dropped, hint in clues
+                for i, wheel in zip(unknown, chosen, strict=True)
             ),
             chosen,
         )

@@ -12,11 +12,10 @@ from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import Isolated, isolate
 from sprung.faults.isolation import FaultIsolation, decays_without_wheel_sensors
 from sprung.faults.residual_table import reference_noise, residual_table
-from sprung.faults.statements.search import Examined, examine
+from sprung.faults.statements.search import examine
 
 __all__ = [
     "Consistency",
-    "Examined",
     "FaultIsolation",
     "Hypothesis",
     "Isolated",

@@ -54,8 +54,8 @@ class SampleTable:
 
     Examples
     --------
-    >>> from sprung.formats.sample_store import holding
-    >>> table = Table(("a", "b"), ("g", None), holding(np.arange(10.0).reshape(2, 5)), clock=100.0)
+    >>> from sprung.formats.sample_store import store_in_memory
+    >>> table = SampleTable(("a", "b"), ("g", None), store_in_memory(np.arange(10.0).reshape(2, 5)), clock=100.0)
     >>> table.samples, table.take([1]).tolist(), table.take([1, 0], 3, 5).tolist()
     (5, [[5.0, 6.0, 7.0, 8.0, 9.0]], [[8.0, 9.0], [3.0, 4.0]])
     >>> [(first, piece.tolist()) for first, piece in table.pieces([0], 2)]

@@ -121,7 +121,7 @@ class ModelStructure:
         return tuple(extra for extra in self.terms if extra in LINEAR_EXTRAS)
 
     def with_terms(self, terms: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
-        """Give the same with other extras, and other tracks."""
+        """Return the structure with other terms, and other tracks."""
         ordered = tuple(extra for extra in EXTRAS if extra in terms)
         return replace(self, tracks=tracks or self.tracks, terms=ordered)
 

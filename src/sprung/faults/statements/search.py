@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault, InputError, Problem
@@ -27,25 +26,7 @@ _FEWEST = 3
 """Sensors on the body that show how it turns."""
 
 
-class Examined(NamedTuple):
-    """A campaign whose statements were held against its recordings.
-
-    Attributes
-    ----------
-    campaign
-        With a common cause corrected and named, where there was one.
-    prepared
-        Its recordings, prepared.
-    undeclared
-        By the name of a recording why its drop cannot be used as it is declared: it moves like another mass.
-    """
-
-    campaign: Campaign
-    prepared: Prepared
-    undeclared: dict[str, Fault]
-
-
-def examine(campaign: Campaign, progress: Progress = silent) -> Examined:
+def examine(campaign: Campaign, progress: Progress = silent) -> tuple[Campaign, Prepared, dict[str, Fault]]:
     """Hold what a campaign states against what its recordings show before anything is fitted.
 
     Parameters
@@ -57,7 +38,12 @@ def examine(campaign: Campaign, progress: Progress = silent) -> Examined:
 
     Returns
     -------
-    Examined
+    campaign
+        With a common cause corrected and named, where there is one.
+    prepared
+        Its recordings, prepared.
+    undeclared
+        By the name of a recording why its drop cannot be used as it is declared: it moves like another mass.
 
     Raises
     ------
@@ -68,7 +54,7 @@ def examine(campaign: Campaign, progress: Progress = silent) -> Examined:
     corrected = with_common_cause_corrected(campaign, prepared)
     if corrected is not campaign:
         prepared = prepare(corrected, progress)
-    return Examined(corrected, prepared, undeclared_loads(corrected, prepared))
+    return corrected, prepared, undeclared_loads(corrected, prepared)
 
 
 def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campaign:
@@ -117,7 +103,7 @@ def _wheelbase(campaign: Campaign) -> float | None:
 
 
 def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool | None:
-    """Say whether body, wheels and drops say the same of where the vehicle fell; None where they say nothing."""
+    """Whether body, wheels and drops agree on the dropped wheels; None if they are not significant."""
     motion = FirstMotion.of(campaign, prepared)
     if motion.rises:
         return False
@@ -129,7 +115,7 @@ def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> boo
 
 
 def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool:
-    """Say whether all is consistent once the wheels of one drop are as seen: fewer statements than those of several sensors.
+    """Whether all is consistent if one drop has the observed wheels: fewer statements than those of several sensors.
 
     Such a drop is named and corrected on its own. A mistake with several sensors that agree among themselves is supposed only
     where several drops show it.
