@@ -129,7 +129,8 @@ def maximise(
             return Maximum(point, steps, converged=True)
         found = _gaining_step(problem, point, equations, damping, longest_step)
         if found is None:
-            return Maximum(point, steps, converged=equations.step()[1] < _STALLED)
+            # Not even the shortest step gains: without noise rounding leaves no more.
+            return Maximum(point, steps, converged=equations.step(_MOST_DAMPING)[1] < _STALLED)
         point, damping, gain = found
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
