@@ -120,3 +120,17 @@ def test_friction_is_selected() -> None:
     step = next(step for step in result.fit.path if step.extra == "friction")
     assert step.text.startswith("friction (Δ2lnL = ")
     assert "model terms supported by the data: friction" in result.fit.why
+
+
+def test_where_the_missing_term_is_forbidden_no_other_takes_its_place() -> None:
+    """Friction of 180 N without a term for it: other nonlinear terms leave too much of the misfit, and are refused."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 180.0, "F_r": 140.0, "s_f": 25e4, "s_r": 25e4})
+    drops = [{"wheels": wheels} for wheels in (["fl", "fr", "rl", "rr"], ["rl", "rr"], ["fl", "rl"])]
+    campaign = sprung.simulate(
+        car, drops=drops, rate=250, duration=1.4, noise=0.02, seed=1, known={"total_mass": car.total_mass}
+    )
+    without = replace(campaign, model=ModelChoice(forbid=("friction",)))
+    result = sprung.identify(without, fall=False)
+    assert result.verdict.state == "reject"
+    assert not {"friction", "rebound", "progressive", "bump-stop"} & set(result.fit.model)
+    assert any(step.fitted and not step.taken for step in result.fit.path if step.extra in ("rebound", "progressive"))
