@@ -21,7 +21,9 @@ Array = NDArray[Any]
 
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
 _SLOWEST = 0.9  # ratio of successive gains that is assumed where only one is known, and at the most
-_STALLED = 0.01  # expected gain, a tenth of a standard error, above which a point from which no step gains is not an optimum
+_STALLED = (
+    0.01  # expected gain, a tenth of a standard error, above which a point from which no step gains is not an optimum
+)
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 Point = TypeVar("Point")
