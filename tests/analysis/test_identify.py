@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.campaign import ModelChoice
 from sprung.errors import InputError
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -173,28 +172,6 @@ def test_knowledge_that_contradicts_the_recordings_is_doubted() -> None:
     result = sprung.identify(sprung.simulate(TABLE_1_CAR, loads=[load], noise=0.005, seed=3, known=wrong))
     assert result.verdict.state != "accept"
     assert any("total_mass" in reason for reason in result.verdict.reasons)
-
-
-def test_a_linear_extra_is_fitted_where_it_is_wanted() -> None:
-    stiff = Vehicle.from_parameters({**TABLE_1_CAR.parameters, "k_af": 9000.0, "k_ar": 4000.0})
-    campaign = sprung.simulate(stiff, noise=0.02, seed=4, known={"total_mass": stiff.total_mass})
-    result = sprung.identify(campaign, extras=["anti-roll"])
-    assert result.fit.model == ("anti-roll",)
-    for name in ("k_af", "k_ar", "k_sf"):
-        one = result.parameters[name]
-        assert one.value is not None
-        assert one.std is not None
-        assert abs(one.value - getattr(stiff, name)) < 4 * one.std
-
-
-def test_model_choices_that_clash_are_refused_together() -> None:
-    campaign = sprung.simulate(TABLE_1_CAR, seed=1, known={"t_f2": 0.7, "k_af": 100.0})
-    clashing = replace(campaign, model=ModelChoice(tracks="shared", extras=("frction",)))
-    with pytest.raises(InputError) as caught:
-        sprung.identify(clashing)
-    text = str(caught.value)
-    assert "t_f2" in text
-    assert "frction" in text
 
 
 def test_no_usable_drop_is_refused_with_every_reason() -> None:

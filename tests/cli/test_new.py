@@ -68,7 +68,7 @@ def test_it_never_overwrites_a_campaign_file(folder: Path, new: Run) -> None:
     again = run("new", folder)
     assert again.status == 2
     assert f"Continue with it (sprung check {folder / 'campaign.toml'})" in again.err
-    assert "move it away" in again.err
+    assert "remove it" in again.err
     assert (folder / "campaign.toml").read_bytes() == before
 
 

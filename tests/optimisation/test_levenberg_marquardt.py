@@ -55,6 +55,17 @@ class Wall(NamedTuple):
         return point + step, -np.inf if point[0] + step[0] > 1.0 else float(step[0])
 
 
+class Cliff(NamedTuple):
+    """Nothing exists but the start."""
+
+    def normal_equations(self, point: Real) -> NormalEquations:
+        del point
+        return NormalEquations(np.eye(1), np.full(1, 1e6), np.eye(1), np.eye(1))
+
+    def trial(self, point: Real, step: Real) -> tuple[Real, float]:
+        return point + step, -np.inf
+
+
 def test_the_end_of_a_curved_valley_is_found() -> None:
     found = maximise(Residuals("rosenbrock"), np.array([-1.2, 1.0]), tolerance=1e-12, damping=1e-3, most_steps=100)
     assert found.converged
@@ -104,10 +115,16 @@ def test_who_is_told_to_stop_has_not_converged() -> None:
     assert 0 < found.steps < 50
 
 
-def test_before_a_wall_it_ends_without_having_converged() -> None:
+def test_before_a_wall_it_ends() -> None:
     found = maximise(Wall(), np.array([0.0]), tolerance=1e-9, damping=1e-3, most_steps=1000)
-    assert not found.converged
+    assert found.steps < 1000
     assert 0.9 < found.point[0] <= 1.0
+
+
+def test_where_even_the_shortest_step_should_gain_but_does_not_it_has_not_converged() -> None:
+    """A gradient of 1e6 that leads nowhere: a wrong derivative, or a cliff."""
+    found = maximise(Cliff(), np.array([0.0]), tolerance=1e-9, damping=1e-3, most_steps=10)
+    assert (found.steps, found.converged) == (0, False)
 
 
 def test_without_any_direction_there_is_nothing_to_gain() -> None:

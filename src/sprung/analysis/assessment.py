@@ -132,7 +132,7 @@ def _reason(run: Analysis) -> str:
 
 
 def _with_drifts(run: Analysis) -> Analysis:
-    """Name the channels whose baseline drifts too little to spoil the fit, as far as that is not known."""
+    """Return the analysis with the faults of channels whose baseline drift does not affect the fit, unless already known."""
     campaign, decays = run.campaign, run.decays
     faults = [*campaign.faults, *(fault for decay in decays for fault in decay.faults)]
     places = {fault.where for fault in faults if fault.code == "drift"}

@@ -13,7 +13,7 @@ ABOUT_ROLL_AXIS = "I_xx_roll_axis"
 
 
 def axes_of(heights: Heights) -> str:
-    """Say about which axes I_xx and I_yy are.
+    """Return the axes to which I_xx and I_yy refer, as text.
 
     Parameters
     ----------
@@ -27,15 +27,15 @@ def axes_of(heights: Heights) -> str:
         )
     axis = "it" if heights.roll_axis_height is None else f"an axis at {heights.roll_axis_height:g} m"
     at_wheels = heights.carried_at == "wheels" and heights.wheel_height is not None
-    carried = f"at its wheels ({heights.wheel_height:g} m)" if at_wheels else "at the axis of roll"
+    carried_at = f"at its wheels ({heights.wheel_height:g} m)" if at_wheels else "at the axis of roll"
     return (
         f"I_xx and I_yy are about the centre of gravity of the sprung mass ({heights.cg_height:g} m above the ground); the "
-        f"body rolls about {axis} and is carried {carried}"
+        f"body rolls about {axis} and is carried {carried_at}"
     )
 
 
 def about_roll_axis(fit: FitStatistics, heights: Heights) -> dict[str, Estimate]:
-    """Give the sprung mass's roll inertia about the axis of roll, where that is another than the centre of gravity's.
+    """Return the roll inertia of the sprung mass about the roll axis, if this is not at the centre of gravity.
 
     Parameters
     ----------

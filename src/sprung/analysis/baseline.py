@@ -40,8 +40,8 @@ def structures(run: Analysis) -> tuple[ModelStructure, ModelStructure]:
     An engine that no sensor measures is put into a vehicle that is fitted already: nothing determines it before.
     """
     requested = choose_structure(run.campaign, run.options.tracks, run.options.terms)
-    begun = requested.with_terms(tuple(term for term in requested.linear_terms if term != ENGINE))
-    return requested, begun
+    baseline = requested.with_terms(tuple(term for term in requested.linear_terms if term != ENGINE))
+    return requested, baseline
 
 
 def fit_baseline_model(run: Analysis, decays: Sequence[FreeDecay], progress: Progress) -> FitResult:

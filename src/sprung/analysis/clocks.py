@@ -36,7 +36,7 @@ FLIGHTS_FITTED = "the flights that determined the clock offsets are fitted too"
 def clock_reports(
     optimum: FitResult, fit: FitStatistics, decays: Sequence[FreeDecay]
 ) -> dict[str, tuple[ClockReport, ...]]:
-    """Say how the clocks of several loggers stood, by the drop's file.
+    """Return the clock offsets of several loggers, by the drop's file.
 
     Parameters
     ----------
@@ -135,12 +135,12 @@ def _synchronised_at_release(
 
 
 def _moment(clock: LoggerClock, parameters: Mapping[str, float]) -> float:
-    """Give what a logger's clock showed at a moment that is the same for all, s."""
+    """Return the reading of a logger's clock at a common instant, s."""
     return clock.offset - clock.expected_delay(parameters)
 
 
 def _with_known_clocks(decay: FreeDecay, before: Sequence[LoggerClock], parameters: Mapping[str, float]) -> FreeDecay:
-    """Give a decay with what is known of its clocks, which were set by it as far as whole samples go.
+    """Return a decay with the clock offsets of its loggers, beyond whole samples.
 
     No sample was taken before the decay's clock says: what it must not hold, such as a tyre in the air, none of its channels
     does.

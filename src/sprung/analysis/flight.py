@@ -84,7 +84,7 @@ def _with_fall(run: Analysis, found: Sequence[Flight | None], progress: Progress
 
 
 def is_needed(fit: FitStatistics) -> bool:
-    """Say whether the decays alone leave a parameter so uncertain that the fall is needed.
+    """Whether the free decays leave a parameter so uncertain that the flight phase is needed.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def is_needed(fit: FitStatistics) -> bool:
 def _initial_states(
     campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]
 ) -> Real:
-    """Give {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
+    """Return {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
     states = optimum.states[:, : 2 * len(coordinates(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **choice.heights.by_key)
     rows = Rows.of([sensor.row for sensor in campaign.sensors], optimum.names).at(optimum.values)
@@ -126,9 +126,10 @@ def _start(flight: Flight, vehicle: Vehicle, campaign: Campaign, rows: Real) -> 
     offset = flight.since % (1 / rate)
     before, samples = round((flight.since - offset) * rate), int(_LONG_ENOUGH * rate)
     motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, before + samples, offset)
-    told = (decay.values - decay.rest.level[:, None])[:, :samples]
+    readings = (decay.values - decay.rest.level[:, None])[:, :samples]
     missed = [
-        np.nansum((told - (rows @ motion.acceleration)[:, before : before + told.shape[1]]) ** 2) for motion in motions
+        np.nansum((readings - (rows @ motion.acceleration)[:, before : before + readings.shape[1]]) ** 2)
+        for motion in motions
     ]
     best = motions[int(np.argmin(missed))]
     return np.concatenate([best.displacement[:, before], best.velocity[:, before]])

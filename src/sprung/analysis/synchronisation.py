@@ -76,7 +76,7 @@ _FARTHEST, _COARSE = 0.1, 0.001
 def synchronise_at_release(
     decay: FreeDecay, seen: DropObservation, drop: Drop, vehicle: Vehicle, load: Load, sensors: Sequence[Sensor]
 ) -> FreeDecay:
-    """Give a decay with the clocks that the release tells, and with what the flight tells; other clocks keep what they had.
+    """Return a decay with the clock offsets from the release and the information of its flight phase; other clocks are kept.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def synchronise_at_release(
     # In units of each channel's noise.
     noise = np.hypot(np.maximum(seen.rest.noise.std(axis=1), decay.resolution / 12**0.5), _COMPUTED)[:, None]
     values, flight, slopes = (recording.values - seen.rest.level[:, None]) / noise, flight / noise, slopes / noise
-    told: dict[int, _Moment] = {}
+    moments: dict[int, _Moment] = {}
     parts = {part.name: part for part in recording.parts}
     for number, clock in enumerate(decay.clocks):
         own = [channel for channel in clock.channels if decay.usable[channel]]
@@ -127,29 +127,29 @@ def synchronise_at_release(
             read, when = _as_taken(read, when, taken, 1 / parts[clock.name].rate)
         found = _moment_of(read, when, flight[own], slopes[:, own], begin)
         if found is not None:
-            told[number] = found
-    if not told:
+            moments[number] = found
+    if not moments:
         return decay
-    common = float(np.median([one.time for one in told.values()]))
+    common = float(np.median([one.time for one in moments.values()]))
     here = np.array(list(parameters.values()))
     clocks = tuple(
         replace(
             clock,
             # Expected at parameters of zero, so that the slopes alone lead to what is expected elsewhere.
-            delay=common - told[number].time + float(told[number].slopes @ here),
-            delay_std=told[number].std,
-            d_delay_d_parameter=dict(zip(parameters, (-told[number].slopes).tolist(), strict=True)),
+            delay=common - moments[number].time + float(moments[number].slopes @ here),
+            delay_std=moments[number].std,
+            d_delay_d_parameter=dict(zip(parameters, (-moments[number].slopes).tolist(), strict=True)),
         )
-        if number in told
+        if number in moments
         else clock
         for number, clock in enumerate(decay.clocks)
     )
     left, unseen = (
-        np.concatenate([getattr(one, name) for one in told.values()], axis=-1) for name in ("left", "unseen")
+        np.concatenate([getattr(one, name) for one in moments.values()], axis=-1) for name in ("left", "unseen")
     )
     gradient, information = unseen @ left, unseen @ unseen.T
     from_flight = FlightLikelihood(
-        tuple(parameters), here, gradient, information, float(left @ left), left.size - len(told)
+        tuple(parameters), here, gradient, information, float(left @ left), left.size - len(moments)
     )
     return replace(decay, clocks=clocks, flight=from_flight)
 
@@ -184,7 +184,7 @@ def _flights(
     sensors: Sequence[Sensor],
     heights: Heights,
 ) -> tuple[Real, Real]:
-    """Give what the sensors read after the release, and by how much more with each parameter.
+    """Return the readings after the release, and their derivatives by each parameter.
 
     Shapes (channel, time) and (parameter, channel, time), m/s² and that per SI unit, in steps of `_FINE`.
     """
@@ -205,7 +205,7 @@ def _flights(
 
 
 def _read(flight: Real, times: Real) -> Real:
-    """Give what sensors read at times after the release, s: nothing before it; shape (channel, time)."""
+    """Return the readings at times after the release, s, 0 before it; shape (channel, time)."""
     grid = _FINE * np.arange(flight.shape[1])
     return np.array([np.interp(times, grid, one, left=0.0) for one in flight])
 
@@ -225,7 +225,7 @@ def _begins(values: Real, times: Real, flight: Real, air: float) -> float | None
 
 
 def _as_taken(values: Real, times: Real, taken: Real, step: float) -> tuple[Real, Real]:
-    """Give back the samples that a logger took, and when, from those that a spline through them gives."""
+    """Return the samples of a logger and their times, from those that a spline through them gives."""
     near = taken[(taken > times[0] - _NEIGHBOURS * step) & (taken < times[-1] + _NEIGHBOURS * step)]
     made = CubicSpline(near, np.eye(len(near)))(times)
     within = (near >= times[0]) & (near <= times[-1])

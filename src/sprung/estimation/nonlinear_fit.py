@@ -47,7 +47,7 @@ def fit_nonlinear(
     states: Real,
     enough: float = CONVERGED,
     near: bool = False,
-    begun: bool = False,
+    beginning_only: bool = False,
     most: int = _MOST_STEPS,
     tilting: bool = False,
     progress: Progress = silent,
@@ -73,7 +73,7 @@ def fit_nonlinear(
         Expected gain in log-likelihood at which to stop.
     near
         Whether the start is near the optimum.
-    begun
+    beginning_only
         Whether the first second of each decay will do.
     most
         Steps at the most, of each fit on the way.
@@ -89,8 +89,10 @@ def fit_nonlinear(
     laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     steps, values = 0, dict(start)
-    stages = [([_beginning(decay) for decay in decays], max(enough, NEAR), _COARSE)] if begun or not near else []
-    if not begun:
+    stages = (
+        [([_beginning(decay) for decay in decays], max(enough, NEAR), _COARSE)] if beginning_only or not near else []
+    )
+    if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
         objective = _objective(part, models, sensors, states, tilting, longest_step)

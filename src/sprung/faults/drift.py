@@ -31,7 +31,7 @@ _MORE = 4.0
 
 
 def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequence[Sensor]) -> tuple[Fault, ...]:
-    """Name the channels whose level walks, by the slowest of what is left of them in all drops together.
+    """Return the channels with baseline drift, from the slowest residuals of all drops together.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
 
 
 def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Real]:
-    """Give the mean power, (m/s²)², of what is left: its slowest half periods, and faster ones; shape (channel,) each."""
+    """Return the mean power, (m/s²)², of the residuals: slowest half periods, and faster ones; shape (channel,) each."""
     slow = fast = drops = np.zeros(len(decays[0].values))
     for record in optimum.residuals:
         power = np.nan_to_num(dct(record, norm="ortho")[:, 1 : _LAST + 1]) ** 2
@@ -83,7 +83,7 @@ def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Rea
 
 
 def _size(decays: Sequence[FreeDecay], power: float) -> float:
-    """Give from where to where a straight line goes whose slowest half periods have this power, m/s²."""
+    """Return the range of a straight line whose slowest half periods have this power, m/s²."""
     # Of a line's sum of squares, N walk²/12, the first half period holds 96/π⁴, the second none.
     samples = float(np.median([decay.samples for decay in decays]))
     return float(np.sqrt(_SLOWEST * power * 12 / samples * np.pi**4 / 96))

@@ -128,7 +128,7 @@ def _changes(
 
 
 def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
-    """Give what a body sensor's row changes by, per metre forward and left; each of shape (coordinate,)."""
+    """Return the change of a body sensor's row per metre forward and left; each of shape (coordinate,)."""
     assert sensor.position is not None  # noqa: S101 (asked by the caller; for the type checker)
     x, y, z = sensor.position
     places = [(x, y, z), (x + 1, y, z), (x, y + 1, z)]
@@ -137,7 +137,7 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
 
 
 def _moved(load: Load, item: int, axis: int, heights: Heights, fit: FitResult) -> Real:
-    """Give what M changes by, per metre that an item is moved; shape (coordinate, coordinate)."""
+    """Return the change of M per metre that an item is moved; shape (coordinate, coordinate)."""
     sides = []
     for step in (-_NUDGE, _NUDGE):
         x, y, z = load.items[item].position or (0.0, 0.0, 0.0)

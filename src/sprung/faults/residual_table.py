@@ -95,8 +95,8 @@ class ResidualTable:
 
     def explained_channels(self, noise: ReferenceNoise) -> NDArray[np.bool_]:
         """Of which channels the residuals are noise alone, shape (channel,)."""
-        beyond = np.minimum(self.ratio(noise) / _EXPLAINED, self._excess(noise))
-        return np.asarray(beyond.max(axis=0, initial=0.0) < 1)
+        excess = np.minimum(self.ratio(noise) / _EXPLAINED, self._excess(noise))
+        return np.asarray(excess.max(axis=0, initial=0.0) < 1)
 
     def is_explained(self, noise: ReferenceNoise) -> bool:
         """Whether the residuals are noise alone."""

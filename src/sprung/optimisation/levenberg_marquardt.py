@@ -21,7 +21,9 @@ Array = NDArray[Any]
 
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
 _SLOWEST = 0.9  # ratio of successive gains that is assumed where only one is known, and at the most
-_STALLED = 1e-3  # expected gain above which a point from which no step gains is not an optimum
+_STALLED = (
+    0.01  # expected gain, a tenth of a standard error, above which a point from which no step gains is not an optimum
+)
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 Point = TypeVar("Point")
@@ -129,7 +131,8 @@ def maximise(
             return Maximum(point, steps, converged=True)
         found = _gaining_step(problem, point, equations, damping, longest_step)
         if found is None:
-            return Maximum(point, steps, converged=equations.step()[1] < _STALLED)
+            # Not even the shortest step gains: without noise rounding leaves no more.
+            return Maximum(point, steps, converged=equations.step(_MOST_DAMPING)[1] < _STALLED)
         point, damping, gain = found
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST

@@ -120,7 +120,7 @@ def fit_structure(
         states=states,
         enough=enough,
         near=states.shape[1] > 2 * len(coordinates(structure.names)),
-        begun=beginning_only,
+        beginning_only=beginning_only,
         most=most,
         tilting=structure.gravity_leakage,
         progress=progress,

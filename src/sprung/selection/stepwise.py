@@ -115,7 +115,7 @@ def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
 def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
     """Return the search with sensors that feel less of gravity where the body turns, if the recordings support it."""
     other = search.refit(replace(search.structure, gravity_leakage=True), most=_ITERATIONS_OF_SWITCH)
-    return other if other.gain_over(search) > search.required_of_switch else search
+    return other.refit(other.structure) if other.gain_over(search) > search.required_of_switch else search
 
 
 def fit_requested_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
@@ -155,18 +155,18 @@ def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSe
     terms
         Best first, by gain and plausibility of the size; what resembles other terms before them.
     """
-    worth: dict[str, float] = {}
+    priority: dict[str, float] = {}
     for term, (gain, size) in scores.items():
         row, required = TERMS[term], search.required(term)
         promising = gain * weight > required
         if promising and (row.is_linear or size >= row.negligible):
-            worth[term] = (gain - row.implausibility(size) * search.fit.disagreement) / required
+            priority[term] = (gain - row.implausibility(size) * search.fit.disagreement) / required
             continue
         against = f"its effect of {100 * size:.2g} % is negligible" if promising else ""
         search = search.recorded({term: gain / search.fit.disagreement}, False, False, against)
-    best = max(worth.values(), default=0.0)
-    first = {term: TERMS[term].resembles_others and worth[term] > _RESEMBLES * best for term in worth}
-    return search, sorted(worth, key=lambda term: (first[term], worth[term]), reverse=True)
+    best = max(priority.values(), default=0.0)
+    first = {term: TERMS[term].resembles_others and priority[term] > _RESEMBLES * best for term in priority}
+    return search, sorted(priority, key=lambda term: (first[term], priority[term]), reverse=True)
 
 
 def _first_accepted(search: ModelSearch, groups: Sequence[Sequence[str]]) -> tuple[ModelSearch, bool]:

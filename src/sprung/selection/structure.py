@@ -1,4 +1,4 @@
-"""Which model is fitted: what the user says, what follows from what is known, and what is left to the records."""
+"""Structure of the model: what the user requests, what follows from known quantities, and what the recordings decide."""
 
 from __future__ import annotations
 
@@ -36,26 +36,26 @@ class ModelStructure:
     Attributes
     ----------
     campaign
-        Of which loads.
+        The campaign, for its loads, sensors and heights.
     tracks
         Whether springs and dampers of an axle share their half-distance.
     terms
-        What it carries beyond the paper's seven degrees of freedom.
+        Model terms beside the paper's seven degrees of freedom.
     known
         Everything known beforehand about its parameters, the wheelbase included.
     tracks_open
-        Whether neither the user nor what is known says anything about the tracks, so that the records are to decide.
+        Whether the recordings decide about the tracks: neither the user nor a known half-distance does.
     open_terms
-        The extras about which the records are to decide.
+        Terms about which the recordings decide.
     gravity_leakage
         Whether the sensors tilt with the body, so that they feel the less of gravity the further it turns: an effect of the
         second order that only the model with forces beside it can show.
     unilateral_tyres
         Whether wheels may be off the ground, so that the ground is a force beside the others.
     stop_gap
-        Compression at which stops are thought to be met before a fit says so, m.
+        Compression at which bump stops are met, where a fit begins, m.
     engine_mounting
-        How an engine is thought to be mounted before a fit says so.
+        Mounting of an engine, where a fit begins.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
     """
@@ -74,7 +74,7 @@ class ModelStructure:
 
     @property
     def heights(self) -> Heights:
-        """How high things are, as far as it was measured."""
+        """Heights of the campaign, with the one at which the body is carried sideways."""
         return self.campaign.heights._replace(carried_at=self.carried_at)
 
     @property
@@ -86,7 +86,7 @@ class ModelStructure:
 
     @cached_property
     def linear_models(self) -> Mapping[str, LinearModel]:
-        """Equations of motion by load name, without the forces that no matrix carries."""
+        """Linear equations of motion by load name, without nonlinear forces."""
         elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         return {
             load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
@@ -95,7 +95,7 @@ class ModelStructure:
 
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
-        """Equations of motion by load name, with the forces that no matrix carries."""
+        """Equations of motion by load name, with nonlinear forces."""
         elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         forces = nonlinear_elements(self.tracks, self.terms) + (
             ground_contact_elements(self.terms) if self.unilateral_tyres else ()
@@ -107,21 +107,21 @@ class ModelStructure:
 
     @property
     def is_nonlinear(self) -> bool:
-        """Whether it has such forces."""
+        """Whether it has nonlinear terms."""
         return any(extra not in LINEAR_EXTRAS for extra in self.terms)
 
     @property
     def is_time_stepped(self) -> bool:
-        """Whether its motion has to be followed step by step."""
+        """Whether its motion has to be computed by time stepping."""
         return self.is_nonlinear or self.unilateral_tyres
 
     @property
     def linear_terms(self) -> tuple[str, ...]:
-        """Those of its extras that matrices carry."""
+        """Its terms that mass, damping and stiffness matrices carry."""
         return tuple(extra for extra in self.terms if extra in LINEAR_EXTRAS)
 
     def with_terms(self, terms: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
-        """Give the same with other extras, and other tracks."""
+        """Return the structure with other terms, and other tracks."""
         ordered = tuple(extra for extra in EXTRAS if extra in terms)
         return replace(self, tracks=tracks or self.tracks, terms=ordered)
 
@@ -129,7 +129,7 @@ class ModelStructure:
 def choose_structure(
     campaign: Campaign, tracks: Tracks | None = None, extras: tuple[str, ...] | None = None
 ) -> ModelStructure:
-    """Choose the model for a campaign, as far as nobody has to look into the records for it.
+    """Return the structure for a campaign, as far as it follows without the recordings.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def choose_structure(
 
     Returns
     -------
-    Choice
+    ModelStructure
 
     Raises
     ------

@@ -63,7 +63,7 @@ def with_places(
 
 
 def with_opposite_places(campaign: Campaign, opposite: Callable[[Place], Place]) -> tuple[Campaign, tuple[str, ...]]:
-    """Give each of the body's sensors the place of that on the opposite side; the opposite place where none is near it."""
+    """Exchange the places of opposite body sensors; a sensor without one near gets the opposite place."""
     places = [one.position for one in campaign.sensors if one.position is not None]
     nearest = {place: _nearest(opposite(place), places) for place in places}
     paired = all(
@@ -84,6 +84,6 @@ def with_stations(campaign: Campaign, other: Mapping[Wheel, Wheel]) -> tuple[Cam
     return replace(campaign, sensors=sensors), tuple(one.channel for one in campaign.sensors if one.on != "body")
 
 
-def told(channels: tuple[str, ...]) -> str:
-    """Name several channels."""
+def join_names(channels: tuple[str, ...]) -> str:
+    """Return the names of several channels as text."""
     return ", ".join(channels)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
-from sprung.faults.statements.cause import CommonCause, told, with_places
+from sprung.faults.statements.cause import CommonCause, join_names, with_places
 
 
 def exchanged_axes(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]:  # noqa: ARG001 (one form for all)
@@ -19,4 +19,4 @@ def exchanged_axes(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause
         )
         turned = "" if sign > 0 else " and change the sign of the new y"
         do = f"Exchange x and y in their position = [x, y, z]{turned} in the campaign file."
-        yield CommonCause(Fault("mirrored", told(channels), what, do), changed, len(channels))
+        yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))

@@ -103,7 +103,7 @@ def _wheelbase(campaign: Campaign) -> float | None:
 
 
 def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool | None:
-    """Say whether body, wheels and drops say the same of where the vehicle fell; None where they say nothing."""
+    """Whether body, wheels and drops agree on the dropped wheels; None if they are not significant."""
     motion = FirstMotion.of(campaign, prepared)
     if motion.rises:
         return False
@@ -115,7 +115,7 @@ def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> boo
 
 
 def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool:
-    """Say whether all is consistent once the wheels of one drop are as seen: fewer statements than those of several sensors.
+    """Whether all is consistent if one drop has the observed wheels: fewer statements than those of several sensors.
 
     Such a drop is named and corrected on its own. A mistake with several sensors that agree among themselves is supposed only
     where several drops show it.

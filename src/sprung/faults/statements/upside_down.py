@@ -8,7 +8,7 @@ from dataclasses import replace
 from sprung.campaign import Campaign
 from sprung.errors import Fault
 from sprung.faults.correction import scale_channel
-from sprung.faults.statements.cause import CommonCause, told
+from sprung.faults.statements.cause import CommonCause, join_names
 
 _GROUPS = (("all sensors", "body wheel"), ("all body sensors", "body"), ("all wheel sensors", "wheel"))
 
@@ -29,4 +29,4 @@ def upside_down(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]: 
             f"{name} read upside down: after the release they show a rise, where a vehicle falls. They were turned over"
         )
         do = f"{now} in the campaign file."
-        yield CommonCause(Fault("sign", told(channels), what, do), replace(changed), len(channels))
+        yield CommonCause(Fault("sign", join_names(channels), what, do), replace(changed), len(channels))

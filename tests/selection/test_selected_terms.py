@@ -1,0 +1,136 @@
+"""Model terms that are in the vehicle are selected, requested ones fitted, and what comes out is what was simulated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import sprung
+from sprung.campaign import ModelChoice
+from sprung.errors import InputError
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, parse_record
+
+HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held
+
+WITH_ENGINE = replace(
+    TABLE_1_CAR, m_e=160.0, k_e=160.0 * HANGING**2, c_e=0.14 * 160.0 * HANGING, x_e=0.1, name="car with an engine"
+)
+
+BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
+
+UNEVEN = {"y_s": 0.03, "d_ksf": 800.0, "d_csr": 400.0, "d_ktr": -5000.0}
+RIGID = {"n_r": 0.7, "m_xr": -12.0}
+LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
+
+
+@pytest.mark.parametrize("vehicle", [WITH_ENGINE, replace(WITH_ENGINE, x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2)])
+def test_an_engine_is_selected(vehicle: Vehicle) -> None:
+    campaign = sprung.simulate(vehicle, loads=[BALLAST], noise=0.02, seed=1)
+    result = sprung.identify(campaign)
+    assert result.fit.model == ("engine",)
+    assert result.verdict.state == "accept"
+    for name, value in vehicle.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - value) < 4 * found.std
+        assert found.std < 0.02 * max(abs(value), 1.0)
+    assert len(result.modes["empty"]) == 8
+
+
+def test_a_requested_engine_is_fitted() -> None:
+    campaign = sprung.simulate(WITH_ENGINE, loads=[BALLAST], noise=0.02, seed=1, duration=1.6)
+    assert sprung.identify(campaign, extras=["engine"]).fit.model == ("engine",)
+
+
+@pytest.mark.long
+def test_an_engine_is_fitted_beside_friction() -> None:
+    rubbing = replace(WITH_ENGINE, F_f=80.0, F_r=80.0, s_f=4e5, s_r=4e5)
+    drops = [
+        {"wheels": wheels, "load": load} for wheels in (["fl", "fr"], ["rl", "rr"]) for load in ("empty", "ballast")
+    ]
+    campaign = sprung.simulate(rubbing, loads=[BALLAST], drops=drops, noise=0.02, seed=1, rate=250, duration=1.6)
+    result = sprung.identify(campaign, extras=["engine", "friction"])
+    assert result.verdict.state == "accept"
+    for name in ("m_e", "k_e", "x_e", "F_f", "F_r", "m_s", "k_sf"):
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - rubbing.parameters[name]) < 4 * found.std
+
+
+def test_a_body_that_could_carry_no_usual_engine_is_identified() -> None:
+    # Its mass sits in its middle: a tenth of it above either axle would have more pitch inertia than all of it.
+    compact = replace(TABLE_1_CAR, I_yy=200.0, name="compact")
+    result = sprung.identify(sprung.simulate(compact, loads=[BALLAST], noise=0.02, seed=1))
+    assert (result.verdict.state, result.fit.model) == ("accept", ())
+
+
+@pytest.mark.parametrize(("more", "term"), [(UNEVEN, "asymmetry"), (RIGID, "rigid-axle")])
+def test_asymmetry_and_a_rigid_axle_are_selected(more: dict[str, float], term: str) -> None:
+    """identify(simulate(p)) = p within five standard errors, the term selected and no other."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | more)
+    result = sprung.identify(sprung.simulate(car, loads=[LOAD], rate=250, noise=0.02, seed=1))
+    assert (result.verdict.state, result.fit.model) == ("accept", (term,))
+    for name, truth in car.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - truth) < 5 * found.std
+
+
+def test_a_requested_linear_term_is_fitted() -> None:
+    stiff = Vehicle.from_parameters({**TABLE_1_CAR.parameters, "k_af": 9000.0, "k_ar": 4000.0})
+    campaign = sprung.simulate(stiff, noise=0.02, seed=4, known={"total_mass": stiff.total_mass})
+    result = sprung.identify(campaign, extras=["anti-roll"])
+    assert result.fit.model == ("anti-roll",)
+    for name in ("k_af", "k_ar", "k_sf"):
+        one = result.parameters[name]
+        assert one.value is not None
+        assert one.std is not None
+        assert abs(one.value - getattr(stiff, name)) < 4 * one.std
+
+
+def test_contradictory_choices_of_the_model_are_refused_together() -> None:
+    campaign = sprung.simulate(TABLE_1_CAR, seed=1, known={"t_f2": 0.7, "k_af": 100.0})
+    clashing = replace(campaign, model=ModelChoice(tracks="shared", extras=("frction",)))
+    with pytest.raises(InputError) as caught:
+        sprung.identify(clashing)
+    text = str(caught.value)
+    assert "t_f2" in text
+    assert "frction" in text
+
+
+def test_friction_is_selected() -> None:
+    """The simplest campaign with friction: identify(simulate(p)) = p within five standard errors."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 90.0, "F_r": 70.0, "s_f": 25e4, "s_r": 25e4})
+    drops = [{"wheels": wheels} for wheels in (["fl", "fr", "rl", "rr"], ["rl", "rr"], ["fl", "rl"])]
+    campaign = sprung.simulate(
+        car, drops=drops, rate=250, duration=1.8, noise=0.02, seed=1, known={"total_mass": car.total_mass}
+    )
+    result = sprung.identify(campaign, fall=False)
+    assert (result.verdict.state, result.fit.model) == ("accept", ("friction",))
+    for name in ("F_f", "F_r", "k_sf", "c_sf"):
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - car.parameters[name]) < 5 * found.std
+    step = next(step for step in result.fit.path if step.extra == "friction")
+    assert step.text.startswith("friction (Δ2lnL = ")
+    assert "model terms supported by the data: friction" in result.fit.why
+
+
+def test_where_the_missing_term_is_forbidden_no_other_takes_its_place() -> None:
+    """Friction of 180 N without a term for it: other nonlinear terms leave too much of the misfit, and are refused."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 180.0, "F_r": 140.0, "s_f": 25e4, "s_r": 25e4})
+    drops = [{"wheels": wheels} for wheels in (["fl", "fr", "rl", "rr"], ["rl", "rr"], ["fl", "rl"])]
+    campaign = sprung.simulate(
+        car, drops=drops, rate=250, duration=1.4, noise=0.02, seed=1, known={"total_mass": car.total_mass}
+    )
+    without = replace(campaign, model=ModelChoice(forbid=("friction",)))
+    result = sprung.identify(without, fall=False)
+    assert result.verdict.state == "reject"
+    assert not {"friction", "rebound", "progressive", "bump-stop"} & set(result.fit.model)
+    assert any(step.fitted and not step.taken for step in result.fit.path if step.extra in ("rebound", "progressive"))
