@@ -116,7 +116,13 @@ class Analysis:
         return cls(campaign, options, tuple(stages), tuple(stages))
 
     def run(self, progress: Progress = silent) -> Analysis:
-        """Go through all stages that remain."""
+        """Go through all stages that remain.
+
+        Parameters
+        ----------
+        progress
+            Called with each step that begins.
+        """
         analysis = self
         while analysis.remaining:
             stage, *remaining = analysis.remaining

@@ -18,7 +18,17 @@ _BEFORE_DECAY = 0.1
 
 
 def to_design(run: Analysis) -> PlannedTest:
-    """Take what was fitted as a test to which others may be added, of the vehicle that was found as far as it is linear."""
+    """Return what was fitted as a test to which further drops may be added, of the vehicle as far as it is linear.
+
+    Parameters
+    ----------
+    run
+        A complete analysis.
+
+    Returns
+    -------
+    PlannedTest
+    """
     from sprung.planning import (  # noqa: PLC0415 (only a plan needs it)
         PlannedDrop,
         completed_test,

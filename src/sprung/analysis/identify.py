@@ -120,7 +120,17 @@ def identify_campaign(
 
 
 def result_of(run: Analysis) -> Result:
-    """Return the result of an analysis that is complete."""
+    """Return the result of an analysis that is complete.
+
+    Parameters
+    ----------
+    run
+        From `identify_campaign` or `analyse`.
+
+    Returns
+    -------
+    Result
+    """
     if run.result is None:
         raise RuntimeError("the last stage of an analysis makes its result")
     return run.result

@@ -48,6 +48,10 @@ def consistency_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResu
         What was fitted.
     fit
         Where that ended.
+
+    Returns
+    -------
+    Consistency
     """
     noise, table = reference_noise(decays, fit), residual_table([decay.file for decay in decays], decays, fit)
     if not table.is_explained(noise):

@@ -37,7 +37,7 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
     ----------
     decays
         What was fitted.
-    summit
+    optimum
         Where the fit ended.
     sensors
         One for each channel; where a high-pass was undone, noise walks as well, and nothing is said.

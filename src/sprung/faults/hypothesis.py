@@ -82,7 +82,13 @@ class Hypothesis:
         return replace(self, table=candidate.table, candidate=candidate, is_rough=False, expected_gain=0.0), 1
 
     def score(self, overdispersion: float = 1.0) -> float:
-        """Return the information criterion (Schwarz, Ann. Stat. 6 (1978) 461); the smallest is the best."""
+        """Return the information criterion (Schwarz, Ann. Stat. 6 (1978) 461); the smallest is the best.
+
+        Parameters
+        ----------
+        overdispersion
+            Factor on every variance, dimensionless.
+        """
         cost = self.table.cost - self.expected_gain
         return cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
 

@@ -168,6 +168,13 @@ class FaultIsolation:
         """Fit the corrected campaign by one Gauss-Newton step from a fit, or without one from the direct estimate.
 
         One step tells which of many deletions changes a fit most (Pregibon, Ann. Stat. 9 (1981) 705).
+
+        Parameters
+        ----------
+        correction
+            Of the campaign.
+        start
+            A fit near by.
         """
         return self._fit(correction, start, 1)
 
@@ -175,7 +182,12 @@ class FaultIsolation:
         """Estimate the fit without a channel or drop, by a few Gauss-Newton steps.
 
         Where the campaign is described but for a small fault, one step from its fit tells what the deletion gains. Where it is
-        not, the fit may be far away: then the better one of that and the direct estimate goes on for another step.
+        not, the fit may be far away: then the better one of a few steps and of the direct estimate counts.
+
+        Parameters
+        ----------
+        correction
+            Leaves the channel or drop out.
         """
         if self.base.is_explained:
             return self.step(correction, self.base.fit)
@@ -215,6 +227,10 @@ def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]
         The campaign.
     decays
         As they were found.
+
+    Returns
+    -------
+    tuple of FreeDecay
     """
     masked = campaign
     for channel, sensor in enumerate(campaign.sensors):

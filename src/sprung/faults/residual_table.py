@@ -111,7 +111,21 @@ class ResidualTable:
 
 
 def residual_table(recordings: Sequence[str], decays: Sequence[FreeDecay], optimum: FitResult) -> ResidualTable:
-    """Return the residuals of a fit; the rows are those of `recordings`, whether they were fitted or not."""
+    """Return the residuals of a fit.
+
+    Parameters
+    ----------
+    recordings
+        Names of the rows, whether they were fitted or not.
+    decays
+        What was fitted.
+    optimum
+        Where that ended.
+
+    Returns
+    -------
+    ResidualTable
+    """
     left = optimum.residual_sums
     residual, counts = np.zeros((len(recordings), left.shape[1])), np.zeros((len(recordings), left.shape[1]))
     for decay, of_decay in zip(decays, left, strict=True):
@@ -125,6 +139,17 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     """Return what the sensors read at rest.
 
     Where too little rest was recorded, noise is what of the residuals changes from one sample to the next.
+
+    Parameters
+    ----------
+    decays
+        What was fitted, with the readings at rest.
+    optimum
+        Where that ended.
+
+    Returns
+    -------
+    ReferenceNoise
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)

@@ -97,7 +97,13 @@ class ModelSearch:
         return required_gain(0, _HYPOTHESES, self.samples)
 
     def open_terms(self, among: Sequence[str]) -> list[str]:
-        """Terms that the recordings are to decide about and that the model has not."""
+        """Terms that the recordings are to decide about and that the model has not.
+
+        Parameters
+        ----------
+        among
+            Only these terms.
+        """
         tracks = [SEPARATE_TRACKS] if self.structure.tracks_open and self.structure.tracks == "shared" else []
         terms = [term for term in self.structure.open_terms if term not in self.structure.terms]
         return [term for term in (*tracks, *terms) if term in among]
@@ -121,12 +127,30 @@ class ModelSearch:
         return self.structure.with_terms(kept, "shared" if term == SEPARATE_TRACKS else None)
 
     def recorded(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> ModelSearch:
-        """Return the search with one step more for each term and its gain."""
+        """Return the search with one step more for each term and its gain.
+
+        Parameters
+        ----------
+        gains
+            Gain in twice the log-likelihood by term.
+        fitted, taken
+            Whether they were fitted, and whether they stay.
+        against
+            Why they do not stay although they gain enough.
+        """
         more = [SelectionStep(term, gain, self.required(term), fitted, taken, against) for term, gain in gains.items()]
         return replace(self, steps=(*self.steps, *more))
 
     def refit(self, structure: ModelStructure, most: int = 100) -> ModelSearch:
-        """Fit another structure from here, with a largest number of iterations."""
+        """Fit another structure from here.
+
+        Parameters
+        ----------
+        structure
+            What is fitted.
+        most
+            Largest number of iterations.
+        """
         fit = fit_structure(structure, self.decays, self.fit, NEAR, self.progress, most=most)
         return replace(self, structure=structure, fit=fit)
 
@@ -156,11 +180,23 @@ class ModelSearch:
         return self.overdispersion > OVERDISPERSED and not self.has_model_error
 
     def gain_over(self, other: ModelSearch) -> float:
-        """Gain in twice the log-likelihood over another fit of the same decays, divided by the overdispersion."""
+        """Return the gain in twice the log-likelihood over another fit of the same decays, divided by the overdispersion.
+
+        Parameters
+        ----------
+        other
+            Another fit of the same decays.
+        """
         return 2 * (self.fit.loglikelihood - other.fit.loglikelihood) / self.overdispersion
 
     def delta_bic(self, other: ModelSearch) -> float:
-        """Gain over another model beyond what the Bayesian information criterion asks for the further parameters."""
+        """Return the gain over another model beyond what the Bayesian information criterion asks for the further parameters.
+
+        Parameters
+        ----------
+        other
+            Another fit of the same decays.
+        """
         more = len(self.structure.names) - len(other.structure.names)
         return self.gain_over(other) - more * float(np.log(self.samples))
 

@@ -37,7 +37,11 @@ def neutral_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[
         By name, SI.
     """
     shared = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
-    undefined = [term.undefined(own, structure) for term in TERMS.values() if term.name in structure.terms]
+    undefined = [
+        term.undefined(own, structure)
+        for term in TERMS.values()
+        if term.undefined is not None and term.name in structure.terms
+    ]
     values = {**NEUTRAL}
     for part in (*undefined, with_separate_tracks(own), shared, own):
         values |= part
@@ -48,7 +52,8 @@ def start_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[st
     """Return parameters from which a fit begins: those of a fitted vehicle, and first values of terms that it has not."""
     first: dict[str, float] = {}
     for name in structure.terms:
-        first |= TERMS[name].first(own, structure)
+        start = TERMS[name].first
+        first |= {} if start is None else start(own, structure)
     first |= own
     return {name: first.get(name, value) for name, value in neutral_values(structure, own).items()}
 

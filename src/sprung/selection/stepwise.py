@@ -50,6 +50,10 @@ def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> 
         A linear model.
     among
         Terms to try.
+
+    Returns
+    -------
+    ModelSearch
     """
     for _ in range(_ROUNDS):
         terms = search.open_terms(among)
@@ -71,6 +75,10 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     plain
         The structure without anything that the recordings brought into it: linear terms that took up some of a nonlinear
         motion are no base to start from.
+
+    Returns
+    -------
+    ModelSearch
     """
     nonlinear = [term for term in TERMS if term not in _LINEAR]
     terms = search.open_terms(nonlinear)
@@ -105,7 +113,17 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
 
 
 def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
-    """Return the search with the body carried at the height that fits better, where two heights are known."""
+    """Return the search with the body carried at the height that fits better, where two heights are known.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
     if not search.structure.heights.is_ambiguous:
         return search
     other = search.refit(replace(search.structure, carried_at="roll axis"))
@@ -113,25 +131,71 @@ def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
 
 
 def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
-    """Return the search with sensors that feel less of gravity where the body turns, if the recordings support it."""
+    """Return the search with sensors that feel less of gravity where the body turns, if the recordings support it.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
     other = search.refit(replace(search.structure, gravity_leakage=True), most=_ITERATIONS_OF_SWITCH)
     return other.refit(other.structure) if other.gain_over(search) > search.required_of_switch else search
 
 
 def fit_requested_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
-    """Fit linear terms that the user requests, whatever they gain."""
+    """Fit linear terms that the user requests, whatever they gain.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    terms
+        To be fitted, one after the other.
+
+    Returns
+    -------
+    ModelSearch
+    """
     for term in terms:
         search = fit_term(search, term)
     return search
 
 
 def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSearch:
-    """Fit the structure that the user requests, whatever it gains."""
+    """Fit the structure that the user requests, whatever it gains.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    requested
+        The structure.
+
+    Returns
+    -------
+    ModelSearch
+    """
     return select_gravity_leakage(search.refit(search.structure.with_terms(requested.terms)))
 
 
 def fit_term(search: ModelSearch, term: str) -> ModelSearch:
-    """Fit a linear term, from where it is expected to gain most."""
+    """Fit a linear term, from where it is expected to gain most.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    term
+        To be fitted.
+
+    Returns
+    -------
+    ModelSearch
+    """
     return _fit_linear(score_terms(search, [term])[0], term)
 
 

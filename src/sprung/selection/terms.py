@@ -27,6 +27,7 @@ SEPARATE_TRACKS = "tracks apart"
 """Springs and dampers at half-distances of their own."""
 
 ENGINE, BUMP_STOP, FRICTION = "engine", "bump-stop", "friction"
+"""Terms with starts of their own."""
 
 _TRAVEL = 0.002
 """m of travel at which a spring's force is that of a usual friction."""
@@ -54,7 +55,7 @@ class ModelTerm:
     typical, spread
         Usual size where the term is present, and the factor by which one standard deviation lies above or below it.
     negligible
-        Size below which it changes nothing in practice: it is left out, however significant.
+        Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
     explains_all
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
     resembles_others
@@ -74,8 +75,8 @@ class ModelTerm:
     negligible: float
     explains_all: bool = False
     resembles_others: bool = False
-    undefined: StartValues = lambda _own, _structure: {}
-    first: StartValues = lambda _own, _structure: {}
+    undefined: StartValues | None = None
+    first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
 
     @property
@@ -84,19 +85,37 @@ class ModelTerm:
         return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
 
     def parameters(self, tracks: Tracks) -> tuple[str, ...]:
-        """Parameters that a model with the term has and one without it has not, or not free."""
+        """Return the parameters that a model with the term has and one without it has not, or not free.
+
+        Parameters
+        ----------
+        tracks
+            Whether springs and dampers share their half-distance.
+        """
         if self.equal_tracks:
             return tuple(name for name, _ in self.equal_tracks)
         return parameters_of_term(self.name, tracks)
 
     def neutral(self, tracks: Tracks) -> list[tuple[str, str | float]]:
-        """Return what each parameter is where the term is absent: a value, or another parameter."""
+        """Return what each parameter is where the term is absent: a value, or another parameter.
+
+        Parameters
+        ----------
+        tracks
+            As for `parameters`.
+        """
         if self.equal_tracks:
             return list(self.equal_tracks)
         return [(name, NEUTRAL[name]) for name in self.parameters(tracks) if name in NEUTRAL]
 
     def not_negative(self, tracks: Tracks) -> tuple[str, ...]:
-        """Parameters that physics does not allow to be negative, though the fit does."""
+        """Return the parameters that physics does not allow to be negative, though the fit does.
+
+        Parameters
+        ----------
+        tracks
+            As for `parameters`.
+        """
         about = {name: PARAMETERS[name] for name in self.parameters(tracks)}
         return tuple(name for name, one in about.items() if not (one.positive or one.signed))
 
