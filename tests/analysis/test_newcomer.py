@@ -337,7 +337,7 @@ def test_places_of_the_load_measured_from_the_rear_axle(recorded: Campaign) -> N
     fault = found(replace(recorded, loads=(empty, replace(BALLAST, items=items))))
     assert (fault.code, fault.where) == ("load-position", "load 'ballast'")
     assert "measured from the rear axle" in fault.what
-    assert "Take the wheelbase" in fault.do
+    assert "Subtract the wheelbase" in fault.do
 
 
 def test_a_unit_that_is_wrong_for_all_sensors_is_told_once(recorded: Campaign) -> None:

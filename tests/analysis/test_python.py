@@ -23,7 +23,7 @@ DATA = Path(__file__).resolve().parents[1] / "data"
 SAVED = Path(__file__).resolve().parents[1] / "report"
 ROOMS = (
     *("errors", "uncertainty", "campaign", "assessment", "planning", "checking"),
-    *("results", "modal_survey", "analysis", "study", "paper"),
+    *("results", "modal_survey", "study", "paper"),
 )
 LINES = 10  # of any record in a console, by the issue
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.campaign import Campaign
-from sprung.estimation import NEAR
+from sprung.estimation import CONVERGED, NEAR
 from sprung.faults import (
     Consistency,
     FaultIsolation,
@@ -18,6 +18,7 @@ from sprung.faults import (
     isolate,
     reference_noise,
     residual_table,
+    score_faults_of,
 )
 from sprung.progress import Progress, Step, silent
 from sprung.selection import TERMS, fit_structure, score_terms
@@ -96,6 +97,7 @@ def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
         return run
     consistency = consistency_of(run.campaign, run.decays, run.fit)
     if consistency == "consistent":
+        run = _with_settled_numbers(run, progress)
         checked = replace(run, isolated=(run.fit, None))
         return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
     progress(Step("isolating faults"))
@@ -105,6 +107,30 @@ def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
     faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "no fault"
     explains = "explains the recordings" if found.is_explained else "explains a part of the recordings at most"
     return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{found.fits} fits of hypotheses")
+
+
+def _with_settled_numbers(run: Analysis, progress: Progress) -> Analysis:
+    """Correct the numbers of earlier corrections, a gain or a place, to where the scores of the present fit have them.
+
+    They were estimated with a larger model and shorter decays. The decays are corrected as they are, and fitted once more.
+    """
+    scores = score_faults_of(run.campaign, run.decays, run.fit) if run.corrected else ()
+    settled = {index: found for index, one in enumerate(run.corrected) if (found := one.settled(scores)) is not None}
+    if not settled:
+        return run
+    campaign, decays = run.campaign, run.decays
+    corrected = list(run.corrected)
+    for index, (better, change) in settled.items():
+        campaign = change.of_campaign(campaign)
+        decays = change.of_decays(campaign, decays)
+        faults = (better.fault if fault == corrected[index].fault else fault for fault in campaign.faults)
+        campaign, corrected[index] = replace(campaign, faults=tuple(faults)), better
+    structure = replace(run.model.structure, campaign=campaign)
+    fit = fit_structure(structure, decays, run.fit, CONVERGED, progress)
+    search = replace(run.model, structure=structure, decays=decays, fit=fit)
+    run = replace(run, campaign=campaign, corrected=tuple(corrected), search=search, fits=run.fits + 1)
+    what = "; ".join(f"{better.fault.where}: {better.fault.what}" for better, _ in settled.values())
+    return run.noted("isolate_faults", "the numbers of corrections are settled in the fit of all drops", what)
 
 
 def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, FaultIsolation]:

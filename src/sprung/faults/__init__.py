@@ -6,7 +6,7 @@ fitted, and none is accepted on suspicion: it has to explain the recordings, bey
 well.
 """
 
-from sprung.faults.consistency import Consistency, consistency_of
+from sprung.faults.consistency import Consistency, consistency_of, score_faults_of
 from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import Isolated, isolate
@@ -26,4 +26,5 @@ __all__ = [
     "isolate",
     "reference_noise",
     "residual_table",
+    "score_faults_of",
 ]

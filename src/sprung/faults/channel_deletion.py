@@ -14,7 +14,7 @@ from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.consistency import NEGLIGIBLE, score_faults_of
-from sprung.faults.correction import mask_channel
+from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolation import CandidateFit, FaultIsolation
@@ -218,6 +218,40 @@ class ChannelCorrection(Hypothesis):
         return Hypothesis(
             fault, "left out", mask_channel(deletion.channel), confirmed.table, deletion.candidate, len(numbers)
         ), fits
+
+    def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:
+        """Return the hypothesis with its numbers where the scores of a better fit have them, and the correction by the change.
+
+        Parameters
+        ----------
+        scores
+            Of all faults of small size in that fit.
+
+        Returns
+        -------
+        tuple or None
+            None where it has no numbers, or where they are there already.
+        """
+        deletion, hypothesis = self.deletion, self.hypothesis
+        if deletion is None or hypothesis is None or hypothesis.correction is None or not self.numbers:
+            return None
+        own = sorted(
+            (score for score in scores if (score.kind, score.where) == (hypothesis.code, deletion.name)),
+            key=lambda score: score.axis,
+        )
+        if all(score.gain < _CONVERGED for score in own):
+            return None
+        numbers = improved(hypothesis.code, self.numbers, own)
+        stds = tuple(score.std for score in own)
+        better = ChannelCorrection.of(deletion, hypothesis, numbers, stds, self.candidate)
+        return better, hypothesis.correction(_change(hypothesis.code, self.numbers, numbers))
+
+
+def _change(code: str, before: Numbers, after: Numbers) -> Numbers:
+    """Return the numbers of a correction that leads from one with certain numbers to one with others."""
+    if code == "gain":
+        return (after[0] / before[0],)
+    return (after[0] - before[0],) if code == "late" else after
 
 
 def improved(code: str, numbers: Numbers, scores: Sequence[FaultScore]) -> Numbers:

@@ -10,6 +10,7 @@ import numpy as np
 
 from sprung.errors import Fault
 from sprung.faults.correction import Correction
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.faults.residual_table import ResidualTable
 
@@ -80,6 +81,21 @@ class Hypothesis:
             return self, 0
         candidate = isolation.fit(self.correction, self.candidate.fit)
         return replace(self, table=candidate.table, candidate=candidate, is_rough=False, expected_gain=0.0), 1
+
+    def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:  # noqa: ARG002 (one form for all)
+        """Return the hypothesis with its numbers where the scores of a better fit have them, and the correction by the change.
+
+        Parameters
+        ----------
+        scores
+            Of all faults of small size in that fit.
+
+        Returns
+        -------
+        tuple or None
+            None where it has no numbers, or where they are there already.
+        """
+        return None
 
     def score(self, overdispersion: float = 1.0) -> float:
         """Return the information criterion (Schwarz, Ann. Stat. 6 (1978) 461); the smallest is the best.

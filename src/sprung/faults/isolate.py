@@ -156,7 +156,7 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
 
 
 def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
-    """Return the channel hypotheses of small size that gain most by their score tests, where the fit is near enough for them."""
+    """Return the channel hypotheses of small size that gain by their score tests, where the fit is near enough for them."""
     base = isolation.base
     if not base.is_explained:
         return []

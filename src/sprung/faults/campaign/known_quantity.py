@@ -55,6 +55,6 @@ def _contradicted(name: str, stated: KnownValue, candidate: CandidateFit) -> Fau
         if load.mass and abs(stated.value - load.mass - estimate) < _LOAD_INCLUDED * estimate
     ]
     if name.endswith("_mass") and loads:
-        what += f", less by the mass of load '{loads[0]}', which the stated mass must not include"
+        what += f", and the difference is the mass of load '{loads[0]}', which it must not include"
     do = f"Correct {name} under [known] in the campaign file, or state its uncertainty, {{ value = ..., std = ... }}."
     return Fault("known", f"known.{name}", f"{what}. It was not used", do)
