@@ -57,7 +57,7 @@ def use_flight(run: Analysis, progress: Progress) -> Analysis:
         fallen = _with_fall(run, found, progress)
         if fallen is not None:
             return fallen
-        run = replace(run, fits=run.fits + 2)
+        run = replace(run, fits=run.fits + 1)
     remark = "the fall before the landing was tried and does not determine the parameters better"
     return replace(run, remarks=(*run.remarks, remark)).noted("use_flight", remark)
 
@@ -79,7 +79,7 @@ def _with_fall(run: Analysis, found: Sequence[Flight | None], progress: Progress
     if ratio >= 1:
         return None
     remark = f"the fall is used too, which makes uncertainties {ratio:.2f} times what they were"
-    fallen = replace(run, search=search, statistics=now, fits=run.fits + 2, remarks=(*run.remarks, remark))
+    fallen = replace(run, search=search, statistics=now, fits=run.fits + 1, remarks=(*run.remarks, remark))
     return fallen.noted("use_flight", "the fall is used", f"standard uncertainties times {ratio:.2f}")
 
 

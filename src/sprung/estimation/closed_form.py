@@ -13,7 +13,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.matrix_exponential import MatrixExponentialAt
 from sprung.estimation.modal_solution import ModalSolution, differentiate_modes, differentiate_response, solve_modes
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
@@ -100,6 +99,8 @@ class ClosedFormObjective:
             return ClosedFormAt(self, values, weights, modes, ())
         # Delays turn shapes: they need modal coordinates, and bear with what rounding leaves near a critical damping.
         if not self._has_clocks and modes.condition > _DEFECTIVE:
+            from sprung.estimation.matrix_exponential import MatrixExponentialAt  # noqa: PLC0415 (hardly ever needed)
+
             return MatrixExponentialAt(self, self.models, self.sensors, values, weights)
         sums = tuple(
             ExponentialSums.of(batch, values, modes.poles, modes.right, modes.shapes) for batch in self.batches

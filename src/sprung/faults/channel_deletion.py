@@ -113,7 +113,7 @@ class ChannelDeletion:
                     numbers = improved(hypothesis.code, hypothesis.stated, own)
                     correction = ChannelCorrection.of(self, hypothesis, numbers, candidate=self.isolation.base)
                     gain = sum(score.gain for score in own)
-                    yield replace(correction, table=self.isolation.base.table, expected_gain=gain)
+                    yield replace(correction, table=self.isolation.base.table, score_gain=gain)
 
     def _left_out(self, hypothesis: ChannelHypothesis, numbers: Numbers = (), stds: Numbers = ()) -> Hypothesis:
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
@@ -204,7 +204,8 @@ class ChannelCorrection(Hypothesis):
             if all(score.gain < _CONVERGED for score in scores):
                 break
             numbers = improved(hypothesis.code, numbers, scores)
-            if fits > _REFITS:
+            # Where the residuals are noise already, the numbers are settled in the fit of all drops.
+            if candidate.is_explained or fits > _REFITS:
                 break
             candidate = isolation.fit(hypothesis.correction(numbers), candidate.fit)
             fits += 1

@@ -77,6 +77,10 @@ def score_faults_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitRes
     ----------
     campaign, decays, fit
         As for `consistency_of`.
+
+    Returns
+    -------
+    tuple of FaultScore
     """
     return tuple(sorted(_scores(campaign, decays, fit)[0], key=lambda score: score.gain, reverse=True))
 

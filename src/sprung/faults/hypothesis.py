@@ -42,7 +42,7 @@ class Hypothesis:
         Whether it says what is wrong, not only where.
     is_rough
         Whether the residuals are those of one step from far away, which a fit may leave much smaller.
-    expected_gain
+    score_gain
         What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
     """
 
@@ -55,7 +55,7 @@ class Hypothesis:
     recording: str | None = None
     is_specific: bool = True
     is_rough: bool = False
-    expected_gain: float = 0.0
+    score_gain: float = 0.0
 
     @property
     def is_explained(self) -> bool:
@@ -80,7 +80,7 @@ class Hypothesis:
         if self.remedy != "corrected":
             return self, 0
         candidate = isolation.fit(self.correction, self.candidate.fit)
-        return replace(self, table=candidate.table, candidate=candidate, is_rough=False, expected_gain=0.0), 1
+        return replace(self, table=candidate.table, candidate=candidate, is_rough=False, score_gain=0.0), 1
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:  # noqa: ARG002 (one form for all)
         """Return the hypothesis with its numbers where the scores of a better fit have them, and the correction by the change.
@@ -105,7 +105,7 @@ class Hypothesis:
         overdispersion
             Factor on every variance, dimensionless.
         """
-        cost = self.table.cost - self.expected_gain
+        cost = self.table.cost - self.score_gain
         return cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
 
     def concerns_same(self, other: Hypothesis) -> bool:

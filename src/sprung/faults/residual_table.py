@@ -76,7 +76,8 @@ class ResidualTable:
     def explicable(self, noise: ReferenceNoise) -> float:
         """Return what twice the log-likelihood would gain if nothing but noise were left."""
         counts = self.counts.sum(axis=0)
-        return self.cost - float(np.sum(counts * np.log(noise.level**2)))
+        used = counts > 0
+        return self.cost - float(np.sum(counts[used] * np.log(noise.level[used] ** 2)))
 
     def ratio(self, noise: ReferenceNoise) -> Real:
         """Return residual over noise, root-mean-square, of each drop and channel; 0 for what is left out."""

@@ -19,7 +19,6 @@ from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Fault
 from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
-from sprung.files import atomic_write
 from sprung.results.amplitude import AmplitudeCurves
 from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import plain_document
@@ -234,6 +233,8 @@ class Result:
         InputError
             If such files would be overwritten, with their list, or the folder cannot be written.
         """
+        from sprung.files import atomic_write  # noqa: PLC0415 (only saving needs it)
+
         atomic_write(Path(folder), self.files(), overwrite=overwrite)
         return Path(folder)
 
