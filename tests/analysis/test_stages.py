@@ -1,0 +1,99 @@
+"""The stages of an analysis: their order, the one way back, and what the trace tells of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import sprung
+from sprung.analysis import STAGES, Analysis, AnalysisOptions, analyse, identify_campaign, result_of
+from sprung.campaign import DEFAULT_HEIGHT, Drop
+from sprung.vehicle import TABLE_1_CAR, WHEELS, Item, Load
+
+BALLAST = Load(name="ballast", items=(Item(mass=140, position=(-1.0, 0.3, 0.5)),))
+KINDS = (WHEELS, WHEELS[:2], WHEELS[::2])
+MOST_FITS, MOST_PREPARATIONS = 8, 3
+"""For a campaign with one fault."""
+
+
+@pytest.fixture(scope="module")
+def campaign() -> sprung.Campaign:
+    drops = [
+        Drop(file=f"{load}_{number}.csv", load=load, wheels=wheels, height=DEFAULT_HEIGHT)
+        for load in ("empty", "ballast")
+        for number, wheels in enumerate(KINDS)
+    ]
+    return sprung.simulate(
+        TABLE_1_CAR, loads=[BALLAST], drops=drops, rate=300.0, noise=0.02, seed=2, duration=2.4,
+        known={"total_mass": TABLE_1_CAR.total_mass},
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def sound(campaign: sprung.Campaign) -> Analysis:
+    return identify_campaign(campaign)
+
+
+def scaled(campaign: sprung.Campaign, channel: int, factor: float) -> sprung.Campaign:
+    """Multiply what one channel reads, gravity at rest included."""
+    rows = np.arange(len(campaign.sensors))[:, None] == channel
+    return campaign.with_recordings(
+        [replace(one, values=np.where(rows, factor * one.values, one.values)) for one in campaign.recordings]
+    )
+
+
+def test_a_sound_campaign_goes_through_every_stage_once(sound: Analysis) -> None:
+    stages = [step.stage for step in sound.trace]
+    assert stages[0] == "preprocess"
+    assert stages[-1] == "assess"
+    assert set(stages) <= {stage.__name__ for stage in STAGES}
+    assert not any("restart" in step.what for step in sound.trace)
+    assert not sound.remaining
+    assert sound.preparations == 1
+    assert result_of(sound).trace == sound.trace
+    assert result_of(sound).verdict.state == "accept"
+
+
+def test_an_analysis_that_is_not_complete_has_no_result(campaign: sprung.Campaign) -> None:
+    begun = Analysis.start(campaign, AnalysisOptions(), STAGES)
+    for missing in (
+        lambda: result_of(begun),
+        lambda: begun.prepared,
+        lambda: begun.model,
+        lambda: begun.uncertainty,
+    ):
+        with pytest.raises(RuntimeError):
+            missing()
+
+
+@pytest.mark.parametrize(
+    ("channel", "factor", "code"), [(4, 1.05, "gain"), (1, 0.95, "gain"), (6, 1 / 9.80665, "unit")]
+)
+def test_one_fault_takes_few_fits(campaign: sprung.Campaign, channel: int, factor: float, code: str) -> None:
+    run = identify_campaign(scaled(campaign, channel, factor))
+    name = campaign.sensors[channel].channel
+    assert [(fault.code, name in fault.where) for fault in result_of(run).faults] == [(code, True)]
+    assert result_of(run).verdict.state == "accept"
+    assert run.fits <= MOST_FITS
+    assert run.preparations <= MOST_PREPARATIONS
+    if len(run.corrected) > 0:  # gravity at rest corrects a unit before the fit
+        restarts = [step for step in run.trace if "restart" in step.what]
+        assert len(restarts) == 1
+        assert name in restarts[0].why
+
+
+def test_a_restart_begins_again_and_keeps_what_was_found(sound: Analysis) -> None:
+    again = sound.restart(sound.campaign, [], "isolate_faults", "because the test says so")
+    assert again.remaining == again.stages == STAGES
+    assert again.search is None
+    assert again.trace[-1].why == "because the test says so"
+    assert again.trace[:-1] == sound.trace
+    assert again.preparation is sound.preparation  # nothing was corrected that would change the recordings
+
+
+def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaign) -> None:
+    run = analyse(campaign, AnalysisOptions(tracks="shared", terms=("anti-roll",), fall=False))
+    assert run.model.structure.terms == ("anti-roll",)
+    assert not [step for step in run.trace if step.stage.startswith("select") and "scored" in step.what]
