@@ -34,6 +34,9 @@ _SHIFT = 1.0
 _CONVERGED = 0.1
 """Gain in twice the log-likelihood below which the numbers have converged."""
 
+_HALF = 0.5
+"""Share of a misfit that a hypothesis from a score test may leave after its first fit."""
+
 _REFITS = 2
 """Fits in which the numbers of a hypothesis converge."""
 
@@ -195,6 +198,8 @@ class ChannelCorrection(Hypothesis):
         numbers, scores = self.numbers, list[FaultScore]()
         candidate = isolation.fit(self.correction, self.candidate.fit)
         fits = 1
+        if self.score_gain > 0 and candidate.misfit > _HALF * isolation.base.misfit:
+            return None, fits  # the score test was made too far away
         while numbers:
             every = score_faults_of(candidate.campaign, candidate.decays, candidate.fit)
             scores = sorted(

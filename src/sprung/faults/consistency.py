@@ -14,12 +14,17 @@ from sprung.faults.high_pass import NEGLIGIBLE as NEGLIGIBLE_CORNER
 from sprung.faults.high_pass import CornerScores, score_corners
 from sprung.faults.residual_table import reference_noise, residual_table
 from sprung.preprocess import FreeDecay
+from sprung.selection import required_gain
 
 Consistency = Literal["consistent", "inconsistent", "misfit"]
 """The fit agrees with the recordings; a fault of small size would improve it significantly; it does not describe them."""
 
-SIGNIFICANT = 25.0
-"""Gain in twice the log-likelihood, in units of the overdispersion, beyond chance: five standard errors."""
+_HYPOTHESES = 1500
+"""How many are tried on a usual campaign: some fifteen of each of eight channels, and in each of a dozen drops those of every
+channel and an exchange of every two."""
+
+SIGNIFICANT = required_gain(1, _HYPOTHESES, 1.0)
+"""Gain in twice the log-likelihood, in units of the overdispersion, that a fault needs by the error budget: 24.7."""
 
 SHARE = 0.5
 """Share of a misfit that a hypothesis has to explain."""

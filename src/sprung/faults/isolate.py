@@ -108,9 +108,10 @@ def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple
     if best is not None:
         return best, fits
     ranked = [*_by_scores(isolation), *load_position(isolation), *high_passes(isolation)]
-    best, ranked, more = _confirm_best(isolation, ranked)
+    # Where the fit is far away, score tests are not to be trusted: only what explains everything counts.
+    best, ranked, more = _confirm_best(isolation, ranked, _MOST_FITS if isolation.base.is_explained else 1)
     fits += more
-    if best is not None and isolation.base.is_explained:
+    if best is not None and (isolation.base.is_explained or best.candidate.is_explained):
         return _with_rival(isolation, best, ranked), fits
     of_parts, made = _of_parts(isolation, progress)
     ranked += of_parts
@@ -156,10 +157,8 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
 
 
 def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
-    """Return the channel hypotheses of small size that gain by their score tests, where the fit is near enough for them."""
+    """Return the channel hypotheses of small size that gain by their score tests."""
     base = isolation.base
-    if not base.is_explained:
-        return []
     scores = score_faults_of(base.campaign, base.decays, base.fit)
     hypotheses: list[Hypothesis] = []
     for channel, sensor in enumerate(isolation.campaign.sensors):
@@ -198,7 +197,7 @@ def _of_parts(isolation: FaultIsolation, progress: Progress) -> tuple[list[Hypot
 
 
 def _confirm_best(
-    isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]
+    isolation: FaultIsolation, hypotheses: Sequence[Hypothesis], most: int = _MOST_FITS
 ) -> tuple[Hypothesis | None, list[Hypothesis], int]:
     """Fit the most likely specific hypotheses, one after the other, until one is convincing.
 
@@ -212,7 +211,7 @@ def _confirm_best(
         How many were made.
     """
     remaining, rest, fits = [one for one in hypotheses if _is_promising(isolation, one)], list(hypotheses), 0
-    while remaining and fits < _MOST_FITS:
+    while remaining and fits < most:
         best = best_of(remaining, SIGNIFICANT)
         remaining.remove(best)
         rest.remove(best)
@@ -233,7 +232,11 @@ def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
         return False
     if hypothesis.is_rough:
         return not base.is_explained
-    explains = base.is_explained or hypothesis.table.misfit(hypothesis.candidate.noise) < _FEW * base.misfit
+    explains = (
+        base.is_explained
+        or hypothesis.score_gain > 0
+        or hypothesis.table.misfit(hypothesis.candidate.noise) < _FEW * base.misfit
+    )
     return explains and base.table.cost - hypothesis.score() > SIGNIFICANT
 
 
