@@ -114,6 +114,8 @@ class ChannelDeletion:
                 own = [score for score in scores if (score.kind, score.where) == (hypothesis.code, self.name)]
                 if own and hypothesis.correction is not None and hypothesis.stated:
                     numbers = improved(hypothesis.code, hypothesis.stated, own)
+                    if not hypothesis.allows(numbers):
+                        continue
                     correction = ChannelCorrection.of(self, hypothesis, numbers, candidate=self.isolation.base)
                     gain = sum(score.gain for score in own)
                     yield replace(correction, table=self.isolation.base.table, score_gain=gain)
@@ -214,7 +216,7 @@ class ChannelCorrection(Hypothesis):
                 break
             candidate = isolation.fit(hypothesis.correction(numbers), candidate.fit)
             fits += 1
-        if not _is_relevant(hypothesis, numbers):
+        if not _is_relevant(hypothesis, numbers) or not hypothesis.allows(numbers):
             return None, fits
         stds = tuple(score.std for score in scores)
         confirmed = ChannelCorrection.of(deletion, hypothesis, numbers, stds, candidate)

@@ -17,8 +17,13 @@ _LARGEST = 1.0
 
 def gain(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Estimate the gain, unless gravity at rest contradicts it."""
+
+    def allows(numbers: Numbers) -> bool:
+        (number,) = numbers
+        return number > 0 and bool(abs(np.log(number)) < _LARGEST) and prediction.gravity_allows(number)
+
     estimate = prediction.gain
-    if not estimate > 0 or abs(np.log(estimate)) >= _LARGEST or not prediction.gravity_allows(estimate):
+    if not allows((estimate,)):
         return
 
     def fault(numbers: Numbers, _: Numbers) -> Fault:
@@ -32,6 +37,7 @@ def gain(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
         (estimate,),
         (1.0,),
         lambda numbers: numbers[0],
+        allows=allows,
     )
 
 

@@ -39,6 +39,8 @@ class ChannelHypothesis:
         What the channel reads over what it should, given the numbers.
     free
         How many numbers are estimated, where they are not listed.
+    allows
+        Whether the numbers are of a usual size, and gravity at rest does not contradict them.
     """
 
     code: str
@@ -49,6 +51,7 @@ class ChannelHypothesis:
     stated: Numbers = ()
     reading: Callable[[Numbers], float] = lambda _: 1.0
     free: int = 0
+    allows: Callable[[Numbers], bool] = lambda _: True
 
 
 def figures(number: float) -> str:
