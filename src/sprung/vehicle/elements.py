@@ -221,6 +221,12 @@ def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element
         yield Element("mass", "m_e", kinematics.engine())
         yield Element("spring", "k_e", kinematics.engine_bay() - kinematics.engine())
         yield Element("damper", "c_e", kinematics.engine_bay() - kinematics.engine())
+    yield from _axle_elements(tracks, extras)
+
+
+def _axle_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
+    """Yield the elements between the two wheels of an axle."""
+    travel = _travels(tracks, extras)
     for left, right in kinematics.AXLES:
         axle = left[0]
         if "anti-roll" in extras:
