@@ -82,8 +82,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         },
         recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
     )
-    effort = f"{run.fits} fits, {run.preparations} preparations"
-    run = run.noted("assess", f"{verdict.state} ({effort})", "; ".join(verdict.reasons))
+    run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
 
 
