@@ -65,12 +65,12 @@ def test_the_status_line_shows_elapsed_time_and_an_estimate_where_there_is_one()
     now = [0.0]
     line = StatusLine(Step("reading the recordings"), lambda: now[0])
     assert line.text() == "0:00 reading the recordings"
-    line.begin(Step("reading the recordings", 1, 4, "a.csv"))
+    line.show_step(Step("reading the recordings", 1, 4, "a.csv"))
     now[0] = 30.0
     assert line.text() == "0:30 reading the recordings, 1 of 4: a.csv"
-    line.begin(Step("reading the recordings", 2, 4, "b.csv"))
+    line.show_step(Step("reading the recordings", 2, 4, "b.csv"))
     # A quarter took 30 s: three more such are 90 s.
     assert line.text() == "0:30 (about 1:30 more) reading the recordings, 2 of 4: b.csv"
     now[0] = 65.0
-    line.begin(Step("judging the fit"))
+    line.show_step(Step("judging the fit"))
     assert line.text() == "1:05 judging the fit"

@@ -40,7 +40,7 @@ def clock_reports(
 
     Parameters
     ----------
-    summit, fit
+    optimum, fit
         The fit.
     decays
         What was fitted.

@@ -32,11 +32,12 @@ _STEPS = 3
 
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains the recordings wholly, before any further model term is tried."""
-    term, share = (None, 0.0) if _is_consistent(run) else _explaining_term(run)
+    consistency = _consistency(run)
+    term, share = _explaining_term(run) if consistency == "misfit" else (None, 0.0)
     if share > _MOST:
         why = f"{_STEPS} steps with it explain {100 * share:.0f} % of the misfit"
         return run.noted("isolate_evident_faults", f"{term} is tried first", why)
-    run = _with_isolated(run, progress)
+    run = _with_isolated(run, consistency, progress)
     found = _found(run)
     if found is None or not found.is_explained:
         return run
@@ -47,7 +48,7 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
 
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
-    run = _with_isolated(run, progress)
+    run = _with_isolated(run, _consistency(run), progress)
     found = _found(run)
     if found is None or not found.hypotheses:
         return run
@@ -59,10 +60,11 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     return _corrected(run, corrected, "isolate_faults") if corrected else run
 
 
-def _is_consistent(run: Analysis) -> bool:
-    """Whether the residuals of the present fit are noise alone."""
-    recordings = [decay.file for decay in run.decays]
-    return residual_table(recordings, run.decays, run.fit).is_explained(reference_noise(run.decays, run.fit))
+def _consistency(run: Analysis) -> Consistency | None:
+    """Test the present fit; None where faults were looked for in it, or corrected often enough."""
+    if len(run.corrected) >= MOST_RESTARTS or (run.isolated is not None and run.isolated[0] is run.fit):
+        return None
+    return consistency_of(run.campaign, run.decays, run.fit)
 
 
 def _explaining_term(run: Analysis) -> tuple[str | None, float]:
@@ -91,18 +93,19 @@ def _found(run: Analysis) -> Isolated | None:
     return run.isolated[1] if run.isolated is not None and run.isolated[0] is run.fit else None
 
 
-def _with_isolated(run: Analysis, progress: Progress) -> Analysis:
-    """Look for faults in the present fit, unless that was done, or corrected often enough."""
-    if len(run.corrected) >= MOST_RESTARTS or (run.isolated is not None and run.isolated[0] is run.fit):
+def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Progress) -> Analysis:
+    """Look for faults in the present fit as far as its test gives reason to; without a test there is nothing to do."""
+    if consistency is None:
         return run
-    consistency = consistency_of(run.campaign, run.decays, run.fit)
     if consistency == "consistent":
         run = _with_settled_numbers(run, progress)
         checked = replace(run, isolated=(run.fit, None))
         return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
     progress(Step("isolating faults"))
     run, isolation = _with_isolation(run, consistency)
-    found = isolate(isolation, progress)
+    base = isolation.base
+    is_sound = base.fit is not run.fit and consistency_of(base.campaign, base.decays, base.fit) == "consistent"
+    found = Isolated((), False, 0) if is_sound else isolate(isolation, progress)
     run = replace(run, isolated=(run.fit, found), fits=run.fits + found.fits)
     faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "no fault"
     explains = "explains the recordings" if found.is_explained else "explains a part of the recordings at most"

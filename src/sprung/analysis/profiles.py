@@ -67,7 +67,7 @@ def profiles_of(
     ----------
     asked
         From `check_asked`.
-    summit, fit, known
+    optimum, fit, known
         Where the fit ended, how sure it is, and what was known beforehand.
     progress
         Called with each step that begins.

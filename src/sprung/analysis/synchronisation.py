@@ -274,7 +274,7 @@ def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tup
     ----------
     decays
         Of several loggers; the clocks that are told have a small uncertainty.
-    summit
+    optimum
         A fit of these decays without the other loggers' channels.
 
     Returns

@@ -46,12 +46,12 @@ def working(first: str) -> Iterator[Progress]:
     console = Console(stderr=True)
     line = StatusLine(Step(first))
     if not console.is_terminal:
-        yield line.begin
+        yield line.show_step
         return
     with Live(
         line, console=console, transient=True, refresh_per_second=4, redirect_stdout=False, redirect_stderr=False
     ):
-        yield line.begin
+        yield line.show_step
 
 
 class StatusLine:
@@ -63,7 +63,7 @@ class StatusLine:
         self._step = first
         self._spinner = Spinner("dots")
 
-    def begin(self, step: Step) -> None:
+    def show_step(self, step: Step) -> None:
         """Begin a step."""
         if step.stage != self._step.stage:
             self._stage_began = self._clock()

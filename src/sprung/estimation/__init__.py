@@ -18,7 +18,7 @@ from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RAN
 from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, score_added, wald_test
 from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
-from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, overdispersion_of, uncertainty_of
+from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
 __all__ = [
@@ -59,7 +59,6 @@ __all__ = [
     "identifiable_subspace",
     "mode_estimates",
     "mountings_of",
-    "overdispersion_of",
     "parameters_from_matrices",
     "predictions",
     "profiled",

@@ -225,22 +225,6 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
     )
 
 
-def overdispersion_of(fit: FitResult) -> float:
-    """Return the :term:`overdispersion` of a fit: the factor on every variance, 1 where it is not significant.
-
-    Parameters
-    ----------
-    fit
-        The fit.
-
-    Returns
-    -------
-    float
-        A factor, the larger of the autocorrelation inflation of the residuals and the squared Birge ratio of the drops.
-    """
-    return fit.overdispersion
-
-
 def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     """Return the information that is there, and its directions in the coordinates; (direction,), (parameter, direction).
 

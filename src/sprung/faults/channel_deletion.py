@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,7 +13,7 @@ from sprung.errors import Fault
 from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
 from sprung.faults.channel_prediction import ChannelPrediction
-from sprung.faults.consistency import NEGLIGIBLE, score_faults_of
+from sprung.faults.consistency import NEGLIGIBLE
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
@@ -99,7 +99,7 @@ class ChannelDeletion:
                 if hypothesis.correction is None:
                     yield self._left_out(hypothesis)
                 elif hypothesis.residual.sum() < _SHARE * self.prediction.energy and _is_relevant(hypothesis):
-                    yield ChannelCorrection.of(self, hypothesis, hypothesis.numbers)
+                    yield ChannelCorrection.of(self, hypothesis, hypothesis.correction, hypothesis.numbers)
 
     def scored(self, scores: Sequence[FaultScore]) -> Iterator[ChannelCorrection]:
         """Yield the corrections whose numbers follow from score tests at the present fit.
@@ -116,24 +116,26 @@ class ChannelDeletion:
                     numbers = improved(hypothesis.code, hypothesis.stated, own)
                     if not hypothesis.allows(numbers):
                         continue
-                    correction = ChannelCorrection.of(self, hypothesis, numbers, candidate=self.isolation.base)
+                    correction = ChannelCorrection.of(
+                        self, hypothesis, hypothesis.correction, numbers, candidate=self.isolation.base
+                    )
                     gain = sum(score.gain for score in own)
                     yield replace(correction, table=self.isolation.base.table, score_gain=gain)
 
-    def _left_out(self, hypothesis: ChannelHypothesis, numbers: Numbers = (), stds: Numbers = ()) -> Hypothesis:
-        fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
+    def _left_out(self, hypothesis: ChannelHypothesis) -> Hypothesis:
+        fault = with_action(hypothesis.fault((), ()), "it is left out")
         return Hypothesis(
             fault,
             "left out",
             mask_channel(self.channel),
             self.table(hypothesis.residual),
             self.candidate,
-            hypothesis.free + len(numbers),
+            hypothesis.free,
             is_specific=hypothesis.code not in ("unlike-others", "drift"),
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class ChannelCorrection(Hypothesis):
     """The hypothesis that a channel is put right by a correction, whose numbers follow from the recordings.
 
@@ -143,12 +145,15 @@ class ChannelCorrection(Hypothesis):
         The channel left out.
     hypothesis
         What the channel measures.
+    correct
+        Returns the correction for the numbers.
     numbers
         Their present values.
     """
 
-    deletion: ChannelDeletion | None = None
-    hypothesis: ChannelHypothesis | None = None
+    deletion: ChannelDeletion
+    hypothesis: ChannelHypothesis
+    correct: Callable[[Numbers], Correction]
     numbers: Numbers = ()
 
     @classmethod
@@ -156,12 +161,12 @@ class ChannelCorrection(Hypothesis):
         cls,
         deletion: ChannelDeletion,
         hypothesis: ChannelHypothesis,
+        correct: Callable[[Numbers], Correction],
         numbers: Numbers,
         stds: Numbers = (),
         candidate: CandidateFit | None = None,
     ) -> ChannelCorrection:
         """Correct a channel; without a candidate fit the residuals are those predicted."""
-        assert hypothesis.correction is not None  # noqa: S101 (asked by the caller; for the type checker)
         table = deletion.table(hypothesis.residual)
         if candidate is not None:
             # The residuals count in the units of the channel as it was recorded.
@@ -171,12 +176,13 @@ class ChannelCorrection(Hypothesis):
         return cls(
             with_action(hypothesis.fault(numbers, stds), "corrected"),
             "corrected",
-            hypothesis.correction(numbers),
+            correct(numbers),
             table,
             candidate or deletion.candidate,
             len(numbers),
             deletion=deletion,
             hypothesis=hypothesis,
+            correct=correct,
             numbers=numbers,
         )
 
@@ -196,30 +202,25 @@ class ChannelCorrection(Hypothesis):
             How many were made.
         """
         deletion, hypothesis = self.deletion, self.hypothesis
-        assert deletion is not None and hypothesis is not None and hypothesis.correction is not None  # noqa: S101, PT018
         numbers, scores = self.numbers, list[FaultScore]()
         candidate = isolation.fit(self.correction, self.candidate.fit)
         fits = 1
         if self.score_gain > 0 and candidate.misfit > _HALF * isolation.base.misfit:
             return None, fits  # the score test was made too far away
         while numbers:
-            every = score_faults_of(candidate.campaign, candidate.decays, candidate.fit)
-            scores = sorted(
-                (score for score in every if (score.kind, score.where) == (hypothesis.code, deletion.name)),
-                key=lambda score: score.axis,
-            )
+            scores = self._own(candidate.scores)
             if all(score.gain < _CONVERGED for score in scores):
                 break
             numbers = improved(hypothesis.code, numbers, scores)
             # Where the residuals are noise already, the numbers are settled in the fit of all drops.
             if candidate.is_explained or fits > _REFITS:
                 break
-            candidate = isolation.fit(hypothesis.correction(numbers), candidate.fit)
+            candidate = isolation.fit(self.correct(numbers), candidate.fit)
             fits += 1
         if not _is_relevant(hypothesis, numbers) or not hypothesis.allows(numbers):
             return None, fits
         stds = tuple(score.std for score in scores)
-        confirmed = ChannelCorrection.of(deletion, hypothesis, numbers, stds, candidate)
+        confirmed = ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate)
         if max((score.max_parameter_shift for score in scores), default=0.0) < _SHIFT:
             return confirmed, fits
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
@@ -240,19 +241,18 @@ class ChannelCorrection(Hypothesis):
         tuple or None
             None where it has no numbers, or where they are there already.
         """
-        deletion, hypothesis = self.deletion, self.hypothesis
-        if deletion is None or hypothesis is None or hypothesis.correction is None or not self.numbers:
-            return None
-        own = sorted(
-            (score for score in scores if (score.kind, score.where) == (hypothesis.code, deletion.name)),
-            key=lambda score: score.axis,
-        )
+        code, own = self.hypothesis.code, self._own(scores) if self.numbers else []
         if all(score.gain < _CONVERGED for score in own):
             return None
-        numbers = improved(hypothesis.code, self.numbers, own)
+        numbers = improved(code, self.numbers, own)
         stds = tuple(score.std for score in own)
-        better = ChannelCorrection.of(deletion, hypothesis, numbers, stds, self.candidate)
-        return better, hypothesis.correction(_change(hypothesis.code, self.numbers, numbers))
+        better = ChannelCorrection.of(self.deletion, self.hypothesis, self.correct, numbers, stds, self.candidate)
+        return better, self.correct(_change(code, self.numbers, numbers))
+
+    def _own(self, scores: Sequence[FaultScore]) -> list[FaultScore]:
+        """Return the scores of the numbers, in their order."""
+        kind = self.hypothesis.code, self.deletion.name
+        return sorted((score for score in scores if (score.kind, score.where) == kind), key=lambda score: score.axis)
 
 
 def _change(code: str, before: Numbers, after: Numbers) -> Numbers:

@@ -1,6 +1,6 @@
 """Suspects: what in the campaign file or the instruments, if it were otherwise, would explain the records better.
 
-A gain, a delay, a place: each is one more unknown of the same likelihood, and its score at the summit tells what it would
+A gain, a delay, a place: each is one more unknown of the same likelihood, and its score at the optimum tells what it would
 gain and which value it would take (Rao, Proc. Camb. Phil. Soc. 44 (1948) 50), without any further fit.
 """
 

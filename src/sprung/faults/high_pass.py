@@ -141,7 +141,7 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
     ----------
     decays
         What was fitted.
-    summit
+    optimum
         Where that ended.
     sensors
         One for each channel.

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, twist
+from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, torsion_test
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.channel_deletion import ChannelDeletion
-from sprung.faults.consistency import SHARE, SIGNIFICANT, consistency_of, score_faults_of
+from sprung.faults.consistency import SHARE, SIGNIFICANT
 from sprung.faults.correction import Correction, exclude_drops, mask_channel
 from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
@@ -66,9 +66,6 @@ def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
     -------
     Isolated
     """
-    base = isolation.base
-    if consistency_of(base.campaign, base.decays, base.fit) == "consistent":
-        return Isolated((), False, 0)
     first, fits = isolation, 0
     accepted: list[Hypothesis] = []
     sufficient = 0
@@ -85,7 +82,7 @@ def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
         isolation = isolation.after(best.candidate)
     hypotheses = tuple(accepted[:sufficient])
     if not first.base.is_explained and all(not hypothesis.is_specific for hypothesis in hypotheses):
-        fault = twist(first)
+        fault = torsion_test(first)
         if fault is not None:
             named = Hypothesis(fault, "named", Correction(), first.base.table, first.base)
             return Isolated((named,), False, fits)
@@ -148,10 +145,10 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
         gain = 0.0 if other is None else base.table.cost - other.table.cost
         if other is None or other.candidate.misfit > _STATEMENT * base.misfit:
             continue
-        if gain > SIGNIFICANT * other.candidate.overdispersion:
+        if gain > SIGNIFICANT * other.candidate.fit.overdispersion:
             confirmed.append(other)
     confirmed.sort(key=lambda hypothesis: hypothesis.score())
-    alike = SIGNIFICANT * confirmed[0].candidate.overdispersion if confirmed else 0.0
+    alike = SIGNIFICANT * confirmed[0].candidate.fit.overdispersion if confirmed else 0.0
     is_ambiguous = len(confirmed) > 1 and confirmed[1].score() - confirmed[0].score() < alike
     return (confirmed[0] if confirmed and not is_ambiguous else None), len(promising[:_MOST_STATEMENTS])
 
@@ -159,10 +156,9 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
 def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
     """Return the channel hypotheses of small size that gain by their score tests."""
     base = isolation.base
-    scores = score_faults_of(base.campaign, base.decays, base.fit)
     hypotheses: list[Hypothesis] = []
     for channel, sensor in enumerate(isolation.campaign.sensors):
-        own = [score for score in scores if score.where == sensor.channel]
+        own = [score for score in base.scores if score.where == sensor.channel]
         if max((score.gain for score in own), default=0.0) > SIGNIFICANT:
             hypotheses += ChannelDeletion(isolation, channel, base).scored(own)
     return hypotheses
@@ -242,7 +238,7 @@ def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
 
 def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Whether a hypothesis explains much of the misfit, and more than chance does."""
-    base, overdispersion = isolation.base, hypothesis.candidate.overdispersion
+    base, overdispersion = isolation.base, hypothesis.candidate.fit.overdispersion
     gain = base.table.cost / overdispersion - hypothesis.score(overdispersion)
     required = max(SIGNIFICANT, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
     explains = base.is_explained or hypothesis.candidate.misfit < _FEW * base.misfit
@@ -262,7 +258,7 @@ def _left_over(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> H
 
 def _with_rival(isolation: FaultIsolation, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Hypothesis:
     """Return the best hypothesis; only named, and together with another one that explains the recordings about as well."""
-    overdispersion = best.candidate.overdispersion
+    overdispersion = best.candidate.fit.overdispersion
     limit = best.score(overdispersion) + SIGNIFICANT
     largest = np.inf if isolation.base.is_explained else max(SHARE * isolation.base.misfit, best.candidate.misfit)
     rivals = [

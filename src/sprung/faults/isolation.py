@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
-from sprung.estimation import MOST_STEPS, NEAR, FitResult, fit_linear, overdispersion_of
+from sprung.estimation import MOST_STEPS, NEAR, FitResult, fit_linear
+from sprung.faults.consistency import score_faults_of
 from sprung.faults.correction import Correction, mask_channel
+from sprung.faults.fault_scores import FaultScore
 from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection import choose_structure
@@ -83,17 +85,9 @@ class CandidateFit:
         return np.asarray(kept > _DRIFT_SHARE * np.maximum(excess, np.finfo(float).tiny))
 
     @cached_property
-    def overdispersion(self) -> float:
-        """By how much the variances exceed those of white residuals of drops that agree."""
-        return overdispersion_of(self.fit)
-
-    def residual_sums_of(self, decays: Sequence[FreeDecay]) -> Real:
-        """Return the residual sums of squares of other decays, whatever their states; shape (decay, channel)."""
-        return self.fit.residual_sums_of(decays)
-
-    def states_of(self, decays: Sequence[FreeDecay]) -> Real:
-        """Return {X, Ẋ} at the start of other decays, SI, shape (decay, state)."""
-        return self.fit.states_of(decays)
+    def scores(self) -> tuple[FaultScore, ...]:
+        """Scores of all faults of small size, the largest gain first."""
+        return score_faults_of(self.campaign, self.decays, self.fit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +102,6 @@ class FaultIsolation:
         Names of all recordings, in order: the rows of every residual table.
     tracks, extras
         Of the model, which stays the same in all candidate fits.
-    fits
-        How many fits were made before.
     """
 
     base: CandidateFit

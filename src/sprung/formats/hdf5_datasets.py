@@ -28,7 +28,7 @@ def read_dataset(dataset: Any, budget: MemoryBudget) -> NDArray[Any]:
     ----------
     dataset
         Of h5py.
-    allowance
+    budget
         What it may take up.
 
     Raises
@@ -53,7 +53,7 @@ def lazy_numbers(dataset: Any, path: Path, budget: MemoryBudget, transposed: boo
         Of h5py.
     path
         The file.
-    allowance
+    budget
         What its numbers may take up together: a file that says it holds more is damaged.
     transposed
         Whether the file keeps the last side first, as MATLAB does.

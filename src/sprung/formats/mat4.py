@@ -32,7 +32,7 @@ def variables(path: Path, budget: MemoryBudget) -> dict[str, Node]:
     ----------
     path
         The file.
-    allowance
+    budget
         What they may take up.
 
     Returns

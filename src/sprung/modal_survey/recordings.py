@@ -239,12 +239,12 @@ def _decays(values: Real, rate: float, time: Real) -> list[tuple[int, int | None
         if found := detect_drops([(0, factor * values)], rate, start=float(time[0])).drops:
             break
     else:
-        return [(_begin(values), None)]
+        return [(_largest_reading(values), None)]
     spans = [np.searchsorted(time, (drop.landing + _HOP_TIME, drop.end)).tolist() for drop in found]
     return [(begin, end + 1) for begin, end in spans]
 
 
-def _begin(values: Real) -> int:
+def _largest_reading(values: Real) -> int:
     """Return the sample of the largest reading, with each channel divided by its root-mean-square."""
     deviation = values - np.nanmedian(values, axis=1, keepdims=True)
     size = np.sqrt(np.nanmean(deviation**2, axis=1, keepdims=True))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation import NEAR, FitResult, overdispersion_of, wald_test
+from sprung.estimation import NEAR, FitResult, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, required_gain
@@ -157,7 +157,7 @@ class ModelSearch:
     @cached_property
     def overdispersion(self) -> float:
         """By how much less the recordings tell than white residuals of drops that agree would: a factor on variances."""
-        return overdispersion_of(self.fit)
+        return self.fit.overdispersion
 
     @cached_property
     def _noise_at_rest(self) -> Real:

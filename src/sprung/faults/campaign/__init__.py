@@ -9,7 +9,7 @@ from sprung.faults.campaign.high_passes import high_passes
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.campaign.load_position import load_position
-from sprung.faults.campaign.twist import twist
+from sprung.faults.campaign.torsion import torsion_test
 
 __all__ = [
     "exchanged_channels",
@@ -18,5 +18,5 @@ __all__ = [
     "known_quantities",
     "load_frames",
     "load_position",
-    "twist",
+    "torsion_test",
 ]

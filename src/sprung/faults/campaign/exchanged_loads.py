@@ -47,5 +47,7 @@ def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
 def _most_likely_loads(isolation: FaultIsolation, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:
     """Return for each drop the load with which this vehicle explains it best."""
     decays, weights = isolation.decays, candidate.fit.weights
-    costs = [candidate.residual_sums_of([replace(decay, load=load) for decay in decays]) @ weights for load in loads]
+    costs = [
+        candidate.fit.residual_sums_of([replace(decay, load=load) for decay in decays]) @ weights for load in loads
+    ]
     return {decay.file: loads[int(best)] for decay, best in zip(decays, np.argmin(costs, axis=0), strict=True)}

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sprung.errors import Fault
-from sprung.faults.consistency import score_faults_of
 from sprung.faults.correction import Correction, move_load_item
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
@@ -51,6 +50,7 @@ def _moved(score: FaultScore, distance: float) -> Correction:
 
 def _best_score(candidate: CandidateFit, like: FaultScore | None) -> FaultScore | None:
     """Return the largest score of a load's place, or that of the same item and axis as another one."""
-    scores = score_faults_of(candidate.campaign, candidate.decays, candidate.fit)
-    found = [score for score in scores if score.kind == "load-position" and (like is None or score[:4] == like[:4])]
-    return found[0] if found else None
+    matching = (
+        score for score in candidate.scores if score.kind == "load-position" and (like is None or score[:4] == like[:4])
+    )
+    return next(matching, None)

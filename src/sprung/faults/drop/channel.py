@@ -25,7 +25,7 @@ def channel_of_drop(deletion: DropDeletion) -> Iterator[Hypothesis]:
     candidate, noise = deletion.candidate, deletion.isolation.noise
     channels = np.flatnonzero(deletion.counts).tolist()
     masked = [without_channel(deletion.decay, channel) for channel in channels]
-    states, residuals = candidate.states_of(masked), candidate.residual_sums_of(masked)
+    states, residuals = candidate.fit.states_of(masked), candidate.fit.residual_sums_of(masked)
     for channel, residual, state in zip(channels, residuals, states, strict=True):
         counts = deletion.counts.copy()
         counts[channel] = 0

@@ -43,4 +43,4 @@ def clock(deletion: DropDeletion) -> Iterator[Hypothesis]:
 def _residuals(deletion: DropDeletion, deviations: Sequence[float]) -> Real:
     decay = deletion.decay
     decays = [replace(decay, rate=decay.rate * (1 + deviation)) for deviation in deviations]
-    return deletion.candidate.residual_sums_of(decays)
+    return deletion.candidate.fit.residual_sums_of(decays)

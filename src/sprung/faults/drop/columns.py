@@ -21,7 +21,7 @@ def exchanged_columns(deletion: DropDeletion) -> Iterator[Hypothesis]:
     if not pairs:
         return
     sensors = deletion.isolation.campaign.sensors
-    residuals = deletion.candidate.residual_sums_of([_exchanged(deletion.decay, *pair) for pair in pairs])
+    residuals = deletion.candidate.fit.residual_sums_of([_exchanged(deletion.decay, *pair) for pair in pairs])
     for pair, residual in zip(pairs, residuals, strict=True):
         names = ", ".join(sensors[channel].channel for channel in pair)
         what = "the two channels are exchanged in this drop, as the other drops show; corrected"

@@ -19,6 +19,6 @@ def other_load(deletion: DropDeletion) -> Iterator[Hypothesis]:
             continue
         what = f"the drop moves like one with load '{load}', not '{stated}'; it is taken for one with '{load}'"
         fault = Fault("load-exchanged", deletion.name, what, "Correct load = ... of this drop in the campaign file.")
-        residual = deletion.candidate.residual_sums_of([replace(deletion.decay, load=load)])[0]
+        residual = deletion.candidate.fit.residual_sums_of([replace(deletion.decay, load=load)])[0]
         correction = relabel_loads({deletion.name: load})
         yield Hypothesis(fault, "corrected", correction, deletion.table(residual), deletion.candidate)

@@ -137,7 +137,7 @@ def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> Commo
     for one in explaining:
         base = FaultIsolation.of(one.changed, prepare(one.changed).decays, None, "shared", ()).base
         samples = max(float(base.table.counts.sum()), 1.0)
-        fitted.append((base.table.cost / samples, samples, base.overdispersion, one))
+        fitted.append((base.table.cost / samples, samples, base.fit.overdispersion, one))
     fitted.sort(key=lambda each: each[0])
     best, samples, overdispersion, first = fitted[0]
     alike = [one for cost, *_, one in fitted if (cost - best) * samples < SIGNIFICANT * overdispersion]

@@ -14,7 +14,7 @@ _PARTICIPATION = 0.05
 """Share of a twist, squared, that a sensor has to show for it to count."""
 
 
-def twist(isolation: FaultIsolation) -> Fault | None:
+def torsion_test(isolation: FaultIsolation) -> Fault | None:
     """Test whether the body twists.
 
     Parameters
