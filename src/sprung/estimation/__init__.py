@@ -13,11 +13,11 @@ from sprung.estimation.nonlinear_scores import score_nonlinear_terms
 from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, score_added, wald_test
-from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
+from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, VehicleSize, mountings_of, usual_vehicle
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
@@ -46,6 +46,8 @@ __all__ = [
     "Scale",
     "ScoreTest",
     "Unidentifiable",
+    "UsualValue",
+    "VehicleSize",
     "autocorrelation_inflation",
     "canonical_basis",
     "characteristics_of",
@@ -69,5 +71,6 @@ __all__ = [
     "shape_of",
     "to_estimates",
     "uncertainty_of",
+    "usual_vehicle",
     "wald_test",
 ]

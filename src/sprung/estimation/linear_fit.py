@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import (
     CLOSE_BY,
     CONVERGED,
@@ -65,6 +65,7 @@ def fit_linear(
     *,
     start: Mapping[str, float] | None = None,
     guess: Mapping[str, float] = MappingProxyType({}),
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
     starts: int = STARTS,
     enough: float = CONVERGED,
     most: int = MOST_STEPS,
@@ -86,6 +87,8 @@ def fit_linear(
         Parameter values, SI, to start from; where it is left out, a direct start and a grid of usual vehicles.
     guess
         Values of some parameters, SI, where `start` is left out: the vehicle with them competes with those of the grid.
+    usual
+        Usual values of parameters, as weak priors beside a `start`.
     starts
         How many are refined at the most: the direct one, by modulating functions, and those of the grid that explain the
         records best as they are. The best end wins. Where the direct one ends at an optimum whose residuals are white noise, no
@@ -112,7 +115,7 @@ def fit_linear(
     objective = _objective(decays, models, sensors)
     if start is not None:
         values = masses | dict(start)
-        problem = _problem(objective, known, values)
+        problem = _problem(objective, known, values, usual)
         return _fit_from(problem, values, enough, most)
     size = VehicleSize.of(known, sensors)
     has_engine = "m_e" in next(iter(models.values())).names
@@ -150,10 +153,13 @@ def _objective(
 
 
 def _problem(
-    objective: ClosedFormObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
+    objective: ClosedFormObjective,
+    known: Mapping[str, KnownValue],
+    typical: Mapping[str, float],
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
 ) -> EstimationProblem:
     names = next(iter(objective.models.values())).names
-    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known, usual))
 
 
 def _fit_from(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
 from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -50,6 +51,7 @@ def fit_nonlinear(
     beginning_only: bool = False,
     most: int = _MOST_STEPS,
     tilting: bool = False,
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
     progress: Progress = silent,
 ) -> FitResult:
     """Fit one vehicle with nonlinear forces to all decays by maximum likelihood.
@@ -79,6 +81,8 @@ def fit_nonlinear(
         Steps at the most, of each fit on the way.
     tilting
         Whether the sensors turn with the body, and measure the less of gravity.
+    usual
+        Usual values of parameters, as weak priors.
     progress
         Called with each step that begins.
 
@@ -96,7 +100,7 @@ def fit_nonlinear(
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
         objective = _objective(part, models, sensors, states, tilting, longest_step)
-        problem = _problem(objective, known, values)
+        problem = _problem(objective, known, values, usual)
         found = _maximise(problem, objective, values, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
@@ -181,10 +185,13 @@ def _objective(
 
 
 def _problem(
-    objective: TimeSteppingObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
+    objective: TimeSteppingObjective,
+    known: Mapping[str, KnownValue],
+    typical: Mapping[str, float],
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
 ) -> EstimationProblem:
     names = next(iter(objective.models.values())).names
-    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known, usual))
 
 
 def _maximise(

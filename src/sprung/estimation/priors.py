@@ -1,10 +1,11 @@
-"""What is known beforehand: exact statements are constraints of the fit, uncertain ones its priors."""
+"""What is known beforehand: exact statements are constraints of the fit, uncertain ones and usual sizes its priors."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,6 +72,21 @@ class Coordinates:
         return u
 
 
+class UsualValue(NamedTuple):
+    """Usual value of a parameter in vehicles of all kinds: a weak :term:`prior`.
+
+    Attributes
+    ----------
+    value
+        SI.
+    spread
+        Factor by which one standard deviation lies above or below it.
+    """
+
+    value: float
+    spread: float
+
+
 @dataclass(frozen=True, eq=False)
 class PriorsAndConstraints:
     """:term:`Priors <prior>` and constraints: statements about parameters and derived quantities.
@@ -83,10 +99,26 @@ class PriorsAndConstraints:
         The fit's coordinates.
     statements
         Known quantities by name: parameters, or derived quantities of `sprung.vehicle.DERIVED`.
+    usual
+        Usual values of parameters by name, which hold where the records say little.
     """
 
     coordinates: Coordinates
     statements: Mapping[str, KnownValue]
+    usual: Mapping[str, UsualValue] = field(default_factory=dict)
+
+    @cached_property
+    def _usual(self) -> tuple[Real, Real]:
+        """Coordinates of the usual values, and derivatives of the residuals; (value,) and (value, coordinate)."""
+        names = self.coordinates.names
+        places = [names.index(name) for name in self.usual]
+        values = np.ones(len(names))
+        values[places] = [usual.value for usual in self.usual.values()]
+        centre = self.coordinates.from_values(values)
+        # A coordinate that is no logarithm has the same relative standard deviation at the usual value.
+        std = np.array([np.log(usual.spread) for usual in self.usual.values()])
+        std = std * values[places] / self.coordinates.derivatives(centre)[places]
+        return centre[places], np.eye(len(names))[places] / std[:, None]
 
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
@@ -112,16 +144,21 @@ class PriorsAndConstraints:
         return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
 
     def residuals(self, u: Real) -> tuple[Real, Real]:
-        """Return residuals of the uncertain statements, and their derivatives.
+        """Return residuals of the uncertain statements and of the usual values, and their derivatives.
 
         Returns
         -------
         residuals
-            (known - value) / std, shape (statement,).
+            (known - value) / std, shape (statement,); usual values in the coordinates.
         derivatives
             Of value / std by the coordinates, shape (statement, coordinate).
         """
-        return self._at(u, exact=False)
+        residuals, rows = self._at(u, exact=False)
+        if not self.usual:
+            return residuals, rows
+        centre, usual_rows = self._usual
+        usual_residuals = usual_rows.sum(axis=1) * centre - usual_rows @ u
+        return np.append(residuals, usual_residuals), np.vstack([rows, usual_rows])
 
     def without(self, name: str) -> PriorsAndConstraints:
         """Return the same without one statement."""

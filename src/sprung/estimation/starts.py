@@ -25,6 +25,7 @@ HOP_FREQUENCIES = (8.5, 12.0, 18.0)
 
 DAMPING_RATIOS = (0.12, 0.35, 0.8)
 
+_USUAL_BODY, _USUAL_HOP, _USUAL_DAMPING = 1.4, 12.0, 0.3  # Hz, Hz, and the damping ratio of the body
 _GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
 _MOUNT_DAMPING = 0.08  # damping ratio of usual engine mounts
 _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
@@ -126,25 +127,46 @@ def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool 
     dict
         Values, SI, of every parameter of every linear model; the known ones hold.
     """
+    for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
+        values = usual_vehicle(size, body, hop, damping) | NEUTRAL
+        for mounting in mountings_of(size.wheelbase) if engine else [USUAL_MOUNTING]:
+            values |= mounting.engine(USUAL_ENGINE * size.sprung_mass)
+            yield values | {name: one.value for name, one in known.items() if name in values}
+
+
+def usual_vehicle(
+    size: VehicleSize, body: float = _USUAL_BODY, hop: float = _USUAL_HOP, damping: float = _USUAL_DAMPING
+) -> dict[str, float]:
+    """Return a usual vehicle of a size, without further model terms.
+
+    Parameters
+    ----------
+    size
+        The size.
+    body, hop
+        Frequencies of body and wheels, Hz.
+    damping
+        Damping ratio of the body.
+
+    Returns
+    -------
+    dict
+        Parameters by name, SI; half-distances both shared and separate.
+    """
     wheelbase, front_share, half_track = size.wheelbase, size.front_share, size.half_track
     a, b = (1 - front_share) * wheelbase, front_share * wheelbase
     wheel, sprung_mass = _WHEEL_SHARE * size.mass, size.sprung_mass
-    for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
-        values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
-        for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
-            spring = corner * (2 * np.pi * body) ** 2
-            values |= {
-                f"m_u{axle}": wheel,
-                f"k_s{axle}": spring,
-                f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
-                f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
-            }
-            values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
-        values |= {"a": a, "b": b}
-        values |= NEUTRAL
-        for mounting in mountings_of(wheelbase) if engine else [USUAL_MOUNTING]:
-            values |= mounting.engine(USUAL_ENGINE * sprung_mass)
-            yield values | {name: one.value for name, one in known.items() if name in values}
+    values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
+    for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
+        spring = corner * (2 * np.pi * body) ** 2
+        values |= {
+            f"m_u{axle}": wheel,
+            f"k_s{axle}": spring,
+            f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
+            f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
+        }
+        values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
+    return values | {"a": a, "b": b}
 
 
 def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:

@@ -113,7 +113,16 @@ def fit_structure(
     sensors, known = structure.campaign.sensors, structure.known
     start = start_values(structure, before.parameters)
     if not structure.is_time_stepped:
-        fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough, most=most)
+        fitted = fit_linear(
+            decays,
+            structure.linear_models,
+            sensors,
+            known,
+            start=start,
+            usual=structure.usual,
+            enough=enough,
+            most=most,
+        )
         return fitted.after(before)
     states = states_by_coordinates(before.states if states is None else states, before.names, structure.names)
     fitted = fit_nonlinear(
@@ -128,6 +137,7 @@ def fit_structure(
         beginning_only=beginning_only,
         most=most,
         tilting=structure.gravity_leakage,
+        usual=structure.usual,
         progress=progress,
     )
     return fitted.after(before)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimation import USUAL_MOUNTING, Mounting
+from sprung.estimation import USUAL_MOUNTING, Mounting, UsualValue
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     EXTRAS,
@@ -58,6 +58,8 @@ class ModelStructure:
         Mounting of an engine, where a fit begins.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
+    usual
+        Usual values of parameters, which are weak priors.
     """
 
     campaign: Campaign
@@ -71,6 +73,7 @@ class ModelStructure:
     stop_gap: float = 1.0
     engine_mounting: Mounting = USUAL_MOUNTING
     carried_at: CarriedAt = "wheels"
+    usual: Mapping[str, UsualValue] = field(default_factory=dict)
 
     @property
     def heights(self) -> Heights:
@@ -123,7 +126,8 @@ class ModelStructure:
     def with_terms(self, terms: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
         """Return the structure with other terms, and other tracks."""
         ordered = tuple(extra for extra in EXTRAS if extra in terms)
-        return replace(self, tracks=tracks or self.tracks, terms=ordered)
+        changed = replace(self, tracks=tracks or self.tracks, terms=ordered)
+        return replace(changed, usual={name: value for name, value in self.usual.items() if name in changed.names})
 
 
 def choose_structure(

@@ -60,6 +60,8 @@ class ModelTerm:
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
     resembles_others
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
+    is_usual
+        Whether most vehicles have it.
     undefined
         Values of those parameters that have none where the term is absent.
     first
@@ -75,6 +77,7 @@ class ModelTerm:
     negligible: float
     explains_all: bool = False
     resembles_others: bool = False
+    is_usual: bool = False
     undefined: StartValues | None = None
     first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
@@ -201,6 +204,7 @@ TERMS: Mapping[str, ModelTerm] = {
             spread=3.0,
             negligible=0.01,
             resembles_others=True,
+            is_usual=True,
             undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
             first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
         ),
