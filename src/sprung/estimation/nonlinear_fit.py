@@ -86,7 +86,7 @@ def fit_nonlinear(
     -------
     FitResult
     """
-    laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
+    laws = ", ".join(own.law.name for own in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     steps, values = 0, dict(start)
     stages = (

@@ -118,7 +118,7 @@ def _unit_forces(model: NonlinearModel, values: Real, motion: Real, step: float,
     X, V = np.split(motion, 2)
     travel, rate = rows @ (X + model.sag(values)[:, None]), rows @ V
     way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
-    felt = ElementInput(travel.T, rate.T, way.T, np.zeros_like(travel.T))
+    felt = ElementInput(travel.T, rate.T, way.T, np.zeros((travel.shape[1], model.forces.memories)))
     return np.asarray(model.forces.differentiate(values, felt)[0][:, :, list(chosen)])
 
 
