@@ -153,7 +153,7 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
     for _ in range(_ITERATIONS):
         travel = G @ X - raised + offsets
         zero = np.zeros_like(travel)
-        found = forces.evaluate(values, ElementInput(travel, zero, zero, np.zeros(forces.memories)))
+        found = forces.evaluate(forces.parameters(values), ElementInput(travel, zero, zero, np.zeros(forces.memories)))
         residual = K @ X + load + G.T @ found.force
         X = X - np.linalg.solve(K + (G.T * found.by_travel) @ G, residual)
         if np.abs(residual).max() < 1e-9 * np.abs(load).max():

@@ -103,13 +103,17 @@ class NonlinearForces(NamedTuple):
         """Number of memories."""
         return len(self.memory_rows)
 
-    def evaluate(self, values: Array, given: ElementInput) -> ElementForce:
+    def parameters(self, values: Array) -> tuple[Array, ...]:
+        """Return the parameters of each law, shape (parameter, element), from all parameters, SI, shape (parameter,)."""
+        return tuple(values[law.positions] for law in self.laws)
+
+    def evaluate(self, parameters: Sequence[Array], given: ElementInput) -> ElementForce:
         """Return the force of each row.
 
         Parameters
         ----------
-        values
-            Parameters, SI, shape (parameter,).
+        parameters
+            Of each law, as from `parameters`.
         given
             Input by row, shape (..., row), and memories, shape (..., memory).
 
@@ -118,7 +122,10 @@ class NonlinearForces(NamedTuple):
         ElementForce
             By row; what concerns a memory has the shape (..., memory), with the derivative of the row's force by it.
         """
-        parts = [law.evaluate(values[positions], self._part(given, law, at, own)) for law, at, own, positions in self.laws]
+        parts = [
+            law.evaluate(own_parameters, self._part(given, law, at, own))
+            for (law, at, own, _), own_parameters in zip(self.laws, parameters, strict=True)
+        ]
         if len(parts) == 1 and self.memories:
             return parts[0]
         force, by_travel, by_rate = np.zeros((3, *given.travel.shape))

@@ -123,7 +123,7 @@ class _Segments(NamedTuple):
         travel, rate = np.split(motion @ np.swapaxes(stepper.inputs, 1, 2), 2, axis=-1)
         memories = cut(trajectory.memories, np.maximum(times - 1, times[:1]))
         given = ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), memories)
-        return cls(stepper, number, motion, given, stepper.forces.evaluate(stepper.values, given))
+        return cls(stepper, number, motion, given, stepper.forces.evaluate(stepper.parameters, given))
 
     def differentiate(self, outputs: Array, every: int) -> tuple[Array, Array]:
         """Differentiate by the state and the memories at the start of each segment, and by the parameters.

@@ -20,8 +20,11 @@ from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_CORRECTIONS = 3
-"""Evaluations of the forces at the end of each step: they depend little on their own effect within the step."""
+_MOST_EVALUATIONS = 8
+"""Evaluations of the forces at the end of each step, at the most: mostly two are enough."""
+
+_SOLVED = 1e-6
+"""Difference of forces from those that they were evaluated with, as a part of the largest, that is none."""
 
 
 class Trajectory(NamedTuple):
@@ -78,6 +81,11 @@ class Stepper:
             for model, length in zip(models, lengths, strict=True)
         ]
         return cls(models[0].forces, values, *(np.stack(part) for part in zip(*computed, strict=True)), kind)
+
+    @cached_property
+    def parameters(self) -> tuple[Array, ...]:
+        """Parameters of the laws, each of shape (parameter, element)."""
+        return self.forces.parameters(self.values)
 
     @cached_property
     def slots(self) -> Index:
@@ -173,11 +181,11 @@ class Stepper:
             at_start = states @ _transposed(self.by_state) + self.inputs[:, None, :, -1]
             held, force = _Feedback.of(self.directly_by_force, forces), np.zeros((*shape, rows))
             found, travel = self._solve(at_start, at_start[..., :rows], memories, force, held)
-            force = motions[0, ..., state:-1] = found.force
+            force = before = motions[0, ..., state:-1] = found.force
             for k in range(steps):
                 np.matmul(motions[k], predictor, out=predicted)
-                found, travel = self._solve(predicted[..., state:], travel, kept[k], force, feedback)
-                force, end = found.force, motions[k + 1]
+                found, travel = self._solve(predicted[..., state:], travel, kept[k], 2 * force - before, feedback)
+                before, force, end = force, found.force, motions[k + 1]
                 end[..., state:-1], kept[k + 1] = force, found.memory
                 np.add(predicted[..., :state], force @ by_force, out=end[..., :state])
         return motions, kept
@@ -199,16 +207,19 @@ class Stepper:
             What the forces add to travels and rates.
         """
         rows, memory_rows = force.shape[-1], self.forces.memory_rows
-        for correction in range(_CORRECTIONS):
+        for left in reversed(range(_MOST_EVALUATIONS)):
             end = predicted + force @ feedback.by_force
             travel = end[..., :rows]
-            found = self.forces.evaluate(self.values, ElementInput(travel, end[..., rows:], travel - before, memories))
-            if correction < _CORRECTIONS - 1:
-                # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
-                slope = found.by_travel * feedback.own_travel + found.by_rate * feedback.own_rate
-                if len(memory_rows):
-                    slope[..., memory_rows] += found.by_memory * found.memory_by_travel * feedback.memory_travel
-                force = force + (found.force - force) / (1.0 - slope)
+            given = ElementInput(travel, end[..., rows:], travel - before, memories)
+            found = self.forces.evaluate(self.parameters, given)
+            error = found.force - force
+            if not left or not np.abs(error).max() > _SOLVED * np.abs(found.force).max():
+                break
+            # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
+            slope = found.by_travel * feedback.own_travel + found.by_rate * feedback.own_rate
+            if len(memory_rows):
+                slope[..., memory_rows] += found.by_memory * found.memory_by_travel * feedback.memory_travel
+            force = force + error / (1.0 - slope)
         return found, travel
 
 
