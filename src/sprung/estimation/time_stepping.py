@@ -65,6 +65,8 @@ class TimeSteppingObjective:
         Whether the sensors turn with the body, and measure the less of gravity.
     longest_step
         s: over a longer one forces do not run straight.
+    longest_derivative_step
+        s, of the steps by which motions are differentiated, if that is longer: rougher derivatives lead to the same optimum.
     """
 
     decays: Sequence[FreeDecay]
@@ -73,6 +75,7 @@ class TimeSteppingObjective:
     states: Real
     sensors_tilt: bool
     longest_step: float
+    longest_derivative_step: float = 0.0
 
     @cached_property
     def _kinds(self) -> list[tuple[str, float]]:
@@ -98,6 +101,12 @@ class TimeSteppingObjective:
     def every(self) -> int:
         """Steps from one sample to the next."""
         return max(int(np.ceil(1.0 / (min(decay.rate for decay in self.decays) * self.longest_step))), 1)
+
+    @cached_property
+    def derivative_every(self) -> int:
+        """Steps over each of which the derivatives make one."""
+        most = self.longest_derivative_step / max(self.times)
+        return max(part for part in range(1, self.every + 1) if self.every % part == 0 and part <= max(most, 1))
 
     @cached_property
     def samples(self) -> Index:
@@ -360,7 +369,12 @@ class TimeSteppingAt:
             # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
             angles = np.broadcast_to(np.eye(2, outputs.shape[2], k=1), (len(outputs), 2, outputs.shape[2]))
             outputs = np.concatenate([outputs, angles], axis=1)
-        found = differentiate_motions(self.stepper, self.trajectory, outputs, objective.every)
+        stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
+        if skipped > 1:
+            longer = [skipped * time for time in objective.times]
+            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values)
+            trajectory = Trajectory(*(part[::skipped] for part in trajectory))
+        found = differentiate_motions(stepper, trajectory, outputs, objective.every // skipped)
         products = []
         for drop, (moved, samples) in enumerate(zip(found.outputs, objective.samples, strict=True)):
             inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]

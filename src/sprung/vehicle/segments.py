@@ -46,8 +46,9 @@ class Prediction(NamedTuple):
 
 def segments_of(steps: int, every: int) -> tuple[int, int]:
     """Return the number of segments of so many steps, and their length in steps, a multiple of those between samples."""
-    number = max(min(_SEGMENTS, steps // every), 1)
-    return number, -(-(steps + 1) // (number * every)) * every
+    samples = steps // every + 1
+    number = min(_SEGMENTS, samples)
+    return number, -(-samples // number) * every
 
 
 def integrate_near(
