@@ -27,7 +27,7 @@ from sprung.vehicle import (
 
 Real = NDArray[np.float64]
 
-_BEYOND = 1.5
+_EXTENSION = 1.5
 """Length of a stored curve to either side, over the largest value that the drops reached."""
 
 _DENSE = 1000
@@ -59,9 +59,9 @@ class CurvePoint(NamedTuple):
     Attributes
     ----------
     force
-        In the curve's unit.
+        N, of the shape of the velocity or travel.
     std
-        Its standard error, in the same unit.
+        Its standard error, N, of the same shape.
     """
 
     force: Real | float
@@ -76,9 +76,9 @@ class ForceCurve:
     Attributes
     ----------
     x
-        Velocity or travel, positive in rebound; between these points the curve is straight within 0.1 %. Shape (point,).
+        Velocity, m/s, or travel, m, positive in rebound; between these points the curve is straight within 0.1 %. Shape (point,).
     force, std
-        Force, positive in rebound and zero at rest, and its standard error, shape (point,).
+        Force, N, positive in rebound and zero at rest, and its standard error, N, shape (point,).
     x_unit, force_unit
         Their units.
     reached
@@ -104,7 +104,7 @@ class ForceCurve:
         Parameters
         ----------
         x
-            Velocity or travel in `x_unit`, positive in rebound, of any shape; beyond the stored points along the last line.
+            Velocity, m/s, or travel, m, positive in rebound, of any shape; beyond the stored points along the last line.
 
         Returns
         -------
@@ -165,7 +165,7 @@ def force_curves(
 
 def _curve(fit: FitStatistics, elements: CurveElements, reached: tuple[float, float]) -> ForceCurve | None:
     """Return one curve; None where it is straight as far as the drops reach, or not determined."""
-    length = _BEYOND * max(map(abs, reached))
+    length = _EXTENSION * max(map(abs, reached))
     spacing = np.linspace(-1, 1, 2 * _DENSE + 1)
     x = np.union1d(length * spacing * np.abs(spacing), reached)
     inside = (x >= reached[0]) & (x <= reached[1])

@@ -71,7 +71,15 @@ class CurveElements(NamedTuple):
 
     @classmethod
     def of(cls, name: str, linear: Sequence[Element], nonlinear: Sequence[NonlinearElement]) -> CurveElements:
-        """Return the elements of one of `FORCE_CURVES` among those of a vehicle."""
+        """Return the elements of one force curve, of those of a vehicle.
+
+        Parameters
+        ----------
+        name
+            One of `FORCE_CURVES`.
+        linear, nonlinear
+            Elements of the vehicle.
+        """
         kind = FORCE_CURVES[name]
         rows = _rows_of(kind.parameter, linear, nonlinear)
         # Friction acts at the spring, and is stated with the damper.
@@ -116,11 +124,30 @@ class CurveElements(NamedTuple):
         return force / len(self.rows), gradient / len(self.rows)
 
     def is_nonlinear(self, names: Sequence[str], values: Array, x: Array) -> bool:
-        """Whether a nonlinear law acts anywhere at arguments of shape (point,), parameters being SI, shape (parameter,)."""
+        """Whether a nonlinear law acts at any of some arguments.
+
+        Parameters
+        ----------
+        names, values, x
+            As for `force`.
+        """
         return bool(self._nonlinear_force(names, values, x)[1].any())
 
     def hysteresis(self, names: Sequence[str], values: Array) -> tuple[float, Array]:
-        """Return half the width of the hysteresis, N, of each wheel on average, and its gradient, shape (parameter,)."""
+        """Return half the width of the hysteresis, of each wheel on average, and its gradient.
+
+        Parameters
+        ----------
+        names, values
+            As for `force`.
+
+        Returns
+        -------
+        force
+            N.
+        gradient
+            By each parameter, shape (parameter,).
+        """
         one, zero = np.ones(1), np.zeros(1)
         force, gradient = _sum(self.hysteretic, names, values, ElementInput(zero, zero, zero, one))
         return float(force[0]) / len(self.rows), gradient[0] / len(self.rows)

@@ -15,7 +15,7 @@ from sprung.uncertainty import NORMAL_95
 _POINTS = 300
 """Points of a drawn curve."""
 
-_BEYOND = 0.12
+_MARGIN = 0.12
 """Part of the reached range by which a curve is continued on either side."""
 
 _AXLES: tuple[tuple[str, Role], ...] = (("front", "simulated"), ("rear", "first"))
@@ -75,8 +75,8 @@ def _picture(figure: _Figure, curves: Mapping[str, ForceCurve]) -> Picture | Non
 
 def _marks(figure: _Figure, axle: str, role: Role, curve: ForceCurve) -> Iterator[Mark]:
     low, high = curve.reached
-    beyond = _BEYOND * (high - low)
-    for start, end, is_reached in ((low - beyond, low, False), (low, high, True), (high, high + beyond, False)):
+    margin = _MARGIN * (high - low)
+    for start, end, is_reached in ((low - margin, low, False), (low, high, True), (high, high + margin, False)):
         inner = curve.x[(curve.x > start) & (curve.x < end)]
         x = np.union1d(np.linspace(start, end, _POINTS if is_reached else 2), inner)[:: int(figure.sign)]
         force, std = curve.at(x)
