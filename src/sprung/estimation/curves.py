@@ -76,7 +76,8 @@ class ForceCurve:
     Attributes
     ----------
     x
-        Velocity, m/s, or travel, m, positive in rebound; between these points the curve is straight within 0.1 %. Shape (point,).
+        Velocity, m/s, or travel, m, positive in rebound, shape (point,); between these points the curve is straight
+        within 0.1 %.
     force, std
         Force, N, positive in rebound and zero at rest, and its standard error, N, shape (point,).
     x_unit, force_unit
