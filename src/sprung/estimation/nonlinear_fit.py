@@ -95,7 +95,9 @@ def fit_nonlinear(
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
-        objective = _objective(part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE)
+        objective = _objective(
+            part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
+        )
         problem = _problem(objective, known, values)
         found = _maximise(problem, objective, values, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps

@@ -22,6 +22,7 @@ from sprung.vehicle.stepping import Stepper, Trajectory
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+
 class Sensitivities(NamedTuple):
     """Derivatives of motions by the parameters, the initial states and the initial memories, in this order.
 
@@ -152,7 +153,9 @@ class _Segments(NamedTuple):
         geometry, driving = _Drive.of(stepper.input_slopes, start), _Drive.of(stepper.step_slopes, start)
         # Slopes of the forces and memories, ready to multiply changes (kind, row, place, unknown).
         by_rate = _for_changes(found.by_rate)
-        by_memory, by_increment, kept = map(_for_changes, (found.by_memory, found.memory_by_travel, found.memory_by_memory))
+        by_memory, by_increment, kept = map(
+            _for_changes, (found.by_memory, found.memory_by_travel, found.memory_by_memory)
+        )
         by_increment[0] = 0.0
         by_travel = _for_changes(found.by_travel)
         by_travel[:, :, own] += by_memory * by_increment
