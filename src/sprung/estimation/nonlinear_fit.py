@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
-from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
+from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.optimisation import Maximum
@@ -103,7 +103,7 @@ def fit_nonlinear(
             part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
         )
         problem = _problem(objective, known, values, usual)
-        found = _maximise(problem, objective, values, tolerance, most)
+        found = _maximise(problem, objective, values, tolerance, most, FAR if usual else CLOSE_BY)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.
@@ -203,11 +203,12 @@ def _maximise(
     values: Mapping[str, float],
     tolerance: float,
     most: int,
+    damping: float,
 ) -> Maximum[Iterate]:
     """Maximise, and once more without impossible memories of friction, as long as that is more likely."""
     priors = problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
-    best = problem.maximise(u, None, tolerance, CLOSE_BY, most)
+    best = problem.maximise(u, None, tolerance, damping, most)
     for _ in range(_RESTARTS):
         states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
         if states is None:
