@@ -19,7 +19,7 @@ from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
-from sprung.vehicle import ElementInput, NonlinearModel
+from sprung.vehicle import ElementInput, NonlinearModel, highest_derivatives, state_matrix
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -85,12 +85,13 @@ def _of_drop(
     poles, left, shapes, derivatives = at.response_of(drop)
     state, motion = fit.states[drop], fit.motion(drop, 0, samples)
     neutral = np.array([values[name] for name in model.names])
-    force_rows = -np.linalg.solve(model.linear.matrices(neutral).M, model.forces.rows.at(neutral).T)
+    force_rows = -np.linalg.solve(model.linear.matrices(neutral).leading, model.forces.rows.at(neutral).T)
     unit = _unit_forces(model, neutral, motion, step, [model.names.index(name) for name in brought])
 
     every = max(int(decay.rate / _RATE), 1)
     chosen = np.arange(0, samples, every)
-    responses = _modal_responses(poles, left[:, len(motion) // 2 :] @ force_rows, unit, step)
+    driven_states = highest_derivatives(len(force_rows), model.linear.massive)
+    responses = _modal_responses(poles, left[:, driven_states] @ force_rows, unit, step)
     forced = np.einsum("cj,jbt->tcb", shapes, responses[:, :, chosen], optimize=True).real
     forced += np.einsum("cf,tfb->tcb", at.sensor_rows @ force_rows, unit[chosen], optimize=True)
     waves = np.exp(np.multiply.outer(chosen, poles * step))
@@ -107,7 +108,7 @@ def _of_drop(
     rows = whole.reshape(-1, whole.shape[2])
     products = rows.T @ rows * (samples / len(chosen))
     count = fitted.shape[2] + forced.shape[2]
-    products[count:-1, count:-1] += np.diag(initial_state_prior_std(len(state)) ** -2.0)
+    products[count:-1, count:-1] += np.diag(initial_state_prior_std(len(force_rows), len(state)) ** -2.0)
     information, gradient, _ = eliminate(products[:-1, :-1], products[:-1, -1], count)
     return information, gradient
 
@@ -115,8 +116,9 @@ def _of_drop(
 def _unit_forces(model: NonlinearModel, values: Real, motion: Real, step: float, chosen: Sequence[int]) -> Real:
     """Return the forces per unit of each chosen parameter along a motion, shape (time, force, parameter)."""
     rows = model.forces.rows.at(values)
-    X, V = np.split(motion, 2)
-    travel, rate = rows @ (X + model.sag(values)[:, None]), rows @ V
+    n = rows.shape[1]
+    velocity = state_matrix(model.linear.accelerations(values)[0], model.linear.massive)[:n] @ motion
+    travel, rate = rows @ (motion[:n] + model.sag(values)[:, None]), rows @ velocity
     way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
     felt = ElementInput(travel.T, rate.T, way.T, np.zeros_like(travel.T))
     return np.asarray(model.forces.differentiate(values, felt)[0][:, :, list(chosen)])
@@ -128,7 +130,7 @@ def _modal_responses(poles: Complex, participation: Complex, forces: Real, step:
     responses = np.empty(modal.shape, dtype=np.complex128)
     for j, pole in enumerate(poles):
         turn = np.exp(pole * step)
-        held = (turn - 1) / pole
-        rising = (held / step - 1) / pole
+        held = (turn - 1) / pole if pole else step
+        rising = (held / step - 1) / pole if pole else step / 2
         responses[j] = lfilter([rising, held - rising], [1.0, -turn], modal[j], axis=-1)
     return responses

@@ -18,7 +18,7 @@ from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import ElementInput, NonlinearModel, Rows, Stepper, Trajectory
+from sprung.vehicle import ElementInput, NonlinearModel, Rows, Stepper, Trajectory, coordinates
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -131,11 +131,18 @@ class TimeSteppingObjective:
         """How many numbers {X, Ẋ} has."""
         return self.models_by_kind[0].state_size
 
+    @property
+    def coordinates(self) -> int:
+        """How many numbers X has."""
+        return len(coordinates(self.models_by_kind[0].names))
+
     @cached_property
     def prior_std(self) -> Real:
         """Prior standard uncertainty of initial states and memories, shape (state + memory,)."""
         memories = len(self.models_by_kind[0].forces.with_memory)
-        return np.concatenate([initial_state_prior_std(self.state_size), np.full(memories, _MEMORY_STD)])
+        return np.concatenate(
+            [initial_state_prior_std(self.coordinates, self.state_size), np.full(memories, _MEMORY_STD)]
+        )
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> TimeSteppingObjective:
         """Return the objective of other decays; those of the same recordings start from the same states, others from rest."""
@@ -182,7 +189,7 @@ class TimeSteppingObjective:
             {X, Ẋ} and memories, shape (drop, state + memory).
         """
         forces, size = self.models_by_kind[0].forces, self.state_size
-        X, V, memories = np.split(states + self.sag(values), [size // 2, size], axis=1)
+        X, V, memories = np.split(states + self.sag(values), [self.coordinates, size], axis=1)
         impossible = np.abs(memories) > _MOST_MEMORY
         if not impossible.any():
             return None
