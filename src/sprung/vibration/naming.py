@@ -32,6 +32,9 @@ _TRAMP = {
 _ALONE = {"z_e": "engine bounce"}
 """By coordinate: the name of the mode in which it moves by itself."""
 
+_TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)
+"""Shapes of the modes of body and wheels, in the order of `MODE_NAMES`, shape (7, mode)."""
+
 MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), *_ALONE.values())
 """Every name that a mode may get. Of the eight names of wheel modes one vehicle has four: for hop and for tramp either those of
 the axles or those of all four wheels."""
@@ -114,21 +117,18 @@ def name_modes(
     further = [name for name in coordinates if name in _ALONE]
     chosen = [*range(len(COORDINATES)), *(list(coordinates).index(name) for name in further)]
     scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, *[2] * len(further)])
-    shapes = [scale[:, None] * np.stack([mode.shape[chosen] for mode in group], axis=1) for group in groups]
+    together = scale[:, None] * np.stack([mode.shape[chosen] for group in groups for mode in group], axis=1)
+    # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
+    of_shapes = np.hstack(
+        [modal_assurance_criterion(together[:7], _TEMPLATES), modal_assurance_criterion(together, _alone(scale))]
+    )
+    known = (*MODE_NAMES[: _TEMPLATES.shape[1]], *(_ALONE[name] for name in further))
+    sizes = np.array([len(group) for group in groups])
+    of_groups = np.add.reduceat(of_shapes, np.cumsum(sizes) - sizes, axis=0) / sizes[:, None]
     best, name_of = -np.inf, dict[int, str]()
-    for (hop, of_hop), (tramp, of_tramp) in product(_HOP.items(), _TRAMP.items()):
+    for hop, tramp in product(_HOP, _TRAMP):
         names = (*_BODY, *hop, *tramp, *(_ALONE[name] for name in further))
-        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T)
-        # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
-        alike = np.stack(
-            [
-                np.append(
-                    modal_assurance_criterion(shape[:7], templates).mean(axis=0),
-                    modal_assurance_criterion(shape, _alone(scale)).mean(axis=0),
-                )
-                for shape in shapes
-            ]
-        )
+        alike = of_groups[:, [known.index(name) for name in names]]
         rows, columns = linear_sum_assignment(alike, maximize=True)
         total = float(alike[rows, columns].sum())
         if total > best + _TIE:
