@@ -19,7 +19,7 @@ from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
-from sprung.vehicle import ElementInput, NonlinearModel, highest_derivatives, state_matrix
+from sprung.vehicle import ElementInput, NonlinearModel, highest_derivatives
 from sprung.vibration import exponentials, real_product
 
 Real = NDArray[np.float64]
@@ -130,9 +130,8 @@ def _unit_forces(
     Parameters without any force are left out: what has no stiffness has no clearance that matters.
     """
     rows = model.forces.rows.at(values)
-    n = rows.shape[1]
-    velocity = state_matrix(model.linear.accelerations(values)[0], model.linear.massive)[:n] @ motion
-    travel, rate = (rows @ (motion[:n] + model.sag(values)[:, None])).T, (rows @ velocity).T
+    travel = (rows @ (motion[: rows.shape[1]] + model.sag(values)[:, None])).T
+    rate = (rows @ model.linear.velocities(values) @ motion).T
     way = np.diff(travel, axis=0, prepend=travel[:1] - step * rate[:1])
     for law, chosen, positions in model.forces.laws:
         felt = ElementInput(*(part[:, chosen] for part in (travel, rate, way, np.zeros_like(travel))))

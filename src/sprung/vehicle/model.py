@@ -274,6 +274,10 @@ class LinearModel:
         slopes: Array = -np.asarray(np.linalg.solve(leading, right), dtype=float)
         return highest, slopes
 
+    def velocities(self, values: ArrayLike) -> Array:
+        """Return the velocities of all coordinates as functions of the state {X, Ẋ}, shape (n, n + m)."""
+        return state_matrix(self.accelerations(values)[0], self.massive)[: len(self.heave)]
+
     @cached_property
     def massive(self) -> int:
         """Number of coordinates that move a mass, m; they are the first."""

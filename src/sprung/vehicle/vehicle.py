@@ -160,12 +160,12 @@ class Vehicle:
         for axle in "fr":
             self._resolve_places("t", axle, None, problems)
             self._resolve_places("n", axle, 1.0, problems)
-        mounted = "damper-mount" in self.extras
+        has_mounts = "damper-mount" in self.extras
         for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
             value, parameter = getattr(self, name), PARAMETERS[name]
-            positive = parameter.positive and (mounted or name not in ("c_sf", "c_sr"))
+            positive = parameter.positive and (has_mounts or name not in ("c_sf", "c_sr"))
             possible = value is None or (
-                (math.isfinite(value) or (value == NEUTRAL.get(name) and not mounted))
+                (math.isfinite(value) or (value == NEUTRAL.get(name) and not has_mounts))
                 and (value > 0 or parameter.signed or (value == 0 and not positive))
             )
             if not possible:
