@@ -9,12 +9,13 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
+from typing import Any
 from zlib import crc32
 
 import numpy as np
 from real_motion import BallastItem
 from real_sensors import RealSensor, sensors_of
-from real_vehicle import STATIONS, BodyMode, Occupant, Pair, RealCar
+from real_vehicle import STATIONS, BodyMode, Occupant, Pair, RealCar, Station
 
 RATE, DURATION, NOISE = 500.0, 3.6, 0.02
 """Samples per second, s of each recording, and m/s² root-mean-square."""
@@ -28,7 +29,7 @@ WEIGHING = 3.0
 GAIN, TILT, PLACE = 0.01, math.radians(2.0), 0.01
 """Standard deviations of sensors as they are: part of the reading, rad and m."""
 
-FIVE = (STATIONS, ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
+FIVE: tuple[tuple[Station, ...], ...] = (STATIONS, ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
 """Wheels of the five drops."""
 
 SPREAD = 0.15
@@ -101,7 +102,7 @@ class RealTest:
     car: RealCar
     sensors: tuple[RealSensor, ...]
     items: tuple[BallastItem, ...]
-    drops: tuple[tuple[bool, tuple[str, ...]], ...]
+    drops: tuple[tuple[bool, tuple[Station, ...]], ...]
     height: float = 0.05
     filtered: bool = False
     other: RealCar | None = None
@@ -134,7 +135,9 @@ class Draw:
         """Return a plain car of any type, or of those named."""
         types = [one for one in TYPES if not names or one.name in names]
         one = types[int(self.random.integers(len(types)))]
-        drawn = {name: value * self.size(math.exp(-SPREAD), math.exp(SPREAD)) for name, value in one.parameters.items()}
+        drawn: dict[str, Any] = {
+            name: value * self.size(math.exp(-SPREAD), math.exp(SPREAD)) for name, value in one.parameters.items()
+        }
         # The geometry of a type varies less, and both axles have about the same track.
         for name in ("a", "b", "t_f", "t_r"):
             drawn[name] = getattr(one, name) * self.size(0.95, 1.05)
@@ -273,7 +276,7 @@ def draw_test(kind: str, seed: int) -> RealTest:
     test = RealTest(kind, seed, car, sensors, _load(car, draw), drops, 0.07 if bus else 0.05)
     if kind == "tall":
         bars = (0.5 * car.k_sf * draw.size(0.7, 1.4), 0.3 * car.k_sr * draw.size(0.7, 1.4))
-        heights = {"cg_height": draw.size(0.75, 1.0), "wheel_height": draw.size(0.3, 0.36)}
+        heights: dict[str, Any] = {"cg_height": draw.size(0.75, 1.0), "wheel_height": draw.size(0.3, 0.36)}
         return replace(test, car=replace(car, anti_roll=bars), **heights)
     if kind == "two vehicles":
         return replace(test, other=draw.car((car.name,)))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from real_vehicle import AXLE, GRAVITY, POLYTROPIC, SIDE, STATIONS, Pair, Real, RealCar, softened
+from real_vehicle import AXLE, GRAVITY, POLYTROPIC, SIDE, STATIONS, Pair, Real, RealCar, Station, softened
 
 STEP = 2.5e-4
 """s of a step, at most."""
@@ -47,7 +47,7 @@ class Row:
 
     car: RealCar
     items: tuple[BallastItem, ...] = ()
-    wheels: tuple[str, ...] = STATIONS
+    wheels: tuple[Station, ...] = STATIONS
     height: float = 0.05
     release: float = 0.4
 
@@ -192,9 +192,9 @@ class Rows:
         return np.asarray(np.sign(force) * (u + self.knee))
 
     def tyre(self, u: Real, v: Real) -> Real:
-        """Return the forces of the ground at more compression than at rest, (row, station), N."""
-        force: Real = self.tyre_load + self.k_t * u * (1 + 0.5 * self.hard * u) + self.c_t * v
-        return np.maximum(force, 0.0)
+        """Return the forces of the ground at more compression than at rest, (row, station), N; none before the tyre touches it."""
+        spring: Real = self.tyre_load + self.k_t * u * (1 + 0.5 * self.hard * u)
+        return np.where(spring > 0, np.maximum(spring + self.c_t * v, 0.0), 0.0)
 
     def rub(self, x: Real, x_0: Real, f_0: Real) -> Real:
         """Return Dahl's friction where it was f_0 at the travel x_0, and the travel grew or shrank steadily since then."""

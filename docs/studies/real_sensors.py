@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from real_motion import Motion, points
-from real_vehicle import GRAVITY, SIDE, STATIONS, Real, RealCar
+from real_vehicle import GRAVITY, SIDE, STATIONS, Real, RealCar, Station
 from scipy.signal import butter, lfilter, lfilter_zi
 
 FILTER_ORDER, CORNER = 4, 100.0
@@ -35,7 +36,7 @@ class RealSensor:
     """
 
     channel: str
-    on: str
+    on: Literal["body"] | Station
     x: float = 0.0
     y: float = 0.0
     z: float = 0.0

@@ -20,7 +20,10 @@ Pair = tuple[float, float]
 GRAVITY = 9.80665
 """m/s²."""
 
-STATIONS = ("fl", "fr", "rl", "rr")
+Station = Literal["fl", "fr", "rl", "rr"]
+"""A wheel: front left, front right, rear left, rear right."""
+
+STATIONS: tuple[Station, ...] = ("fl", "fr", "rl", "rr")
 """Wheels in the order of all arrays."""
 
 AXLE, SIDE = np.array([0, 0, 1, 1]), np.array([1.0, -1.0, 1.0, -1.0])

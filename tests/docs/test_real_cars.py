@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ from real_vehicle import BodyMode, Occupant, RealCar
 import sprung
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
-PLAIN = RealCar(**TABLE_1_CAR.parameters)
+SIZES: dict[str, Any] = dict(TABLE_1_CAR.parameters)
+PLAIN = RealCar(**SIZES)
 ITEMS = (BallastItem(140, -1.1, 0.3), BallastItem(80, -2.2, -0.3, (3.0, 4.0)))
 LOAD = {
     "name": "ballast",
@@ -53,7 +55,7 @@ def test_equals_simulate_for_the_plain_car() -> None:
     ],
     ids=["anti-roll", "rebound", "progressive", "friction"],
 )
-def test_equals_simulate_for_laws_that_both_have(ours: dict[str, object], theirs: dict[str, float]) -> None:
+def test_equals_simulate_for_laws_that_both_have(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
     # Time stepping of nonlinear elements has errors of 1e-4 there; the noise is 2e-4 of the largest acceleration.
     assert difference(replace(PLAIN, **ours), replace(TABLE_1_CAR, **theirs), 2.5e-4) < 3e-4
 
