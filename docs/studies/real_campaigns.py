@@ -97,8 +97,7 @@ def record(tests: Sequence[RealTest], duration: float = DURATION) -> list[tuple[
 
 
 def _truth(test: RealTest, motion: Motion) -> Truth:
-    lifted = np.asarray(motion.lifted).any(axis=1, keepdims=True)[:, 0]
-    last = [int(np.flatnonzero(one).max(initial=0)) for one in lifted]
+    last = [int(np.flatnonzero(np.logical_or.reduce(one, axis=0)).max(initial=0)) for one in motion.lifted]
     fastest = np.zeros((2, 2))
     for rates, start in zip(motion.rate, last, strict=True):
         for axle in (0, 1):

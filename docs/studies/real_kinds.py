@@ -174,7 +174,7 @@ def add_zener(car: RealCar, draw: Draw) -> RealCar:
 
 
 def add_tyre(car: RealCar, draw: Draw) -> RealCar:
-    """Add tyres whose rate grows by 3 to 8 of its size per metre (of a bus a third of that), and damp 50 to 200 N s/m."""
+    """Add tyres whose secant rate grows by 3 to 8 of its size per metre (a bus: a third), and damp 50 to 200 N s/m."""
     growth, damping = draw.pair(3, 8), draw.pair(50, 200)
     part = 3.0 if car.name == "bus" else 1.0
     scale = 0.5 * (car.k_tf + car.k_tr) / 220e3

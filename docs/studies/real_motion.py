@@ -159,6 +159,8 @@ class Rows:
         self.inverse = np.linalg.inv(self.mass)
         corners = np.array([np.repeat([c.b, c.a], 2) * c.m_s / (2 * c.wheelbase) for c in cars])
         self.tyre_load = GRAVITY * (corners + self.m_u)
+        # Deflection at rest d of k d (1 + h d) = W, free of cancellation where h is small.
+        self.sunk = 2 * self.tyre_load / (self.k_t * (1 + np.sqrt(1 + 4 * self.hard * self.tyre_load / self.k_t)))
 
     def spring(self, x: Real) -> Real:
         """Return the tension of the springs at travels, (row, station), N."""
@@ -192,9 +194,10 @@ class Rows:
         return np.asarray(np.sign(force) * (u + self.knee))
 
     def tyre(self, u: Real, v: Real) -> Real:
-        """Return the forces of the ground at more compression than at rest, (row, station), N; none before the tyre touches it."""
-        spring: Real = self.tyre_load + self.k_t * u * (1 + 0.5 * self.hard * u)
-        return np.where(spring > 0, np.maximum(spring + self.c_t * v, 0.0), 0.0)
+        """Return the forces of the ground, (row, station), N, at more compression than at rest; none before the tyre touches."""
+        deep = np.maximum(self.sunk + u, 0.0)
+        spring: Real = self.k_t * deep * (1 + self.hard * deep)
+        return np.where(deep > 0, np.maximum(spring + self.c_t * v, 0.0), 0.0)
 
     def rub(self, x: Real, x_0: Real, f_0: Real) -> Real:
         """Return Dahl's friction where it was f_0 at the travel x_0, and the travel grew or shrank steadily since then."""
@@ -245,7 +248,7 @@ class Rows:
     def energy(self, at: State, ground: Real) -> Real:
         """Return the energy of motion and of linear springs, tyres, bars, body and seats, with that of gravity, (row,), J."""
         x, u = self.travel(at.X), ground - at.X[:, WHEEL]
-        pressed = np.maximum(u, -self.tyre_load / self.k_t)
+        pressed = np.maximum(u, -self.sunk)
         stored = 0.5 * self.k_s * x**2 + 0.25 * self.bar * (x - x[:, [1, 0, 3, 2]]) ** 2
         stored += 0.5 * self.k_t * pressed**2 + self.tyre_load * (pressed + at.X[:, WHEEL])
         stored += 0.5 * self.m_u * at.V[:, WHEEL] ** 2

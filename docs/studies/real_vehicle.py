@@ -92,7 +92,7 @@ class RealCar:
     k_sf, k_sr
         Spring rates at the rest position of the empty car, of slow motion: without the Zener branch.
     k_tf, k_tr
-        Tyre rates at rest.
+        Tyre rates where the tyre just touches the ground.
     c_sf, c_sr
         Compression damping below the knee.
     mount, mount_damping
@@ -103,7 +103,7 @@ class RealCar:
     zener, relaxation
         Rate of the branch beside the spring as a part of the spring rate, and its time constant, s.
     hard, tyre_damping
-        Growth of the tyre rate per metre of deflection, as a part of the rate at rest, and N s/m.
+        Growth h of the tyre's secant rate k (1 + h d) with its deflection d, 1/m, and damping while it touches, N s/m.
     friction, presliding
         Dahl's friction of each suspension, N, and its stiffness before it slides, N/m.
     column
