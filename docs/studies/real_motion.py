@@ -194,7 +194,7 @@ class Rows:
         return np.asarray(np.sign(force) * (u + self.knee))
 
     def tyre(self, u: Real, v: Real) -> Real:
-        """Return the forces of the ground, (row, station), N, at more compression than at rest; none before the tyre touches."""
+        """Return the forces of the ground at compressions beyond that at rest, (row, station), N; none in the air."""
         deep = np.maximum(self.sunk + u, 0.0)
         spring: Real = self.k_t * deep * (1 + self.hard * deep)
         return np.where(deep > 0, np.maximum(spring + self.c_t * v, 0.0), 0.0)
