@@ -18,7 +18,17 @@ from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualVal
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, score_added, wald_test
-from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, VehicleSize, mountings_of, usual_vehicle
+from sprung.estimation.starts import (
+    USUAL_ENGINE,
+    USUAL_MOUNT,
+    USUAL_MOUNTING,
+    USUAL_RELAXATION,
+    Mounting,
+    VehicleSize,
+    mountings_of,
+    usual_rubber,
+    usual_vehicle,
+)
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
@@ -31,7 +41,9 @@ __all__ = [
     "STARTS",
     "UNNAMED",
     "USUAL_ENGINE",
+    "USUAL_MOUNT",
     "USUAL_MOUNTING",
+    "USUAL_RELAXATION",
     "ClosedFormObjective",
     "Coordinates",
     "Correlation",
@@ -76,6 +88,7 @@ __all__ = [
     "shape_of",
     "to_estimates",
     "uncertainty_of",
+    "usual_rubber",
     "usual_vehicle",
     "wald_test",
 ]

@@ -85,8 +85,9 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
     """Return the samples by which the start of each decay is to be moved, and {X, Ẋ} there, shape (drop, state)."""
     shifts, states = [], fit.states.copy()
     for drop, decay in enumerate(decays):
-        matrices = models[decay.load].matrices(fit.values)
-        sag = np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY)
+        model = models[decay.load]
+        matrices = model.matrices(fit.values)
+        sag = matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)
         static = sag[WHEELS_AT, None]  # how far the standing vehicle compresses its tyres
         earlier, samples = decay.earlier.shape[1] if fit.is_reversible else 0, decay.samples
         motion = fit.motion(drop, earlier, min(samples, int(_LONGEST * decay.rate)))

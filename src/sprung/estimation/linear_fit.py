@@ -38,9 +38,6 @@ Real = NDArray[np.float64]
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
 
-_LARGEST_STEP = 1.0
-"""Largest Newton step of a coordinate, dimensionless, that an estimate without a fit takes."""
-
 STARTS = 3
 """How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
 
@@ -238,7 +235,7 @@ def escape_local_optimum(fit: FitResult) -> FitResult:
 
 
 def score_linear_term(
-    decays: Sequence[FreeDecay],
+    fit: FitResult,
     models: Mapping[str, LinearModel],
     sensors: Sequence[Sensor],
     known: Mapping[str, KnownValue],
@@ -248,10 +245,12 @@ def score_linear_term(
 
     Parameters
     ----------
-    decays, models, sensors, known
+    fit
+        Of the smaller model.
+    models, sensors, known
         As for `fit_linear`, of the larger model.
     values
-        Its parameters, SI, where it equals the fitted smaller one.
+        Its parameters, SI, where it equals the fitted smaller one, or nearly so.
 
     Returns
     -------
@@ -260,10 +259,12 @@ def score_linear_term(
     dict
         Parameters of the larger model after one Newton step, SI, by name.
     """
-    problem = _problem(_objective(decays, models, sensors), known, values)
+    problem = _problem(_objective(fit.decays, models, sensors), known, values)
     u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    information, gradient, null_space = problem.system(problem.start(u))
+    iterate = Iterate(u, problem.objective.at(problem.priors.coordinates.values(u), fit.weights))
+    information, gradient, null_space = problem.system(iterate)
     test = score_test(information, gradient, 0)
-    step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
-    estimates = problem.priors.coordinates.values(u + step)
-    return test.gain(), dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))
+    # A term whose parameters have no meaning without it is there a little, which the fitted model has not to bear.
+    lost = max(problem.cost(iterate) - fit.problem.cost(fit.iterate), 0.0)
+    estimates = problem.priors.coordinates.extrapolated(u, null_space @ test.joint_values())
+    return test.gain() - lost, dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))

@@ -55,7 +55,7 @@ def _linear(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, f
     best, score = search.structure, (0.0, 0.0)
     for variant in start_variants(term, search.with_terms([term]), own):
         values = neutral_values(variant, own)
-        gain, estimates = score_linear_term(search.decays, variant.linear_models, sensors, variant.known, values)
+        gain, estimates = score_linear_term(search.fit, variant.linear_models, sensors, variant.known, values)
         if gain >= score[0]:
             score = gain, abs(TERMS[term].size(estimates))
             best = replace(search.structure, engine_mounting=variant.engine_mounting)

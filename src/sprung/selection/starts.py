@@ -13,7 +13,7 @@ from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import ENGINE, TERMS
-from sprung.vehicle import NEUTRAL, Rows, coordinates, nonlinear_elements, with_separate_tracks
+from sprung.vehicle import NEUTRAL, Rows, nonlinear_elements, state_variables, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -68,10 +68,10 @@ def states_by_coordinates(states: Real, before: Sequence[str], names: Sequence[s
     before, names
         Parameters of the structure that they belong to, and of the other.
     """
-    own, new = coordinates(before), coordinates(names)
-    X, V, memories = np.split(states, [len(own), 2 * len(own)], axis=1)
-    chosen = [own.index(coordinate) if coordinate in own else 0 for coordinate in new]
-    return np.hstack([X[:, chosen], V[:, chosen], memories])
+    own, new = state_variables(before), state_variables(names)
+    x, memories = np.split(states, [len(own)], axis=1)
+    chosen = [own.index(variable) if variable in own else own.index(("z_s", variable[1])) for variable in new]
+    return np.hstack([x[:, chosen], memories])
 
 
 def fit_structure(
@@ -133,7 +133,7 @@ def fit_structure(
         start=start,
         states=states,
         enough=enough,
-        near=states.shape[1] > 2 * len(coordinates(structure.names)),
+        near=states.shape[1] > len(state_variables(structure.names)),
         beginning_only=beginning_only,
         most=most,
         tilting=structure.gravity_leakage,
@@ -163,7 +163,8 @@ def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float
 def has_positive_masses(structure: ModelStructure, own: Mapping[str, float]) -> bool:
     """Whether the fit of a structure begins with a vehicle of which every part has mass."""
     start = np.array(list(start_values(structure, own).values()))
-    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in structure.linear_models.values())
+    masses = [model.matrices(start).M[: model.massive, : model.massive] for model in structure.linear_models.values()]
+    return all(np.linalg.eigvalsh(mass)[0] > 0 for mass in masses)
 
 
 def thinned(decays: Sequence[FreeDecay], rate: float, duration: float) -> tuple[list[FreeDecay], float]:

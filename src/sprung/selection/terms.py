@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sprung.estimation import USUAL_ENGINE
+from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
 from sprung.selection.structure import ModelStructure
 from sprung.vehicle import LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, parameters_of_term
 
@@ -40,6 +40,15 @@ _STROKE = 0.05
 
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
+
+
+_ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
+
+_ALMOST_NONE = 0.01
+"""Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
+
+_RIGID = 1e5
+"""Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
 
 
 @dataclass(frozen=True)
@@ -196,6 +205,24 @@ TERMS: Mapping[str, ModelTerm] = {
             explains_all=True,
             undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
             first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
+        ),
+        ModelTerm(
+            "damper-mount",
+            _of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
+            typical=1 / USUAL_MOUNT,
+            spread=2.0,
+            negligible=0.003,
+            undefined=lambda own, _: {f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+            first=lambda own, _: usual_rubber(own),
+        ),
+        ModelTerm(
+            "zener",
+            _of_axles(lambda p, axle: p[f"k_z{axle}"] / p[f"k_s{axle}"]),
+            typical=USUAL_RELAXATION,
+            spread=2.0,
+            negligible=0.01,
+            undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
+            first=lambda own, _: usual_rubber(own),
         ),
         ModelTerm(
             FRICTION,
