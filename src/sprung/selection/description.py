@@ -43,7 +43,7 @@ class TermDescription:
     again
         Text of the rear axle where the front axle is stated before; empty where the term belongs to the whole vehicle.
     neutral
-        Value of the first quantity where the term is absent; None where it is never.
+        Value of the first quantity, in its unit, where the term is absent; None where there is no such value.
     """
 
     text: str
