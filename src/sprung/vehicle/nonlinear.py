@@ -77,7 +77,7 @@ class NonlinearForces(NamedTuple):
         for element in elements:
             by_law.setdefault(element.law.name, []).append(element)
         distinct: dict[tuple[bytes, bool], NonlinearElement] = {}
-        laws, memory_rows = [], []
+        laws, memory_rows = [], list[int]()
         for alike in by_law.values():
             at = []
             for element in alike:
