@@ -129,11 +129,11 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
     trajectory = before.integrate(states, memories, steps)
-    size = 14 + before.forces.number
-    every_output = np.broadcast_to(np.eye(size), (2, size, size))
+    outputs = 14 + before.forces.number
+    every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
     sensitivities = differentiate_motions(before, trajectory, every_output, 1)
     found = np.stack(list(sensitivities.outputs), axis=1)
-    assert found.shape == (steps + 1, 2, size, len(names) + 18)
+    assert found.shape == (steps + 1, 2, outputs, len(names) + 18)
     number, length = segments_of(steps, 1)
     assert 1 < number < number * length
     for segment in range(number):

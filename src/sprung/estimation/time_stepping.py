@@ -222,9 +222,8 @@ class TimeSteppingObjective:
             return None
         rows = forces.rows.at(values)
         travel = X @ rows.T
-        answer = forces.evaluate(
-            forces.parameters(values), ElementInput(travel, V @ rows.T, np.zeros_like(travel), memories)
-        )
+        still = np.zeros_like(travel)  # a friction's force is its memory, whatever the rate
+        answer = forces.evaluate(forces.parameters(values), ElementInput(travel, still, still, memories))
         lost = np.where(impossible, memories, 0.0) * answer.by_memory @ rows[forces.memory_rows]
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]

@@ -77,7 +77,7 @@ class NonlinearForces(NamedTuple):
         for element in elements:
             by_law.setdefault(element.law.name, []).append(element)
         distinct: dict[tuple[bytes, bool], NonlinearElement] = {}
-        laws, memory_rows = [], []
+        laws, memory_rows = [], list[int]()
         for alike in by_law.values():
             at = []
             for element in alike:
@@ -291,18 +291,18 @@ class NonlinearModel:
         """
         G, G_slopes = self.forces.rows.at(values), np.moveaxis(self.forces.rows.slopes, 1, 0)
         offsets, offset_slopes = self.travel_offsets(values)
-        number, n = G.shape
-        m, state = self.linear.massive, self.state_size
+        (number, n), m = G.shape, self.linear.massive
+        # The velocities of coordinates without mass follow from displacements and forces.
         highest, highest_slopes = self.accelerations(values)
-        # Velocities of coordinates with mass are states; those of the others follow from the equations of motion.
-        rates, rate_slopes = np.zeros((n, state + number + 1)), np.zeros((len(values), n, state + number + 1))
-        rates[:m, n:state] = np.eye(m)
-        rates[m:], rate_slopes[:, m:] = highest[m:], highest_slopes[:, m:]
-        rows = np.zeros((2 * number, state + number + 1))
+        velocities, velocity_slopes = np.zeros_like(highest), np.zeros_like(highest_slopes)
+        velocities[:m, n : n + m] = np.eye(m)
+        velocities[m:], velocity_slopes[:, m:] = highest[m:], highest_slopes[:, m:]
+        rows = np.zeros((2 * number, highest.shape[1]))
         slopes = np.zeros((len(values), *rows.shape))
-        rows[:number, :n], slopes[:, :number, :n] = G, G_slopes
-        rows[:number, -1], slopes[:, :number, -1] = offsets, offset_slopes.T
-        rows[number:], slopes[:, number:] = G @ rates, G_slopes @ rates + G @ rate_slopes
+        for whole, part, offset in ((rows, G, offsets), (slopes, G_slopes, offset_slopes.T)):
+            whole[..., :number, :n] = part
+            whole[..., :number, -1] = offset
+        rows[number:], slopes[:, number:] = G @ velocities, G_slopes @ velocities + G @ velocity_slopes
         return rows, slopes
 
     def step(self, values: Array, length: float) -> tuple[Array, Array]:

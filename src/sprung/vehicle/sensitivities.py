@@ -219,8 +219,7 @@ class _Segments(NamedTuple):
         """
         travel, rate = np.split(by_force[:, None], 2, axis=2)
         effect = np.swapaxes(by_travel, 2, 3) * travel + np.swapaxes(by_rate, 2, 3) * rate
-        inverses: Array = np.linalg.inv(np.eye(by_force.shape[-1]) - effect)
-        return inverses
+        return np.asarray(np.linalg.inv(np.eye(by_force.shape[-1]) - effect), dtype=np.float64)
 
 
 class _Drive(NamedTuple):
@@ -247,7 +246,7 @@ class _Drive(NamedTuple):
         return cls(arranged.reshape(*arranged.shape[:2], -1), columns)
 
     def add(self, results: Array, arguments: Array) -> None:
-        """Add to changes of results, (kind, result, place, unknown), what the parameters change at arguments (kind, place, argument)."""
+        """Add to changes (kind, result, place, unknown) what parameters change at arguments (kind, place, argument)."""
         change = (arguments @ self.slopes).reshape(*arguments.shape[:2], results.shape[1], -1)
         results[..., self.columns] += np.swapaxes(change, 1, 2)
 

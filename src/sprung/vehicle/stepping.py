@@ -80,7 +80,8 @@ class Stepper:
             (*model.step(values, length), *model.element_inputs(values))
             for model, length in zip(models, lengths, strict=True)
         ]
-        return cls(models[0].forces, values, *(np.stack(part) for part in zip(*computed, strict=True)), kind)
+        steps, step_slopes, inputs, input_slopes = (np.stack(part) for part in zip(*computed, strict=True))
+        return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, kind)
 
     @cached_property
     def parameters(self) -> tuple[Array, ...]:
