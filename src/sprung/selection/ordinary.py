@@ -1,7 +1,7 @@
 """The search from the rich end: an ordinary vehicle that has every usual term, of which what is not needed is left out.
 
-A forward search from a model that lacks several terms goes astray: each term that it tries takes up some of what the others would
-explain. From a vehicle in which every usual term has its usual size the way to the optimum is short. Usual sizes are weak
+A forward search from a model that lacks several terms goes astray: each term that it tries takes up some of what the others
+would explain. From a vehicle in which every usual term has its usual size the way to the optimum is short. Usual sizes are weak
 priors, so that a term of which the records say little keeps the size that it usually has.
 """
 
@@ -98,7 +98,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         Model and fit as given where the ordinary vehicle explains no more.
     """
     terms = tuple(name for name in plain.open_terms if TERMS[name].is_usual)
-    if not terms or any(decay.clocks for decay in search.decays):
+    if not terms or not search.has_model_error or any(decay.clocks for decay in search.decays):
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))

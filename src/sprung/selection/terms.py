@@ -199,6 +199,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "tyre-damping",
             _of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
+            is_usual=True,
             typical=0.06,
             spread=2.5,
             negligible=0.005,
@@ -259,6 +260,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "damper-mount",
             _of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
+            is_usual=True,
             typical=1 / USUAL_MOUNT,
             spread=2.0,
             negligible=0.003,
@@ -274,6 +276,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "zener",
             _of_axles(lambda p, axle: p[f"k_z{axle}"] / p[f"k_s{axle}"]),
+            is_usual=True,
             typical=USUAL_RELAXATION,
             spread=2.0,
             negligible=0.01,
@@ -307,6 +310,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "rebound",
             _of_axles(lambda p, axle: p[f"r_{axle}"] - 1),
+            is_usual=True,
             typical=0.8,
             spread=2.0,
             negligible=0.01,
