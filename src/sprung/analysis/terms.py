@@ -7,7 +7,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms
+from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms, select_from_ordinary_vehicle
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
 
@@ -28,7 +28,11 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         search = fit_forced_terms(before, requested)
     else:
         _, plain = structures(run)
-        search = select_nonlinear(before, replace(plain, carried_at=before.structure.carried_at))
+        plain = replace(plain, carried_at=before.structure.carried_at)
+        search = select_from_ordinary_vehicle(before, plain)
+        if search.has_model_error or not before.has_model_error:
+            forward = select_nonlinear(replace(before, steps=search.steps), plain)
+            search = max(search, forward, key=lambda found: found.delta_bic(before))
     if search.structure.is_nonlinear:
         search = from_contact(search)
     return _with_search(run, run.model, search, "select_nonlinear_terms")
