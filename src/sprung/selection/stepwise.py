@@ -15,7 +15,7 @@ from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.scoring import Scores, score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import fit_structure, has_positive_masses
+from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import ENGINE, TERMS
 
@@ -313,7 +313,7 @@ def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
     """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well."""
     search.progress(Step(f"fitting with {term}"))
     larger = search.with_terms([term])
-    begins = term != ENGINE or has_positive_masses(larger, search.fit.parameters)
+    begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
     ends = [search.refit(larger)] if begins else []
     if term == ENGINE:
         sensors, known = larger.campaign.sensors, larger.known
