@@ -27,7 +27,7 @@ from sprung.estimation.problem import (
 from sprung.estimation.start_ranking import rank_starts
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.optimisation import Maximum
-from sprung.preprocess import FreeDecay, pool_moments
+from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
@@ -172,7 +172,7 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     """Whether the residuals of every channel are white noise, or rounding."""
     variance = fit.noise**2
     rounding = variance < 2 * fit.problem.least_variance
-    total, neighbours, _ = pool_moments(fit.residuals)
+    total, neighbours, _ = fit.residual_moments
     return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 

@@ -105,11 +105,12 @@ def _of_drop(
     fitted[:] = real_product(coefficients, np.hstack([waves, secular]))
     by_state[:] = real_product(left.T[:, None, :] * shapes, waves)
     residual[0] = np.nan_to_num(fit.residuals[drop][:, ::every])
-    for name, own, forces in _unit_forces(model, neutral, motion, step):
-        if name in brought:
-            modal = np.asarray(participation[:, own] @ forces, dtype=np.complex128)
-            responses = _modal_responses(poles, modal, step)
-            forced[brought.index(name)] += real_product(shapes, responses.T) + direct[:, own] @ forces
+    unit = [found for found in _unit_forces(model, neutral, motion, step) if found[0] in brought]
+    if unit:
+        modal = np.array([participation[:, own] @ forces for _, own, forces in unit])
+        responses = np.swapaxes(_modal_responses(poles, modal, step), 1, 2)
+        for (name, own, forces), response in zip(unit, responses, strict=True):
+            forced[brought.index(name)] += real_product(shapes, response) + direct[:, own] @ forces
 
     whole -= whole.mean(axis=2, keepdims=True)
     whole *= np.sqrt(fit.weights * decay.usable * channel_rate_ratios(decay))[:, None]
@@ -142,9 +143,11 @@ def _unit_forces(
 
 
 def _modal_responses(poles: Complex, modal: Complex, step: float) -> Complex:
-    """Return the response of every mode to modal forces that run straight between samples; both of shape (mode, time)."""
+    """Return the response of every mode to modal forces that run straight between samples; both (force, mode, time)."""
     turn = np.exp(poles * step)
     held = (turn - 1) / poles
     rising = (held / step - 1) / poles
-    filters = zip(rising, held, turn, modal, strict=True)
-    return np.array([lfilter([now, whole - now], [1.0, -z], force) for now, whole, z, force in filters])
+    responses = np.empty_like(modal)
+    for j, (now, whole, z) in enumerate(zip(rising, held, turn, strict=True)):
+        responses[:, j] = lfilter([now, whole - now], [1.0, -z], modal[:, j])
+    return responses
