@@ -76,7 +76,7 @@ def test_scores_are_those_of_the_linear_fit(
     """What an anti-roll bar would gain is told by modes as by steps."""
     larger = plain.with_terms(("anti-roll",))
     start = optimum.parameters | {"k_af": 0.0, "k_ar": 0.0}
-    ((by_modes, _),) = score_linear_term(decays, larger.linear_models, campaign.sensors, larger.known, [start])
+    ((by_modes, _),) = score_linear_term(optimum, larger.linear_models, campaign.sensors, larger.known, [start])
     all_in = plain.with_terms(("anti-roll", "friction"))
     by_steps = score_stepped_terms(
         decays,

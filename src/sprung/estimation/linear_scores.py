@@ -11,8 +11,8 @@ from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import objective_of, problem_of
 from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.priors import Coordinates
+from sprung.estimation.problem import Iterate
 from sprung.estimation.score_test import score_added, score_test
-from sprung.preprocess import FreeDecay
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LinearModel, Sensor, separate_track_names
 
@@ -85,7 +85,7 @@ def _changed(name: str, names: Sequence[str]) -> Real:
 
 
 def score_linear_term(
-    decays: Sequence[FreeDecay],
+    fit: FitResult,
     models: Mapping[str, LinearModel],
     sensors: Sequence[Sensor],
     known: Mapping[str, KnownValue],
@@ -97,8 +97,10 @@ def score_linear_term(
 
     Parameters
     ----------
-    decays, models, sensors, known
-        As for `fit_linear`, of the larger model.
+    fit
+        Of the smaller model.
+    models, sensors, known
+        As for `fit_linear`, of the larger one.
     starts
         Its parameters, SI, where it equals the fitted smaller one, in each of several ways.
 
@@ -108,12 +110,14 @@ def score_linear_term(
         For each of the starts the gain in twice the log-likelihood, to second order, and the parameters of the larger model
         after one Newton step, SI, by name.
     """
-    objective = objective_of(decays, models, sensors)
+    objective = objective_of(fit.decays, models, sensors)
     scores = []
     for values in starts:
         problem = problem_of(objective, known, values)
         u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-        information, gradient, null_space = problem.system(problem.start(u))
+        # Where the models are equal, so are their residuals, and the noise that these show.
+        iterate = Iterate(u, objective.at(problem.priors.coordinates.values(u), fit.weights))
+        information, gradient, null_space = problem.system(iterate)
         test = score_test(information, gradient, 0)
         step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
         estimates = problem.priors.coordinates.values(u + step)

@@ -77,7 +77,7 @@ def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple
     best, score, larger = search.structure, (0.0, 0.0), search.with_terms([term])
     variants = start_variants(term, larger, own)
     starts = [neutral_values(variant, own) for variant in variants]
-    tests = score_linear_term(search.decays, larger.linear_models, sensors, larger.known, starts)
+    tests = score_linear_term(search.fit, larger.linear_models, sensors, larger.known, starts)
     for variant, (gain, estimates) in zip(variants, tests, strict=True):
         if gain >= score[0]:
             score = gain, abs(TERMS[term].size(estimates))

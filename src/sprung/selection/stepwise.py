@@ -310,12 +310,15 @@ def _without_unneeded(
 
 
 def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
-    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well."""
+    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well.
+
+    Where nothing but noise is left, nothing is wrong without an engine.
+    """
     search.progress(Step(f"fitting with {term}"))
     larger = search.with_terms([term])
     begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
     ends = [search.refit(larger)] if begins else []
-    if term == ENGINE:
+    if term == ENGINE and (search.has_model_error or not ends):
         sensors, known = larger.campaign.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
