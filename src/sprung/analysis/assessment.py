@@ -21,13 +21,22 @@ from sprung.assessment import (
     estimate_model_error,
 )
 from sprung.checking import check_prepared
-from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
+from sprung.estimation import (
+    FitResult,
+    FitStatistics,
+    ForceCurve,
+    characteristics_of,
+    estimate_of,
+    force_curves,
+    mode_estimates,
+    to_estimates,
+)
 from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
 from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS
+from sprung.vehicle import EMPTY, LOAD_MASS, nonlinear_elements, seven_degrees_of_freedom
 
 METHOD = "joint maximum likelihood"
 
@@ -71,6 +80,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
             load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
             for load in loads
         },
+        curves={} if rejected else _curves_of(structure, fit, optimum),
         fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
@@ -84,6 +94,15 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     )
     run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult) -> dict[str, ForceCurve]:
+    """Return the force curves of the dampers, springs and tyres that are not linear."""
+    if not structure.is_nonlinear:
+        return {}
+    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights)
+    nonlinear = nonlinear_elements(structure.tracks, structure.terms)
+    return force_curves(fit, optimum, structure.nonlinear_models, linear, nonlinear)
 
 
 def _fit_report(
