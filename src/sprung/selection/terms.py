@@ -16,7 +16,7 @@ import numpy as np
 from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
 from sprung.selection.description import TermDescription, Values
 from sprung.selection.structure import ModelStructure
-from sprung.vehicle import LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, parameters_of_term
+from sprung.vehicle import COORDINATES, LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, coordinates, parameters_of_term
 
 StartValues = Callable[[Values, ModelStructure], Values]
 """From the fitted vehicle and the structure to fit, values of some parameters."""
@@ -96,6 +96,11 @@ class ModelTerm:
     def is_linear(self) -> bool:
         """Whether mass, damping and stiffness matrices carry it."""
         return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+
+    @property
+    def adds_coordinates(self) -> bool:
+        """Whether a vehicle with it moves in more coordinates than the paper's."""
+        return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
 
     def parameters(self, tracks: Tracks) -> tuple[str, ...]:
         """Return the parameters that a model with the term has and one without it has not, or not free.
