@@ -35,8 +35,11 @@ _TRAVEL = 0.002
 _PRESLIDING_RATIO = 10.0
 """Stiffness of a friction before it slides, over that of the spring, at the start of a fit."""
 
-_STROKE = 0.05
-"""m of travel over which a progressive spring is judged."""
+_STROKE, _TYRE_STROKE = 0.05, 0.02
+"""m of travel over which a progressive spring and a progressive tyre are judged."""
+
+_KNEE = 0.12
+"""m/s at which the curve of a damper usually has its knee."""
 
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
@@ -206,7 +209,29 @@ TERMS: Mapping[str, ModelTerm] = {
         ),
         ModelTerm("rebound", _of_axles(lambda p, axle: p[f"r_{axle}"] - 1), typical=0.8, spread=2.0, negligible=0.01),
         ModelTerm(
+            "damper-curve",
+            _of_axles(lambda p, axle: 1 - p[f"q_{axle}"]),
+            typical=0.5,
+            spread=1.6,
+            negligible=0.02,
+            undefined=lambda _, __: {f"v_k{axle}": _KNEE for axle in "fr"},
+        ),
+        ModelTerm(
             "progressive", _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]), typical=0.2, spread=2.5, negligible=0.02
+        ),
+        ModelTerm(
+            "air",
+            _of_axles(lambda p, axle: _STROKE * 2.3 * p[f"e_{axle}"]),
+            typical=0.6,
+            spread=1.6,
+            negligible=0.02,
+        ),
+        ModelTerm(
+            "tyre-curve",
+            _of_axles(lambda p, axle: _TYRE_STROKE * p[f"h_t{axle}"]),
+            typical=0.12,
+            spread=2.0,
+            negligible=0.01,
         ),
         ModelTerm(
             BUMP_STOP,
