@@ -77,6 +77,9 @@ LIMITS: Mapping[str, Limits] = {
     **dict.fromkeys(("a", "b"), Limits(0.02, 12.0, "m")),
     **dict.fromkeys(("t_f", "t_r", "t_f1", "t_r1", "t_f2", "t_r2"), Limits(0.03, 2.0, "m")),
     **dict.fromkeys(("x_bf", "x_br"), Limits(0, 1.0, "m")),
+    **dict.fromkeys(("v_kf", "v_kr"), Limits(0.005, 5.0, "m/s")),
+    **dict.fromkeys(("q_f", "q_r"), Limits(0.01, 10.0, "1")),
+    **dict.fromkeys(("e_f", "e_r"), Limits(0, 50.0, "1/m")),
     "y_s": Limits(-1.5, 1.5, "m"),
     "x_e": _SYMMETRIC_LENGTH,
     "cg_height": Limits(0.1, 4.0, "m"),
@@ -102,6 +105,7 @@ _ANYTHING: Mapping[str, Limits] = {
     "N": Limits(-1e8, 1e8, "N"),
     "N m": Limits(-1e8, 1e8, "N m"),
     "m": _SYMMETRIC_LENGTH,
+    "m/s": Limits(-1e3, 1e3, "m/s"),
     "1/m": Limits(-1e3, 1e3, "1/m"),
     "1": Limits(0, 1e3, "1"),
 }

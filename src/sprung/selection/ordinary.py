@@ -54,7 +54,15 @@ def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[
     own = usual_vehicle(VehicleSize.of(structure.known, structure.campaign.sensors))
     plain = structure.with_terms(())
     masses = {name: known.value for name, known in structure.known.items() if name in structure.names}
-    values = start_values(structure, {name: own[name] for name in plain.names if name in own} | masses)
+    own = {name: own[name] for name in plain.names if name in own} | masses
+    values = start_values(structure, own)
+    for term in structure.terms:
+        usual_of = TERMS[term].usual
+        values |= (
+            {}
+            if usual_of is None
+            else {name: value for name, value in usual_of(own, structure).items() if name in values}
+        )
     usual = {
         name: UsualValue(values[name], spread)
         for name in plain.names
@@ -97,7 +105,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
     ModelSearch
         Model and fit as given where the ordinary vehicle explains no more.
     """
-    terms = tuple(name for name in plain.open_terms if TERMS[name].is_usual)
+    terms = tuple(name for name in plain.open_terms if TERMS[name].usual is not None)
     if not terms or not search.has_model_error or any(decay.clocks for decay in search.decays):
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))

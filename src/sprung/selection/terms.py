@@ -33,8 +33,17 @@ _TRAVEL = 0.002
 _PRESLIDING_RATIO = 10.0
 """Stiffness of a friction before it slides, over that of the spring, at the start of a fit."""
 
-_STROKE = 0.05
-"""m of travel over which a progressive spring is judged."""
+_STROKE, _TYRE_STROKE = 0.05, 0.02
+"""m of travel over which a progressive spring and a progressive tyre are judged."""
+
+_AIR_GROWTH = 2.3
+"""Growth of an air spring's rate per compression by the height of its column: the polytropic exponent plus one."""
+
+_KNEE, _KNEE_LOSS = 0.12, 0.5
+"""m/s at which the curve of a damper usually has its knee, and the part of its slope that it usually loses there."""
+
+_REBOUND, _TYRE_DAMPING, _TYRE_GROWTH = 0.8, 0.06, 0.12
+"""Usual excess of rebound over compression damping, damping of a tyre over that of the damper, and growth of its rate."""
 
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
@@ -69,8 +78,8 @@ class ModelTerm:
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
     resembles_others
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
-    is_usual
-        Whether most vehicles have it.
+    usual
+        Values that its parameters usually have, of a term that most vehicles have.
     undefined
         Values of those parameters that have none where the term is absent.
     first
@@ -87,7 +96,7 @@ class ModelTerm:
     description: TermDescription
     explains_all: bool = False
     resembles_others: bool = False
-    is_usual: bool = False
+    usual: StartValues | None = None
     undefined: StartValues | None = None
     first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
@@ -204,8 +213,8 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "tyre-damping",
             _of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
-            is_usual=True,
-            typical=0.06,
+            usual=lambda own, _: {f"c_t{axle}": _TYRE_DAMPING * own[f"c_s{axle}"] for axle in "fr"},
+            typical=_TYRE_DAMPING,
             spread=2.5,
             negligible=0.005,
             description=TermDescription(
@@ -265,7 +274,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "damper-mount",
             _of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
-            is_usual=True,
+            usual=lambda own, _: usual_rubber(own),
             typical=1 / USUAL_MOUNT,
             spread=2.0,
             negligible=0.003,
@@ -281,7 +290,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             "zener",
             _of_axles(lambda p, axle: p[f"k_z{axle}"] / p[f"k_s{axle}"]),
-            is_usual=True,
+            usual=lambda own, _: usual_rubber(own),
             typical=USUAL_RELAXATION,
             spread=2.0,
             negligible=0.01,
@@ -299,6 +308,7 @@ TERMS: Mapping[str, ModelTerm] = {
         ModelTerm(
             FRICTION,
             _of_axles(lambda p, axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"])),
+            usual=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
             typical=1.0,
             spread=3.0,
             negligible=0.01,
@@ -308,15 +318,14 @@ TERMS: Mapping[str, ModelTerm] = {
                 again="{0} at each {axle} wheel",
             ),
             resembles_others=True,
-            is_usual=True,
             undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
             first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
         ),
         ModelTerm(
             "rebound",
             _of_axles(lambda p, axle: p[f"r_{axle}"] - 1),
-            is_usual=True,
-            typical=0.8,
+            usual=lambda _, __: dict.fromkeys(("r_f", "r_r"), 1 + _REBOUND),
+            typical=_REBOUND,
             spread=2.0,
             negligible=0.01,
             description=TermDescription(
@@ -327,6 +336,21 @@ TERMS: Mapping[str, ModelTerm] = {
             ),
         ),
         ModelTerm(
+            "damper-curve",
+            _of_axles(lambda p, axle: 1 - p[f"q_{axle}"]),
+            usual=lambda _, __: {"v_kf": _KNEE, "v_kr": _KNEE, "q_f": 1 - _KNEE_LOSS, "q_r": 1 - _KNEE_LOSS},
+            typical=_KNEE_LOSS,
+            spread=1.6,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} dampers with {0} of their rate beyond {1}",
+                ((lambda p, axle: p[f"q_{axle}"], "1"), (lambda p, axle: p[f"v_k{axle}"], "m/s")),
+                again="{axle} ones with {0} beyond {1}",
+                neutral=1.0,
+            ),
+            undefined=lambda _, __: {f"v_k{axle}": _KNEE for axle in "fr"},
+        ),
+        ModelTerm(
             "progressive",
             _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]),
             typical=0.2,
@@ -335,6 +359,31 @@ TERMS: Mapping[str, ModelTerm] = {
             description=TermDescription(
                 "{axle} springs whose rate grows by {0} over 5 cm of compression",
                 ((lambda p, axle: 100 * _STROKE * p[f"p_{axle}"], "%"),),
+                again="{axle} ones by {0}",
+            ),
+        ),
+        ModelTerm(
+            "air",
+            _of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"e_{axle}"]),
+            typical=0.6,
+            spread=1.6,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} air springs with a column of {1}",
+                ((lambda p, axle: p[f"e_{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"e_{axle}"], "mm")),
+                again="{axle} ones with a column of {1}",
+            ),
+        ),
+        ModelTerm(
+            "tyre-curve",
+            _of_axles(lambda p, axle: _TYRE_STROKE * p[f"h_t{axle}"]),
+            usual=lambda _, __: dict.fromkeys(("h_tf", "h_tr"), _TYRE_GROWTH / _TYRE_STROKE),
+            typical=_TYRE_GROWTH,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "{axle} tyres whose rate grows by {0} over 2 cm of compression",
+                ((lambda p, axle: 100 * _TYRE_STROKE * p[f"h_t{axle}"], "%"),),
                 again="{axle} ones by {0}",
             ),
         ),

@@ -13,7 +13,17 @@ from typing import Literal
 
 from sprung.display import shown
 from sprung.vehicle import kinematics
-from sprung.vehicle.force_laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
+from sprung.vehicle.force_laws import (
+    AIR,
+    BUMP_STOP,
+    DAMPER_CURVE,
+    FRICTION,
+    GROUND,
+    PROGRESSIVE,
+    REBOUND,
+    TYRE_CURVE,
+    ForceLaw,
+)
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Row, Wheel
 
@@ -28,7 +38,9 @@ LINEAR_EXTRAS = (
 )  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
-EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
+EXTRAS = (
+    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "progressive", "air", "bump-stop", "tyre-curve",
+)  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
 
@@ -160,10 +172,19 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
         if "rebound" in extras:
             damper = _damper_travel(station, tracks, extras)
             elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
+        if "damper-curve" in extras:
+            before = (f"c_s{axle}", f"r_{axle}") if "rebound" in extras else (f"c_s{axle}",)
+            damper = _damper_travel(station, tracks, extras)
+            elements.append(NonlinearElement(DAMPER_CURVE, (*before, f"v_k{axle}", f"q_{axle}"), damper))
         if "progressive" in extras:
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
+        if "air" in extras:
+            elements.append(NonlinearElement(AIR, (f"e_{axle}", f"k_s{axle}"), spring))
         if "bump-stop" in extras:
             elements.append(NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), spring))
+        if "tyre-curve" in extras:
+            tyre = kinematics.wheel(station)
+            elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre))
     return tuple(elements)
 
 

@@ -1,4 +1,4 @@
-"""Force laws that no matrix holds: dry friction, rebound damping, progressive springs, bump stops, the ground.
+"""Force laws that no matrix holds: dry friction, damper and spring curves, bump stops, the ground.
 
 A law returns the force of an element from the travel, its rate and, for hysteresis, a memory. It returns the derivatives
 with the values, so that a time-stepped response can be differentiated exactly. Every argument may have leading axes; the
@@ -18,6 +18,15 @@ Array = NDArray[np.float64]
 
 _SHORTEST = 1e-7
 """m: least travel over which friction builds up. It keeps a friction force of zero from dividing by zero."""
+
+_POLYTROPIC = 1.3
+"""Exponent of the gas in an air spring: it exchanges some heat within a period."""
+
+_LEAST_COLUMN = 0.05
+"""Height of the column of an air spring, over that at rest, below which its force grows no more."""
+
+_SMALL_STRAIN = 1e-4
+"""Of an air spring, below which a series is more precise than the difference of its forces."""
 
 
 class ElementInput(NamedTuple):
@@ -129,6 +138,46 @@ def _rebound_derivatives(parameters: Array, given: ElementInput) -> tuple[Array,
     return force, np.zeros_like(force)
 
 
+def _damper_knots(parameters: Array) -> tuple[Array, Array | float, Array, Array]:
+    """Return damping, rebound ratio, velocities of the knots, and what each takes off the slope, as a part of the damping.
+
+    Parameters are c, r where rebound has a ratio of its own, and velocity and slope ratio of each knot.
+    """
+    has_ratio = len(parameters) % 2 == 0
+    velocities, ratios = parameters[1 + has_ratio :: 2], parameters[2 + has_ratio :: 2]
+    before = np.concatenate([np.ones_like(ratios[:1]), ratios[:-1]])
+    return parameters[0], parameters[1] if has_ratio else 1.0, velocities, before - ratios
+
+
+def _damper_curve(parameters: Array, given: ElementInput) -> ElementForce:
+    damping, ratio, velocities, drops = _damper_knots(parameters)
+    factor = damping * np.where(given.rate > 0, ratio, 1.0)
+    size, zero = np.abs(given.rate), np.zeros_like(given.travel)
+    missing, slope = zero, zero
+    for velocity, drop in zip(velocities, drops, strict=True):
+        missing = missing + drop * np.maximum(size - velocity, 0.0)
+        slope = slope + drop * (size > velocity)
+    force = -factor * np.sign(given.rate) * missing
+    return ElementForce(force, given.memory, zero, -factor * slope, zero, zero, zero)
+
+
+def _damper_curve_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    damping, ratio, velocities, drops = _damper_knots(parameters)
+    side, size = np.sign(given.rate), np.abs(given.rate)
+    extends = given.rate > 0
+    factor = side * damping * np.where(extends, ratio, 1.0)
+    beyond = [np.maximum(size - velocity, 0.0) for velocity in velocities]
+    missing = sum((drop * excess for drop, excess in zip(drops, beyond, strict=True)), np.zeros_like(size))
+    force = [-side * missing * np.where(extends, ratio, 1.0)]
+    if len(parameters) % 2 == 0:
+        force.append(-damping * missing * extends)
+    for velocity, drop, excess, next_excess in zip(
+        velocities, drops, beyond, [*beyond[1:], np.zeros_like(size)], strict=True
+    ):
+        force += [factor * drop * (size > velocity), factor * (excess - next_excess)]
+    return np.stack(force), np.zeros((len(force), *size.shape))
+
+
 def _progressive(parameters: Array, given: ElementInput) -> ElementForce:
     growth, spring = parameters
     zero = np.zeros_like(given.travel)
@@ -140,6 +189,38 @@ def _progressive_derivatives(parameters: Array, given: ElementInput) -> tuple[Ar
     growth, spring = parameters
     square = -0.5 * given.travel**2
     force = np.stack([spring * square, growth * square])
+    return force, np.zeros_like(force)
+
+
+def _air_ratio(strain: Array) -> tuple[Array, Array]:
+    """Return the mean rate of an air spring between rest and a strain, over that at rest, less one; and its derivative.
+
+    The strain is the travel over the height of the column, positive in extension. Near rest the difference of nearly equal
+    numbers is replaced by its series.
+    """
+    n, column = _POLYTROPIC, np.maximum(1.0 + strain, _LEAST_COLUMN)
+    is_small = np.abs(strain) < _SMALL_STRAIN
+    safe = np.where(is_small, 1.0, strain)
+    mean = (1.0 - column**-n) / (n * safe) - 1.0
+    slope = (np.where(column > _LEAST_COLUMN, column ** (-n - 1), 0.0) - 1.0 - mean) / safe
+    near = (n + 1) * strain * (-1 / 2 + (n + 2) * strain * (1 / 6 - (n + 3) * strain / 24))
+    near_slope = (n + 1) * (-1 / 2 + (n + 2) * strain * (1 / 3 - (n + 3) * strain / 8))
+    return np.where(is_small, near, mean), np.where(is_small, near_slope, slope)
+
+
+def _air(parameters: Array, given: ElementInput) -> ElementForce:
+    inverse, spring = parameters
+    zero, strain = np.zeros_like(given.travel), inverse * given.travel
+    mean, slope = _air_ratio(strain)
+    return ElementForce(
+        spring * given.travel * mean, given.memory, spring * (mean + strain * slope), zero, zero, zero, zero
+    )
+
+
+def _air_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    inverse, spring = parameters
+    mean, slope = _air_ratio(inverse * given.travel)
+    force = np.stack([spring * given.travel**2 * slope, given.travel * mean])
     return force, np.zeros_like(force)
 
 
@@ -185,8 +266,22 @@ Corporation TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."
 REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives)
 """Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""
 
+DAMPER_CURVE = ForceLaw("damper-curve", False, _damper_curve, _damper_curve_derivatives)
+"""What the knots of a damper's curve add to its force: the force is continuous, through zero and linear between the knots,
+which are alike in compression and rebound. Parameters: damping c before the first knot in compression, N s/m; rebound
+ratio r, where that is a parameter; and for each knot its velocity, m/s, and the slope beyond it over that before the first."""
+
 PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_derivatives)
-"""Progressive spring: growth p of the rate with compression, as a part of the rate per metre, and rate k, N/m."""
+"""Progressive spring or tyre: growth p of the rate with compression from rest, as a part of the rate per metre, and rate k at
+rest, N/m."""
+
+AIR = ForceLaw("air", False, _air, _air_derivatives)
+"""What the change of pressure in an air spring adds to the force of its rate at rest: inverse of the effective height h of the
+column, 1/m, and rate k at rest, N/m; the force is k h/n (1 - (1 + x/h)⁻ⁿ) with the exponent n = 1.3, positive in extension
+(Wong, Theory of Ground Vehicles, 2008, section 7.3)."""
+
+TYRE_CURVE = ForceLaw("tyre-curve", False, _progressive, _progressive_derivatives)
+"""Tyre whose rate grows with its deflection: as a progressive spring."""
 
 BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives)
 """Bump stop: stiffness, N/m, and the compression at which it is met, m, from the empty vehicle at rest."""

@@ -123,11 +123,23 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
         "r_f": Parameter("1", "rebound damping over compression damping, front", False),
         "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
+        "v_kf": Parameter("m/s", "velocity at which the curve of the front dampers has its knee", False),
+        "v_kr": Parameter("m/s", "velocity at which the curve of the rear dampers has its knee", False),
+        "q_f": Parameter("1", "damping beyond the knee over that before it, front", False),
+        "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
         "p_f": Parameter(
             "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
         ),
         "p_r": Parameter(
             "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
+        ),
+        "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
+        "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
+        "h_tf": Parameter(
+            "1/m", "growth of the front tyre rate with compression, as a part of it per metre", False, False, True
+        ),
+        "h_tr": Parameter(
+            "1/m", "growth of the rear tyre rate with compression, as a part of it per metre", False, False, True
         ),
         "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
         "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
@@ -146,17 +158,20 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
+    "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
     "progressive": ("p_f", "p_r"),
+    "air": ("e_f", "e_r"),
+    "tyre-curve": ("h_tf", "h_tr"),
     "bump-stop": ("k_bf", "k_br", "x_bf", "x_br"),
     "asymmetry": ("y_s", "d_ksf", "d_ksr", "d_ktf", "d_ktr", "d_csf", "d_csr"),
     "rigid-axle": ("n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2", "m_xf", "m_xr"),
 }
 """The parameters that each extra may add; see `parameters_of_term`."""
 
-_INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"})
+_INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"})
 """Parameters of extras without effect where the others of the extra are neutral."""
 
-_FACTORS = frozenset({"r_f", "r_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
+_FACTORS = frozenset({"r_f", "r_r", "q_f", "q_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
 
 NEUTRAL: Mapping[str, float] = {
     name: math.inf if PARAMETERS[name].in_series else float(name in _FACTORS)

@@ -46,8 +46,14 @@ class Vehicle:
         Dry friction of each suspension, N, and its presliding stiffness, N/m.
     r_f, r_r
         Rebound damping over compression damping; c_s is then that of compression.
+    v_kf, v_kr, q_f, q_r
+        Velocity at which the damper curves have their knee, m/s, and the damping beyond it over that before it.
     p_f, p_r
         Growth of the spring rates with compression, as a part of them per metre.
+    e_f, e_r
+        One over the effective height of the air column of a spring, 1/m.
+    h_tf, h_tr
+        Growth of the tyre rates with compression, as a part of them per metre.
     k_bf, k_br, x_bf, x_br
         Stiffness of the bump stops, N/m, and the compression from rest at which they are met, m.
     w_h
@@ -119,8 +125,16 @@ class Vehicle:
     s_r: float = 1e6
     r_f: float = 1.0
     r_r: float = 1.0
+    v_kf: float = 1.0
+    v_kr: float = 1.0
+    q_f: float = 1.0
+    q_r: float = 1.0
     p_f: float = 0.0
     p_r: float = 0.0
+    e_f: float = 0.0
+    e_r: float = 0.0
+    h_tf: float = 0.0
+    h_tr: float = 0.0
     k_bf: float = 0.0
     k_br: float = 0.0
     x_bf: float = 1.0
