@@ -3,8 +3,10 @@
 from sprung.vehicle.characteristics import (
     CHARACTERISTICS,
     DERIVED,
+    MOTION_RATIOS,
     WHEEL_LOADS,
     Characteristic,
+    MotionRatio,
     evaluate_quantity,
     wheel_loads,
 )
@@ -59,6 +61,7 @@ __all__ = [
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
     "LOAD_MASS",
+    "MOTION_RATIOS",
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
@@ -82,6 +85,7 @@ __all__ = [
     "Load",
     "Matrices",
     "Motion",
+    "MotionRatio",
     "NonlinearElement",
     "NonlinearForces",
     "NonlinearModel",
