@@ -20,7 +20,7 @@ _DERIVED = {
     "I_xx_roll_axis": "roll inertia of the sprung mass about the roll axis",
     "wheelbase": "front axle to rear axle",
     **{name: quantity.meaning for name, quantity in CHARACTERISTICS.items()},
-    **{ratio.quantity: ratio.meaning for ratio in MOTION_RATIOS.values()},
+    **{quantity: meaning for _, quantity, meaning in MOTION_RATIOS.values()},
     **WHEEL_LOADS,
 }
 """Meaning of each derived quantity."""

@@ -6,12 +6,11 @@ from sprung.vehicle.characteristics import (
     MOTION_RATIOS,
     WHEEL_LOADS,
     Characteristic,
-    MotionRatio,
     evaluate_quantity,
     wheel_loads,
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
-from sprung.vehicle.curves import FORCE_CURVES, CurveElements, ForceCurveKind
+from sprung.vehicle.curves import FORCE_CURVES, CurveElements
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -77,7 +76,6 @@ __all__ = [
     "Element",
     "ElementInput",
     "Finite",
-    "ForceCurveKind",
     "Heights",
     "Item",
     "LinearLaw",
@@ -85,7 +83,6 @@ __all__ = [
     "Load",
     "Matrices",
     "Motion",
-    "MotionRatio",
     "NonlinearElement",
     "NonlinearForces",
     "NonlinearModel",

@@ -139,26 +139,8 @@ DERIVED: Mapping[str, Characteristic] = {
 """Those that a campaign may state as known beforehand, by the names it gives them."""
 
 
-class MotionRatio(NamedTuple):
-    """A motion ratio: travel of a spring or damper per travel of its wheel.
-
-    Attributes
-    ----------
-    parameter
-        The rate at the wheel.
-    quantity
-        Name of the rate at the spring or damper, which is the rate at the wheel over the squared ratio.
-    meaning
-        Of the latter, in words.
-    """
-
-    parameter: str
-    quantity: str
-    meaning: str
-
-
-MOTION_RATIOS: Mapping[str, MotionRatio] = {
-    f"{part}_{name}": MotionRatio(
+MOTION_RATIOS: Mapping[str, tuple[str, str, str]] = {
+    f"{part}_{name}": (
         f"{letter}_s{axle}",
         f"{letter}_s{axle}_at_{part}",
         f"{part} rate at each {name} {part}: {letter}_s{axle} over the squared motion ratio",
@@ -166,7 +148,10 @@ MOTION_RATIOS: Mapping[str, MotionRatio] = {
     for part, letter in (("spring", "k"), ("damper", "c"))
     for name, axle in _AXLES.items()
 }
-"""By the names that a campaign gives them."""
+"""Motion ratios, travel of a spring or damper per travel of its wheel, by the names that a campaign gives them.
+
+Each with the rate at the wheel, and with name and meaning of that at the spring or damper.
+"""
 
 WHEEL_LOADS: Mapping[str, str] = {
     "front_wheel_load": "static load of each front wheel of the empty vehicle",
