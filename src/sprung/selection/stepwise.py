@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from sprung.estimation import NEAR, fit_linear, wald_test
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
@@ -23,7 +25,7 @@ _LINEAR = tuple(name for name, term in TERMS.items() if term.is_linear)
 
 _WORTH_A_FIT = 4.0
 """Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
-gain of terms that are far from neutral, and a linear fit costs little."""
+gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
 
 _RESEMBLES = 0.05
 """Score of a term that resembles others, as a part of the best one, from which it is tried first."""
@@ -246,7 +248,14 @@ def _first_accepted(search: ModelSearch, groups: Sequence[Sequence[str]]) -> tup
 def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     """Fit terms together, and leave out again what is not needed; without any of them where they gain too little."""
     larger = search.with_terms(group)
-    tried = _fit_nonlinear(search, larger) if larger.is_nonlinear else _fit_linear(search, group[0])
+    if larger.is_nonlinear:
+        tried = _fit_nonlinear(search, larger)
+    else:
+        (term,) = group
+        first, expected = _first_step(search, term)
+        if expected < search.required(term):
+            return search.recorded({term: expected}, False, False)
+        tried = _fit_linear(first, term)
     if tried is None:
         return search.recorded(dict.fromkeys(group, 0.0), True, False)
     gain = tried.gain_over(search)
@@ -307,6 +316,19 @@ def _without_unneeded(
         smaller = tried.without(least)
         tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
     return tried, {}
+
+
+def _first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:
+    """Take the first Newton step towards one more linear term, and return what the whole fit may gain at the most.
+
+    Near the neutral values twice the log-likelihood is quadratic: the step gains what the score test says, and no more is
+    expected after it. A new engine is far from anything: nothing follows from one step.
+    """
+    if term == ENGINE:
+        return search, np.inf
+    first = search.refit(search.with_terms([term]), most=1)
+    gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + _WORTH_A_FIT * first.fit.expected_gain
+    return first, gain / search.fit.disagreement
 
 
 def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:

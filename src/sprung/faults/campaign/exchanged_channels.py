@@ -25,4 +25,4 @@ def exchanged_channels(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         fault = Fault("exchanged", names, what, "Exchange the two in the campaign file, or their cables.")
         correction = exchange_channels(first, second)
         candidate = isolation.step(correction)
-        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate, is_rough=True)
+        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
