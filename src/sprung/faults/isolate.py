@@ -138,7 +138,7 @@ def _groups(isolation: FaultIsolation, progress: Progress) -> Iterator[tuple[lis
     if is_alone:
         yield _of_parts(isolation, deletions, progress)
     progress(Step("testing for exchanged loads and channels"))
-    exchanges = [*exchanged_loads(isolation), *exchanged_channels(isolation)]
+    exchanges = _with_refined(isolation, [*exchanged_loads(isolation), *exchanged_channels(isolation)])
     is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
     if is_likelier or is_alone:
         yield exchanges, 0
@@ -213,6 +213,14 @@ def _of_parts(
         hypotheses += replace(deletion, candidate=isolation.fit(deletion.correction)).hypotheses()
         fits += 1
     return hypotheses, fits
+
+
+def _with_refined(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Return hypotheses of which one step from far away tells the residuals, the best few after some steps more."""
+    ranked = sorted(hypotheses, key=lambda hypothesis: hypothesis.score())
+    candidates = (isolation.refine(one.correction, one.candidate.fit) for one in ranked[:_MOST_FITS])
+    refined = [replace(one, table=new.table, candidate=new) for one, new in zip(ranked, candidates, strict=False)]
+    return [*refined, *ranked[_MOST_FITS:]]
 
 
 def _confirm_best(

@@ -8,17 +8,19 @@ from sprung.selection.stepwise import (
     fit_forced_terms,
     fit_requested_terms,
     fit_term,
+    needed_terms,
     select_gravity_leakage,
     select_linear_terms,
     select_nonlinear_terms,
     select_roll_axis_height,
 )
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.selection.terms import ENGINE, TERMS, ModelTerm
+from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, TERMS, ModelTerm
 
 __all__ = [
     "ENGINE",
     "FALSE_ALARM_SHARE",
+    "SEPARATE_TRACKS",
     "TERMS",
     "ModelSearch",
     "ModelStructure",
@@ -29,6 +31,7 @@ __all__ = [
     "fit_requested_terms",
     "fit_structure",
     "fit_term",
+    "needed_terms",
     "required_gain",
     "score_terms",
     "select_gravity_leakage",

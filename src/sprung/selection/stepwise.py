@@ -201,6 +201,23 @@ def fit_term(search: ModelSearch, term: str) -> ModelSearch:
     return _fit_linear(score_terms(search, [term])[0], term)
 
 
+def needed_terms(search: ModelSearch) -> dict[str, float]:
+    """Return the terms that the recordings brought into a model and that its fit needs.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    dict
+        By term, what twice the log-likelihood would lose without it (Wald test), divided by the overdispersion.
+    """
+    gains = {term: _lost_without(search, term) for term in search.selected if not search.veto(term)}
+    return {term: gain for term, gain in gains.items() if gain > search.required(term)}
+
+
 def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
     """Rank the terms that are worth a fit, and record the others.
 
@@ -303,12 +320,7 @@ def _without_unneeded(
         against = {term: tried.veto(term) for term in tried.selected if term != keep}
         if not against:
             break
-        gains = {
-            term: 0.0
-            if against[term]
-            else wald_test(tried.fit, TERMS[term].neutral(tried.structure.tracks)) / tried.overdispersion
-            for term in against
-        }
+        gains = {term: 0.0 if reason else _lost_without(tried, term) for term, reason in against.items()}
         least = min(gains, key=lambda term: gains[term] / tried.required(term))
         if gains[least] > tried.required(least):
             return tried, gains
@@ -329,6 +341,11 @@ def _first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:
     first = search.refit(search.with_terms([term]), most=1)
     gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + _WORTH_A_FIT * first.fit.expected_gain
     return first, gain / search.fit.disagreement
+
+
+def _lost_without(search: ModelSearch, term: str) -> float:
+    """Loss of twice the log-likelihood without a term, by a Wald test, divided by the overdispersion."""
+    return wald_test(search.fit, TERMS[term].neutral(search.structure.tracks)) / search.overdispersion
 
 
 def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
