@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +21,22 @@ from sprung.assessment import (
     estimate_model_error,
 )
 from sprung.checking import check_prepared
-from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
+from sprung.estimation import (
+    FitResult,
+    FitStatistics,
+    ForceCurve,
+    characteristics_of,
+    estimate_of,
+    force_curves,
+    mode_estimates,
+    to_estimates,
+)
 from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
 from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS
+from sprung.vehicle import EMPTY, LOAD_MASS, nonlinear_elements, seven_degrees_of_freedom
 
 METHOD = "joint maximum likelihood"
 
@@ -52,8 +60,9 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, fit, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
+    setup = setup_of(campaign, fit, structure.known, run.options.texts)
     result = Result(
-        version=version("sprung"),
+        version=setup.software["sprung"],
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else recommend_next_step(run),
@@ -71,11 +80,12 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
             load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
             for load in loads
         },
+        curves={} if rejected else _curves_of(structure, fit, optimum),
         fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
         validation=validated,
-        setup=setup_of(campaign, fit, structure.known, run.options.texts),
+        setup=setup,
         series={
             decay.name: _series(decay, fitted, motion, channels)
             for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)
@@ -84,6 +94,15 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     )
     run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult) -> dict[str, ForceCurve]:
+    """Return the force curves of the dampers, springs and tyres that are not linear."""
+    if not structure.is_nonlinear:
+        return {}
+    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights)
+    nonlinear = nonlinear_elements(structure.tracks, structure.terms)
+    return force_curves(fit, optimum, structure.nonlinear_models, linear, nonlinear)
 
 
 def _fit_report(

@@ -18,7 +18,7 @@ from sprung.checking import DropReport, PlottedRecording
 from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
+from sprung.estimation import Correlation, ForceCurve, ModeEstimate, Scale, Unidentifiable
 from sprung.results.amplitude import AmplitudeCurves
 from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import plain_document
@@ -86,6 +86,10 @@ class Result:
         Recommended next measurement, one sentence; None where the verdict is reject.
     setup
         Input of the identification: what was known, settings, files and versions.
+    curves
+        By name: force of a damper against its velocity, of a spring or tyre against its travel, with its standard error:
+        ``damper_front``, ``damper_rear``, ``spring_front``, ``spring_rear``, ``tyre_front``, ``tyre_rear``, where the model has
+        more than a linear rate there; none where the verdict is reject.
     amplitude
         Frequency and damping of the body's modes against amplitude; empty where not requested, or the verdict is reject.
     trace
@@ -116,6 +120,7 @@ class Result:
     validation: dict[str, DropValidation]
     next_step: str | None
     setup: Setup
+    curves: dict[str, ForceCurve] = field(default_factory=dict)
     amplitude: AmplitudeCurves = ()
     trace: tuple[TraceStep, ...] = ()
     omissions: tuple[str, ...] = ()
@@ -123,7 +128,7 @@ class Result:
     recordings: Mapping[str, PlottedRecording] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        for mapping in ("parameters", "derived", "modes", "validation", "series", "recordings"):
+        for mapping in ("parameters", "derived", "modes", "curves", "validation", "series", "recordings"):
             object.__setattr__(self, mapping, NamedValues(getattr(self, mapping)))
 
     def __repr__(self) -> str:

@@ -9,6 +9,7 @@ from sprung.vehicle.characteristics import (
     wheel_loads,
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
+from sprung.vehicle.curves import FORCE_CURVES, CurveElements, ForceCurveKind
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -51,6 +52,7 @@ __all__ = [
     "EMPTY",
     "EXTRAS",
     "EXTRA_PARAMETERS",
+    "FORCE_CURVES",
     "LEVEL",
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
@@ -66,9 +68,11 @@ __all__ = [
     "Added",
     "CarriedAt",
     "Characteristic",
+    "CurveElements",
     "Element",
     "ElementInput",
     "Finite",
+    "ForceCurveKind",
     "Heights",
     "Item",
     "LinearLaw",
