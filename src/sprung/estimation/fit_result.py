@@ -94,7 +94,7 @@ class FitResult:
         return -0.5 * self.problem.cost(self.iterate)
 
     @property
-    def expected_gain(self) -> float:
+    def remaining_gain(self) -> float:
         """What one more Newton step is expected to gain in twice the log-likelihood; nearly 0 at an optimum."""
         return self.problem.normal_equations(self.iterate).step()[1]
 

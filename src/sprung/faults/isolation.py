@@ -114,7 +114,17 @@ class FaultIsolation:
 
     @classmethod
     def of(cls, structure: ModelStructure, decays: Sequence[FreeDecay], fit: FitResult | None = None) -> FaultIsolation:
-        """Take up a model of a campaign, its decays and their fit; without a fit they are fitted."""
+        """Take up a model of a campaign, its decays and their fit; without a fit they are fitted.
+
+        Parameters
+        ----------
+        structure
+            The model, with its campaign.
+        decays
+            Of all drops that can be used.
+        fit
+            Of them.
+        """
         recordings = tuple(decay.file for decay in decays)
         return cls(
             _candidate(structure, recordings, decays, _fitted(structure, decays) if fit is None else fit), recordings
@@ -162,7 +172,7 @@ class FaultIsolation:
         return self._fit(correction, start, 1)
 
     def refine(self, correction: Correction, start: FitResult) -> CandidateFit:
-        """Continue a step by a few more.
+        """Continue a Gauss-Newton step by a few more.
 
         Parameters
         ----------
@@ -190,7 +200,13 @@ class FaultIsolation:
         return min(near, anew, key=lambda candidate: candidate.table.cost)
 
     def after(self, candidate: CandidateFit) -> FaultIsolation:
-        """Return the isolation of what is still wrong with a corrected campaign."""
+        """Return the isolation of what is still wrong with a corrected campaign.
+
+        Parameters
+        ----------
+        candidate
+            Its fit.
+        """
         return replace(self, base=candidate)
 
     def _fit(self, correction: Correction, start: FitResult | None, most: int) -> CandidateFit:

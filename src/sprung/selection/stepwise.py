@@ -264,11 +264,10 @@ def _first_accepted(search: ModelSearch, groups: Sequence[Sequence[str]]) -> tup
 
 def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     """Fit terms together, and leave out again what is not needed; without any of them where they gain too little."""
-    larger = search.with_terms(group)
+    larger, term = search.with_terms(group), group[0]
     if larger.is_nonlinear:
         tried = _fit_nonlinear(search, larger)
     else:
-        (term,) = group
         first, expected = _first_step(search, term)
         if expected < search.required(term):
             return search.recorded({term: expected}, False, False)
@@ -283,7 +282,6 @@ def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     if larger.is_nonlinear:
         tried, gains = _without_unneeded(tried, search)
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
-    (term,) = group
     against = tried.veto(term)
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and tried.has_model_error:
@@ -339,8 +337,8 @@ def _first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:
     if term == ENGINE:
         return search, np.inf
     first = search.refit(search.with_terms([term]), most=1)
-    gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + _WORTH_A_FIT * first.fit.expected_gain
-    return first, gain / search.fit.disagreement
+    gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + _WORTH_A_FIT * first.fit.remaining_gain
+    return first, gain / first.fit.disagreement
 
 
 def _lost_without(search: ModelSearch, term: str) -> float:
