@@ -35,7 +35,7 @@ from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
-from sprung.selection import ModelStructure, SelectionStep
+from sprung.selection import SEPARATE_TRACKS, TERMS, ModelStructure, SelectionStep, describe_terms
 from sprung.vehicle import EMPTY, LOAD_MASS, nonlinear_elements, seven_degrees_of_freedom
 
 METHOD = "joint maximum likelihood"
@@ -80,6 +80,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
             load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
             for load in loads
         },
+        additional_terms="" if rejected else _additional_terms(structure, fit),
         curves={} if rejected else _curves_of(structure, fit, optimum),
         fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
@@ -94,6 +95,12 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     )
     run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _additional_terms(structure: ModelStructure, fit: FitStatistics) -> str:
+    """Return one sentence that states what the vehicle has besides springs and dampers."""
+    terms = [SEPARATE_TRACKS] * (structure.tracks == "separate") + list(structure.terms)
+    return describe_terms([TERMS[name].description for name in terms], fit)
 
 
 def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult) -> dict[str, ForceCurve]:

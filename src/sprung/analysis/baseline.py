@@ -34,7 +34,7 @@ def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
     if run.clock_fit is None and run.corrected and run.corrected[-1].candidate.is_explained:
         run = _fit_corrected(run, structure, progress)
     else:
-        fit = fit_baseline_model(run, run.prepared.decays, progress)
+        fit = fit_baseline_model(run, structure, run.prepared.decays, progress)
         search = select_roll_axis_height(ModelSearch(structure, fit, run.prepared.decays, (), progress))
         search = fit_requested_terms(search, [term for term in requested.linear_terms if term not in structure.terms])
         last = from_contact(search)
@@ -83,9 +83,10 @@ def structures(run: Analysis) -> tuple[ModelStructure, ModelStructure]:
     return requested, baseline
 
 
-def fit_baseline_model(run: Analysis, decays: Sequence[FreeDecay], progress: Progress) -> FitResult:
+def fit_baseline_model(
+    run: Analysis, structure: ModelStructure, decays: Sequence[FreeDecay], progress: Progress
+) -> FitResult:
     """Fit the model to begin with, from the fit that set the clocks where there is one."""
-    _, structure = structures(run)
     return fit_linear(
         decays,
         structure.linear_models,

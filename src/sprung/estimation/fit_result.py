@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimation.objective import HasClockDelays, ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
 from sprung.estimation.problem import EstimationProblem, Iterate
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, Moments, pool_moments
 
 Real = NDArray[np.float64]
 
@@ -87,6 +87,11 @@ class FitResult:
     def residuals(self) -> tuple[Real, ...]:
         """Measured minus modelled, m/s²: one array of shape (channel, time) per drop, NaN for channels that are left out."""
         return tuple(_centred(decay.values - record) for decay, record in zip(self.decays, self.fitted, strict=True))
+
+    @cached_property
+    def residual_moments(self) -> Moments:
+        """Variance and covariance of neighbours of the residuals of each channel; see `pool_moments`."""
+        return pool_moments(self.residuals)
 
     @cached_property
     def loglikelihood(self) -> float:

@@ -86,7 +86,7 @@ def fit_nonlinear(
     -------
     FitResult
     """
-    laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
+    laws = ", ".join(own.law.name for own in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     steps, values = 0, dict(start)
     stages = (
@@ -95,7 +95,9 @@ def fit_nonlinear(
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
-        objective = _objective(part, models, sensors, states, tilting, longest_step)
+        objective = _objective(
+            part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
+        )
         problem = _problem(objective, known, values)
         found = _maximise(problem, objective, values, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
@@ -140,7 +142,7 @@ def score_stepped_terms(
     dict
         In twice the log-likelihood, to second order.
     """
-    objective = _objective(decays, models, sensors, states, tilting, _COARSE)
+    objective = _objective(decays, models, sensors, states, tilting, _COARSE, _COARSE)
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
@@ -175,9 +177,10 @@ def _objective(
     states: Real,
     tilting: bool,
     longest_step: float,
+    longest_derivative_step: float,
 ) -> TimeSteppingObjective:
     rows = Rows.of([sensor.row for sensor in sensors], next(iter(models.values())).names)
-    return TimeSteppingObjective(tuple(decays), models, rows, states, tilting, longest_step)
+    return TimeSteppingObjective(tuple(decays), models, rows, states, tilting, longest_step, longest_derivative_step)
 
 
 def _problem(

@@ -86,6 +86,9 @@ class Result:
         Recommended next measurement, one sentence; None where the verdict is reject.
     setup
         Input of the identification: what was known, settings, files and versions.
+    additional_terms
+        One sentence: what the vehicle has besides springs and dampers, with sizes and standard errors; empty where it has
+        nothing, or the verdict is reject.
     curves
         By name: force of a damper against its velocity, of a spring or tyre against its travel, with its standard error:
         ``damper_front``, ``damper_rear``, ``spring_front``, ``spring_rear``, ``tyre_front``, ``tyre_rear``, where the model has
@@ -120,6 +123,7 @@ class Result:
     validation: dict[str, DropValidation]
     next_step: str | None
     setup: Setup
+    additional_terms: str = ""
     curves: dict[str, ForceCurve] = field(default_factory=dict)
     amplitude: AmplitudeCurves = ()
     trace: tuple[TraceStep, ...] = ()
@@ -200,6 +204,7 @@ class Result:
         tables = [parameters_table(self.name, {**self.parameters, **other_quantities(self.derived)})]
         tables += characteristics_tables(self.name, self.derived)
         parts = [self.verdict._repr_html_(), *(table.html() for table in tables)]
+        parts += [f"<p>{escaped(self.additional_terms)}</p>\n"] if self.additional_terms else []
         parts += [f"<p>Not determined: {escaped(combination.text)}.</p>\n" for combination in self.unidentifiable]
         if not self.scale.known and self.scale.per_total_mass:
             parts.append(ratios_table(self.scale.per_total_mass).html())

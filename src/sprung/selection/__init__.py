@@ -1,5 +1,6 @@
 """Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
+from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
@@ -26,7 +27,9 @@ __all__ = [
     "ModelStructure",
     "ModelTerm",
     "SelectionStep",
+    "TermDescription",
     "choose_structure",
+    "describe_terms",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",

@@ -17,7 +17,7 @@ from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.scoring import Scores, score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import fit_structure, has_positive_masses
+from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import ENGINE, TERMS
 
@@ -347,12 +347,15 @@ def _lost_without(search: ModelSearch, term: str) -> float:
 
 
 def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
-    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well."""
+    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well.
+
+    Where nothing but noise is left, nothing is wrong without an engine.
+    """
     search.progress(Step(f"fitting with {term}"))
     larger = search.with_terms([term])
-    begins = term != ENGINE or has_positive_masses(larger, search.fit.parameters)
+    begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
     ends = [search.refit(larger)] if begins else []
-    if term == ENGINE:
+    if term == ENGINE and (search.has_model_error or not ends):
         sensors, known = larger.campaign.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))

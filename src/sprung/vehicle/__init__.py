@@ -41,6 +41,8 @@ from sprung.vehicle.parameters import (
     with_separate_tracks,
 )
 from sprung.vehicle.response import Motion, affine_response, free_decay
+from sprung.vehicle.segments import Prediction, integrate_near, segments_of
+from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import Sensor
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
@@ -86,6 +88,7 @@ __all__ = [
     "NotNegative",
     "Parameter",
     "Positive",
+    "Prediction",
     "Row",
     "Rows",
     "Sensor",
@@ -97,15 +100,18 @@ __all__ = [
     "affine_response",
     "checked_record",
     "coordinates",
+    "differentiate_motions",
     "evaluate_quantity",
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "integrate_near",
     "nonlinear_elements",
     "parameter_names",
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
+    "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",
     "wheel_loads",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import NamedTuple
 
 from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
@@ -148,6 +149,7 @@ NEUTRAL: Mapping[str, float] = {
 """Values with which an extra has no effect; the others of its parameters then have none either."""
 
 
+@cache
 def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Return the names of the parameters of a model, in the order of `PARAMETERS`.
 
@@ -188,6 +190,7 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
     return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
 
 
+@cache
 def separate_track_names(name: str) -> tuple[str, ...]:
     """Return the names of a parameter in a model with separate half-distances of springs and dampers.
 

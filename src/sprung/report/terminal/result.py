@@ -58,6 +58,8 @@ def result_view(result: Result) -> RenderableType:
         parts += [render_table(ratios_table(result.scale.per_total_mass)), Text()]
     for load, modes in result.modes.items():
         parts += [render_table(modes_table(load, modes)), Text()]
+    if result.additional_terms:
+        parts += [hanging_text("", result.additional_terms), Text()]
     parts += [fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]

@@ -190,5 +190,5 @@ def _cell(value: float, same: bool) -> dict[str, str]:
 
 def _signed(value: float) -> str:
     # A correlation just below one must not be rounded to one, and zero has no sign.
-    text = f"{value:.3f}" if 0.995 <= abs(value) < 1 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
+    text = f"{value:.3f}" if 0.995 <= abs(value) < 1 - 1e-9 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
     return text.replace("-", "\N{MINUS SIGN}")
