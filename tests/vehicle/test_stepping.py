@@ -196,7 +196,7 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
 def test_knots_of_a_damper_curve_leave_the_steps_of_second_order() -> None:
     """Forces run straight within a step whether or not a knot lies in it: half the step leaves about a quarter of the error.
 
-    Straight forces miss (ωh)²/12 of the curved ones: 4e-4 at 1 ms, the step of a fit, and 11 Hz. The dampers here lose up to 0.6
+    Straight forces miss (ωh)²/12 of the curved ones: 4e-4 at 1 ms, the step of a fit, and 11 Hz. The dampers lose up to 0.6
     of 1500 N s/m at 0.3 m/s, which is 7 m/s² at a wheel of 40 kg.
     """
     extras, state = ("rebound", "damper-curve"), some_states(2, 3)

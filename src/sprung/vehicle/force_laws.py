@@ -166,13 +166,13 @@ def _damper_curve_derivatives(parameters: Array, given: ElementInput) -> tuple[A
     side, size = np.sign(given.rate), np.abs(given.rate)
     extends = given.rate > 0
     factor = side * damping * np.where(extends, ratio, 1.0)
-    beyond = [np.maximum(size - velocity, 0.0) for velocity in velocities]
-    missing = sum((drop * excess for drop, excess in zip(drops, beyond, strict=True)), np.zeros_like(size))
+    excesses = [np.maximum(size - velocity, 0.0) for velocity in velocities]
+    missing = sum((drop * excess for drop, excess in zip(drops, excesses, strict=True)), np.zeros_like(size))
     force = [-side * missing * np.where(extends, ratio, 1.0)]
     if len(parameters) % 2 == 0:
         force.append(-damping * missing * extends)
     for velocity, drop, excess, next_excess in zip(
-        velocities, drops, beyond, [*beyond[1:], np.zeros_like(size)], strict=True
+        velocities, drops, excesses, [*excesses[1:], np.zeros_like(size)], strict=True
     ):
         force += [factor * drop * (size > velocity), factor * (excess - next_excess)]
     return np.stack(force), np.zeros((len(force), *size.shape))

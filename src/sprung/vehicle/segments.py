@@ -35,9 +35,9 @@ class Prediction(NamedTuple):
     Attributes
     ----------
     starts
-        State and memories at the start of each segment, shape (drop, segment, start).
+        State and memories at the start of each segment, SI and dimensionless, shape (drop, segment, start).
     transitions
-        The end of each segment by its start, shape (drop, segment, start, start).
+        The end of each segment by its start, SI, shape (drop, segment, start, start).
     """
 
     starts: Array
@@ -45,7 +45,20 @@ class Prediction(NamedTuple):
 
 
 def segments_of(steps: int, every: int) -> tuple[int, int]:
-    """Return the number of segments of so many steps, and their length in steps, a multiple of those between samples."""
+    """Return how motions are cut into segments.
+
+    Parameters
+    ----------
+    steps
+        Of the motions.
+    every
+        Steps from one sample to the next.
+
+    Returns
+    -------
+    number, length
+        Number of segments, and steps of each, a multiple of those between samples.
+    """
     samples = steps // every + 1
     number = min(_SEGMENTS, samples)
     return number, -(-samples // number) * every
