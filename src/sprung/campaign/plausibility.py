@@ -71,6 +71,7 @@ LIMITS: Mapping[str, Limits] = {
     **dict.fromkeys(("s_f", "s_r"), Limits(1e3, 1e10, "N/m")),
     **dict.fromkeys(("k_bf", "k_br"), Limits(500, 1e8, "N/m", zero=True)),
     **dict.fromkeys(("k_df", "k_dr"), Limits(5e3, 1e10, "N/m")),
+    **dict.fromkeys(("c_df", "c_dr"), Limits(0, 1e6, "N s/m")),
     **dict.fromkeys(("k_zf", "k_zr"), Limits(0, 1e7, "N/m")),
     **dict.fromkeys(("c_zf", "c_zr"), Limits(1, 1e7, "N s/m")),
     **dict.fromkeys(("F_f", "F_r"), Limits(0, 1e5, "N")),

@@ -33,6 +33,7 @@ HOP_FREQUENCIES = (8.5, 12.0, 18.0)
 
 DAMPING_RATIOS = (0.12, 0.35, 0.8)
 
+_LOSS = 0.1  # loss factor of rubber mounts
 _USUAL_BODY, _USUAL_HOP, _USUAL_DAMPING = 1.4, 12.0, 0.3  # Hz, Hz, and the damping ratio of the body
 _GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
 _MOUNT_DAMPING = 0.08  # damping ratio of usual engine mounts
@@ -94,6 +95,7 @@ def usual_rubber(values: Mapping[str, float]) -> dict[str, float]:
     rates = {axle: values[f"k_s{axle}"] for axle in "fr"}
     return {
         **{f"k_d{axle}": USUAL_MOUNT * rate for axle, rate in rates.items()},
+        **{f"c_d{axle}": _LOSS * USUAL_MOUNT * rate / (2 * np.pi * _USUAL_HOP) for axle, rate in rates.items()},
         **{f"k_z{axle}": USUAL_RELAXATION * rate for axle, rate in rates.items()},
         **{f"c_z{axle}": _RELAXATION_TIMES[axle] * USUAL_RELAXATION * rate for axle, rate in rates.items()},
     }

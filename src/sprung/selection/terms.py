@@ -284,7 +284,10 @@ TERMS: Mapping[str, ModelTerm] = {
                 again="{axle} ones on mounts of {0}",
                 neutral=None,
             ),
-            undefined=lambda own, _: {f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+            undefined=lambda own, _: {
+                **{f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+                **dict.fromkeys(("c_df", "c_dr"), 0.0),
+            },
             first=lambda own, _: usual_rubber(own),
         ),
         ModelTerm(

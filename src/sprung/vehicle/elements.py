@@ -243,7 +243,9 @@ def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element
         if "tyre-damping" in extras:
             yield Element("damper", f"c_t{axle}", kinematics.wheel(station))
         if "damper-mount" in extras:
-            yield Element("spring", f"k_d{axle}", travel(station, "damper") - kinematics.behind_mount(station))
+            mount = travel(station, "damper") - kinematics.behind_mount(station)
+            yield Element("spring", f"k_d{axle}", mount)
+            yield Element("damper", f"c_d{axle}", mount)
         if "zener" in extras:
             branch = kinematics.behind_branch(station)
             yield Element("spring", f"k_z{axle}", travel(station, "spring") - branch)

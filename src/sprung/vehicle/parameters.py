@@ -113,6 +113,8 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "k_dr": Parameter(
             "N/m", "rate of the rubber mount in series with the damper, each rear wheel", True, in_series=True
         ),
+        "c_df": Parameter("N s/m", "damping of the rubber mount of the damper, each front wheel", True, False),
+        "c_dr": Parameter("N s/m", "damping of the rubber mount of the damper, each rear wheel", True, False),
         "k_zf": Parameter("N/m", "spring rate that relaxes, beside the spring of each front wheel", True, False),
         "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
         "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
@@ -154,7 +156,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "tyre-damping": ("c_tf", "c_tr"),
     "gravity": ("w_h",),
     "engine": ("m_e", "k_e", "c_e", "x_e"),
-    "damper-mount": ("k_df", "k_dr"),
+    "damper-mount": ("k_df", "k_dr", "c_df", "c_dr"),
     "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
@@ -168,7 +170,9 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 """The parameters that each extra may add; see `parameters_of_term`."""
 
-_INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"})
+_INDIFFERENT = frozenset(
+    {"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_df", "c_dr", "c_zf", "c_zr"}
+)
 """Parameters of extras without effect where the others of the extra are neutral."""
 
 _FACTORS = frozenset({"r_f", "r_r", "q_f", "q_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})

@@ -71,8 +71,8 @@ class Vehicle:
     m_e, k_e, c_e, x_e
         Engine on mounts of its own, kg, a part of the sprung mass and of its inertias; its mounts' rate, N/m, and damping,
         N s/m; and its place, m forward of the front axle.
-    k_df, k_dr
-        Rates of the rubber mounts in series with the dampers, N/m; infinite without mounts.
+    k_df, k_dr, c_df, c_dr
+        Rates of the rubber mounts in series with the dampers, N/m, infinite without mounts; and their own damping, N s/m.
     k_zf, k_zr, c_zf, c_zr
         :term:`Zener branch` beside each spring: a rate k_z, N/m, in series with a damping c_z, N s/m, so that k_s is the rate
         at rest, k_s + k_z that of fast motion and c_z / k_z the relaxation time.
@@ -160,6 +160,8 @@ class Vehicle:
     x_e: float = 0.0
     k_df: float = math.inf
     k_dr: float = math.inf
+    c_df: float = 0.0
+    c_dr: float = 0.0
     k_zf: float = 0.0
     k_zr: float = 0.0
     c_zf: float = 1e3
