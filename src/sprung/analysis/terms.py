@@ -29,10 +29,10 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     else:
         _, plain = structures(run)
         plain = replace(plain, carried_at=before.structure.carried_at)
-        search = select_from_ordinary_vehicle(before, plain)
-        if search.has_model_error or not before.has_model_error:
-            forward = select_nonlinear(replace(before, steps=search.steps), plain)
-            search = max(search, forward, key=lambda found: found.delta_bic(before))
+        search = select_nonlinear(before, plain)
+        rich = select_from_ordinary_vehicle(search, plain)
+        is_better = rich.delta_bic(search) > 0
+        search = rich if is_better else replace(search, steps=rich.steps)
     if search.structure.is_nonlinear:
         search = from_contact(search)
     return _with_search(run, run.model, search, "select_nonlinear_terms")

@@ -32,8 +32,11 @@ _SPREADS: Mapping[str, float] = {
 """Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
 name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
 
-_ITERATIONS, _ENOUGH = 40, 0.1
-"""Of the fit to the beginnings of the decays, at the most, and the gain at which it ends."""
+_ITERATIONS, _ENOUGH = 30, 1.0
+"""Of the fit to the beginnings of the decays, at the most, and the expected gain at which it ends."""
+
+_ITERATIONS_OF_ALL, _ENOUGH_OF_ALL = 10, 1.0
+"""The same of the fit to all of the decays: what is not needed is left out and the rest fitted once more."""
 
 
 def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[str, UsualValue]]:
@@ -133,7 +136,8 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
         most=_ITERATIONS,
     )
     rich = replace(rich, usual=usual_sizes(rich, values))
-    return replace(search, structure=rich, fit=begun).refit(rich)
+    fit = fit_structure(rich, search.decays, begun, _ENOUGH_OF_ALL, search.progress, most=_ITERATIONS_OF_ALL)
+    return replace(search, structure=rich, fit=fit)
 
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:
