@@ -28,7 +28,7 @@ X = np.array([-0.04, -0.01, 0.0, 0.01, 0.03])
 
 def elements(name: str, *extras: str, tracks: Tracks = "shared") -> tuple[CurveElements, tuple[str, ...], np.ndarray]:
     names = parameter_names(tracks, extras)
-    found = CurveElements.of(name, seven_degrees_of_freedom(tracks, extras), nonlinear_elements(tracks, extras))
+    found = CurveElements.of(name, seven_degrees_of_freedom(tracks, extras), nonlinear_elements(tracks, extras), names)
     return found, names, np.array([VALUES.get(one, 1.0) for one in names])
 
 

@@ -150,7 +150,7 @@ def force_curves(
     dict
         By name, those of `sprung.vehicle.FORCE_CURVES` that the data determine.
     """
-    kinds = {name: CurveElements.of(name, linear, nonlinear) for name in FORCE_CURVES}
+    kinds = {name: CurveElements.of(name, linear, nonlinear, fit.names) for name in FORCE_CURVES}
     kinds = {name: elements for name, elements in kinds.items() if elements.nonlinear}
     reached = _reached(optimum, models, [row for elements in kinds.values() for row in elements.rows])
     found = {}
@@ -220,9 +220,12 @@ def _reached(
     lowest, highest = np.full((2, len(rows)), np.inf), np.full((2, len(rows)), -np.inf)
     for drop, decay in enumerate(optimum.decays):
         motion = optimum.motion(drop, 0, decay.samples)
-        n = compiled.shape[1]
-        X = motion[:n] + models[decay.load].sag(optimum.values)[:, None]
-        both = np.stack([compiled @ X, compiled @ motion[n : 2 * n]])
+        model, n = models[decay.load], compiled.shape[1]
+        X = motion[:n] + model.sag(optimum.values)[:, None]
+        # A coordinate without mass has no velocity in the state.
+        velocities = np.gradient(X, 1 / decay.rate, axis=1)
+        velocities[: model.state_size - n] = motion[n : model.state_size]
+        both = np.stack([compiled @ X, compiled @ velocities])
         lowest, highest = np.minimum(lowest, both.min(axis=2)), np.maximum(highest, both.max(axis=2))
     for limits in np.stack([lowest, highest]).transpose(2, 1, 0).tolist():
         yield tuple(limits[0]), tuple(limits[1])
