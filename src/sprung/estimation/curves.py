@@ -150,7 +150,7 @@ def force_curves(
     dict
         By name, those of `sprung.vehicle.FORCE_CURVES` that the data determine.
     """
-    kinds = {name: CurveElements.of(name, linear, nonlinear, fit.names) for name in FORCE_CURVES}
+    kinds = {name: CurveElements.of(name, linear, nonlinear) for name in FORCE_CURVES}
     kinds = {name: elements for name, elements in kinds.items() if elements.nonlinear}
     reached = _reached(optimum, models, [row for elements in kinds.values() for row in elements.rows])
     found = {}
@@ -222,7 +222,7 @@ def _reached(
         motion = optimum.motion(drop, 0, decay.samples)
         model, n = models[decay.load], compiled.shape[1]
         X = motion[:n] + model.sag(optimum.values)[:, None]
-        # A coordinate without mass has no velocity in the state.
+        # A coordinate without mass has no velocity in the state, and with a nonlinear law none that is linear in it.
         velocities = np.gradient(X, 1 / decay.rate, axis=1)
         velocities[: model.state_size - n] = motion[n : model.state_size]
         both = np.stack([compiled @ X, compiled @ velocities])

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from sprung.vehicle.elements import Element, LinearLaw, NonlinearElement
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.kinematics import Row
-from sprung.vehicle.model import Rows
 
 Array = NDArray[np.float64]
 
@@ -53,9 +52,7 @@ class CurveElements(NamedTuple):
     hysteretic: tuple[NonlinearElement, ...]
 
     @classmethod
-    def of(
-        cls, name: str, linear: Sequence[Element], nonlinear: Sequence[NonlinearElement], names: Sequence[str]
-    ) -> CurveElements:
+    def of(cls, name: str, linear: Sequence[Element], nonlinear: Sequence[NonlinearElement]) -> CurveElements:
         """Return the elements of one force curve, of those of a vehicle.
 
         Parameters
@@ -64,22 +61,20 @@ class CurveElements(NamedTuple):
             One of `FORCE_CURVES`.
         linear, nonlinear
             Elements of the vehicle.
-        names
-            Its parameters.
         """
         parameter, law = FORCE_CURVES[name]
-        rows = _rows_of(parameter, linear, nonlinear, names)
+        rows = _rows_of(parameter, linear, nonlinear)
         # Friction acts at the spring, and is stated with the damper.
-        rubbing = [*rows, *_rows_of(parameter.replace("c_s", "k_s"), linear, nonlinear, names)]
+        rubbing = [*rows, *_rows_of(parameter.replace("c_s", "k_s"), linear, nonlinear)]
         return cls(
             law,
             tuple(rows),
-            tuple(element for element in linear if element.law == law and _is_on(element.row, rows, names)),
-            tuple(element for element in nonlinear if not element.law.has_memory and _is_on(element.row, rows, names)),
+            tuple(element for element in linear if element.law == law and _is_on(element.row, rows)),
+            tuple(element for element in nonlinear if not element.law.has_memory and _is_on(element.row, rows)),
             tuple(
                 element
                 for element in nonlinear
-                if law == "damper" and element.law.has_memory and _is_on(element.row, rubbing, names)
+                if law == "damper" and element.law.has_memory and _is_on(element.row, rubbing)
             ),
         )
 
@@ -163,19 +158,15 @@ def _sum(
     return force, gradient
 
 
-def _rows_of(
-    parameter: str, linear: Sequence[Element], nonlinear: Sequence[NonlinearElement], names: Sequence[str]
-) -> list[Row]:
+def _rows_of(parameter: str, linear: Sequence[Element], nonlinear: Sequence[NonlinearElement]) -> list[Row]:
     """Return the rows of the elements that have a parameter, each once."""
     rows: list[Row] = []
     elements = [element.row for element in linear if element.coefficient == parameter]
     for row in [*elements, *(element.row for element in nonlinear if parameter in element.parameters)]:
-        if not _is_on(row, rows, names):
+        if not _is_on(row, rows):
             rows.append(row)
     return rows
 
 
-def _is_on(row: Row, rows: Sequence[Row], names: Sequence[str]) -> bool:
-    """Whether a row is one of some rows: the same function of coordinates and parameters."""
-    compiled = Rows.of([row, *rows], names).affine
-    return bool((compiled[0] == compiled[1:]).all(axis=(1, 2)).any())
+def _is_on(row: Row, rows: Sequence[Row]) -> bool:
+    return any(row.constant == other.constant and row.slopes == other.slopes for other in rows)
