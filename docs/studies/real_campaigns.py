@@ -48,12 +48,18 @@ class Truth(NamedTuple):
 def true_parameters(car: RealCar) -> dict[str, float]:
     """Return a car's parameters by their names in results, SI; of terms only those that the car has."""
     found = car.parameters
+    branch = (car.zener[0] * car.k_sf, car.zener[1] * car.k_sr)
     pairs = {
         "k_a": car.anti_roll,
         "c_t": car.tyre_damping,
         "F_": car.friction,
         "r_": tuple(x if x != 1 else 0.0 for x in car.rebound),
         "k_d": tuple(x if np.isfinite(x) else 0.0 for x in car.mount),
+        "k_z": branch,
+        "c_z": tuple(rate * time for rate, time in zip(branch, car.relaxation, strict=True)),
+        "v_k": tuple(x if np.isfinite(x) else 0.0 for x in car.knee),
+        "q_": tuple(x if x != 1 else 0.0 for x in car.slope),
+        "e_": tuple(1 / x for x in car.column),
     }
     for name, pair in pairs.items():
         found |= {f"{name}{axle}": value for axle, value in zip("fr", pair, strict=True) if value}
