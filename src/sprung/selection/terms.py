@@ -39,8 +39,8 @@ _STROKE, _TYRE_STROKE = 0.05, 0.02
 _AIR_GROWTH = 2.3
 """Growth of an air spring's rate per compression by the height of its column: the polytropic exponent plus one."""
 
-_KNEE = 0.12
-"""m/s at which the curve of a damper usually has its knee."""
+_KNEE, _ROUNDING = 0.12, 0.3
+"""m/s at which the curve of a damper usually has its knee, and half the width of its rounding as a part of that."""
 
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
@@ -291,6 +291,19 @@ TERMS: Mapping[str, ModelTerm] = {
                 neutral=1.0,
             ),
             undefined=lambda _, __: {f"v_k{axle}": _KNEE for axle in "fr"},
+        ),
+        ModelTerm(
+            "rounded-knee",
+            _of_axles(lambda p, axle: p[f"w_k{axle}"] / p.get(f"v_k{axle}", _KNEE)),
+            typical=0.3,
+            spread=2.0,
+            negligible=0.1,
+            description=TermDescription(
+                "{axle} damper knees rounded over {0} on both sides",
+                ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
+                again="{axle} ones over {0}",
+            ),
+            first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
         ),
         ModelTerm(
             "progressive",
