@@ -18,6 +18,7 @@ _OTHER_UNITS: Mapping[str, Mapping[str, float]] = {
     "N/m": {"N/mm": 1e3, "kN/mm": 1e6, "lbf/in": 175.12684},
     "N s/m": {"N s/mm": 1e3, "kN s/mm": 1e6, "lbf s/in": 175.12684},
     "N": {"kN": 1e3, "kgf": 9.80665},
+    "m per m": {"percent": 1e-2},
 }
 """By SI unit the others in which such a quantity is stated, and what one of them is in SI."""
 
@@ -69,6 +70,9 @@ LIMITS: Mapping[str, Limits] = {
     **dict.fromkeys(("k_af", "k_ar"), Limits(50, 1e7, "N/m", zero=True)),
     **dict.fromkeys(("s_f", "s_r"), Limits(1e3, 1e10, "N/m")),
     **dict.fromkeys(("k_bf", "k_br"), Limits(500, 1e8, "N/m", zero=True)),
+    **dict.fromkeys(("k_df", "k_dr"), Limits(5e3, 1e10, "N/m")),
+    **dict.fromkeys(("k_zf", "k_zr"), Limits(0, 1e7, "N/m")),
+    **dict.fromkeys(("c_zf", "c_zr"), Limits(1, 1e7, "N s/m")),
     **dict.fromkeys(("F_f", "F_r"), Limits(0, 1e5, "N")),
     "wheelbase": Limits(0.6, 12.0, "m"),
     **dict.fromkeys(("a", "b"), Limits(0.02, 12.0, "m")),
@@ -83,6 +87,7 @@ LIMITS: Mapping[str, Limits] = {
     "cg_height": Limits(0.1, 4.0, "m"),
     "wheel_height": Limits(0.05, 1.2, "m"),
     "roll_axis_height": Limits(-2.0, 3.0, "m"),
+    "motion ratio": Limits(0.2, 3.0, "m per m"),
     "block height": Limits(0.002, 0.6, "m"),
     "x": _SYMMETRIC_LENGTH,
     "y": Limits(-3.0, 3.0, "m"),

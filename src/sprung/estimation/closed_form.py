@@ -102,9 +102,7 @@ class ClosedFormObjective:
             from sprung.estimation.matrix_exponential import MatrixExponentialAt  # noqa: PLC0415 (hardly ever needed)
 
             return MatrixExponentialAt(self, self.models, self.sensors, values, weights)
-        sums = tuple(
-            ExponentialSums.of(batch, values, modes.poles, modes.right, modes.shapes) for batch in self.batches
-        )
+        sums = tuple(ExponentialSums.of(batch, values, modes) for batch in self.batches)
         return ClosedFormAt(self, values, weights, modes, sums)
 
 
@@ -256,8 +254,8 @@ class ClosedFormAt:
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
         motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
-        exponent = np.outer(np.arange(-before, 0) * step, poles[upper])
-        powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
+        growth = np.exp(np.minimum(np.outer(np.arange(-before, 0) * step, poles[upper].real), _BACKWARD))
+        powers = growth * exponentials(-1j * poles[upper].imag * step, before + 1)[:0:-1]
         motion[:, :before] = real_product(coefficients, powers)
         return motion
 

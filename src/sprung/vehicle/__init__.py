@@ -3,13 +3,14 @@
 from sprung.vehicle.characteristics import (
     CHARACTERISTICS,
     DERIVED,
+    MOTION_RATIOS,
     WHEEL_LOADS,
     Characteristic,
     evaluate_quantity,
     wheel_loads,
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
-from sprung.vehicle.curves import FORCE_CURVES, CurveElements, ForceCurveKind
+from sprung.vehicle.curves import FORCE_CURVES, CurveElements
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -24,9 +25,9 @@ from sprung.vehicle.elements import (
 )
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
+from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, state_variables
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
-from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows
+from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
@@ -59,6 +60,7 @@ __all__ = [
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
     "LOAD_MASS",
+    "MOTION_RATIOS",
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
@@ -74,7 +76,6 @@ __all__ = [
     "Element",
     "ElementInput",
     "Finite",
-    "ForceCurveKind",
     "Heights",
     "Item",
     "LinearLaw",
@@ -105,6 +106,7 @@ __all__ = [
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "highest_derivatives",
     "integrate_near",
     "nonlinear_elements",
     "parameter_names",
@@ -114,6 +116,8 @@ __all__ = [
     "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",
+    "state_matrix",
+    "state_variables",
     "wheel_loads",
     "with_separate_tracks",
 ]
