@@ -31,13 +31,13 @@ from sprung.vehicle import (
 from sprung.vehicle.force_laws import (
     AIR,
     BUMP_STOP,
-    DAMPER_CURVE,
     FRICTION,
     GROUND,
     PROGRESSIVE,
     REBOUND,
     ElementInput,
     ForceLaw,
+    damper_curve,
 )
 
 Array = NDArray[np.float64]
@@ -47,6 +47,7 @@ CAR = Vehicle.from_parameters(
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
     | {"k_bf": 3e4, "k_br": 2e4, "x_bf": 0.01, "x_br": 0.015}
     | {"v_kf": 0.1, "v_kr": 0.15, "q_f": 0.4, "q_r": 0.6, "e_f": 6.0, "e_r": 4.0, "h_tf": 6.0, "h_tr": 4.0}
+    | {"w_kf": 0.03, "w_kr": 0.02}
 )
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
@@ -101,6 +102,7 @@ def test_a_load_pushes_with_its_weight() -> None:
     [
         ("friction",), ("rebound",), ("friction", "rebound", "progressive"),
         ("damper-curve", "tyre-curve"), ("rebound", "damper-curve", "air", "bump-stop"),
+        ("rebound", "damper-curve", "rounded-knee"),
     ],
 )  # fmt: skip
 def test_against_another_solver(extras: tuple[str, ...]) -> None:
@@ -127,7 +129,12 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
             elif kind == "damper-curve":
                 ratio = own["r_"] if v > 0 and "rebound" in extras else 1.0
                 knee = own["v_k"]
-                curve = np.interp(abs(v), [0.0, knee, 10.0], [0.0, knee, knee + own["q_"] * (10.0 - knee)])
+                if "rounded-knee" in extras:
+                    width = own["w_k"]
+                    hinge = [0.5 * (u + np.hypot(u, width)) for u in (abs(v) - knee, -knee)]
+                    curve = abs(v) - (1 - own["q_"]) * (hinge[0] - hinge[1])
+                else:
+                    curve = np.interp(abs(v), [0.0, knee, 10.0], [0.0, knee, knee + own["q_"] * (10.0 - knee)])
                 force[i] = ratio * c * (np.sign(v) * curve - v)
             elif kind == "air":
                 height = 1 / own["e_"]
@@ -240,7 +247,10 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
     ("law", "parameters"),
     [
         (FRICTION, (100.0, 2e5)), (FRICTION, (0.0, 2e5)), (REBOUND, (1.7, 1500.0)), (PROGRESSIVE, (3.0, 2e4)),
-        (DAMPER_CURVE, (1500.0, 0.006, 0.4)), (DAMPER_CURVE, (1500.0, 1.7, 0.004, 0.5, 0.012, 0.2)),
+        (damper_curve(), (1500.0, 0.006, 0.4)),
+        (damper_curve(has_ratio=True), (1500.0, 1.7, 0.004, 0.5, 0.012, 0.2)),
+        (damper_curve(is_rounded=True), (1500.0, 0.002, 0.006, 0.4)),
+        (damper_curve(has_ratio=True, is_rounded=True), (1500.0, 1.7, 0.002, 0.004, 0.5, 0.012, 0.2)),
         (AIR, (6.0, 2e4)), (AIR, (1e-6, 2e4)), (AIR, (0.0, 2e4)), (AIR, (60.0, 2e4)),
         (BUMP_STOP, (1e5, 0.004)), (GROUND, (2e4,)), (GROUND, (2e4, 30.0)),
     ],

@@ -80,6 +80,7 @@ LIMITS: Mapping[str, Limits] = {
     **dict.fromkeys(("t_f", "t_r", "t_f1", "t_r1", "t_f2", "t_r2"), Limits(0.03, 2.0, "m")),
     **dict.fromkeys(("x_bf", "x_br"), Limits(0, 1.0, "m")),
     **dict.fromkeys(("v_kf", "v_kr"), Limits(0.005, 5.0, "m/s")),
+    **dict.fromkeys(("w_kf", "w_kr"), Limits(0, 5.0, "m/s")),
     **dict.fromkeys(("q_f", "q_r"), Limits(0.01, 10.0, "1")),
     **dict.fromkeys(("e_f", "e_r"), Limits(0, 50.0, "1/m")),
     "y_s": Limits(-1.5, 1.5, "m"),

@@ -39,8 +39,9 @@ _STROKE, _TYRE_STROKE = 0.05, 0.02
 _AIR_GROWTH = 2.3
 """Growth of an air spring's rate per compression by the height of its column: the polytropic exponent plus one."""
 
-_KNEE, _KNEE_LOSS = 0.12, 0.5
-"""m/s at which the curve of a damper usually has its knee, and the part of its slope that it usually loses there."""
+_KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
+"""m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the width
+of its rounding as a part of the velocity."""
 
 _REBOUND, _TYRE_DAMPING, _TYRE_GROWTH = 0.8, 0.06, 0.12
 """Usual excess of rebound over compression damping, damping of a tyre over that of the damper, and growth of its rate."""
@@ -352,6 +353,19 @@ TERMS: Mapping[str, ModelTerm] = {
                 neutral=1.0,
             ),
             undefined=lambda _, __: {f"v_k{axle}": _KNEE for axle in "fr"},
+        ),
+        ModelTerm(
+            "rounded-knee",
+            _of_axles(lambda p, axle: p[f"w_k{axle}"] / p.get(f"v_k{axle}", _KNEE)),
+            typical=0.3,
+            spread=2.0,
+            negligible=0.1,
+            description=TermDescription(
+                "{axle} damper knees rounded over {0} on both sides",
+                ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
+                again="{axle} ones over {0}",
+            ),
+            first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
         ),
         ModelTerm(
             "progressive",

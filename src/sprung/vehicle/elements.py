@@ -16,13 +16,13 @@ from sprung.vehicle import kinematics
 from sprung.vehicle.force_laws import (
     AIR,
     BUMP_STOP,
-    DAMPER_CURVE,
     FRICTION,
     GROUND,
     PROGRESSIVE,
     REBOUND,
     TYRE_CURVE,
     ForceLaw,
+    damper_curve,
 )
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Row, Wheel
@@ -39,7 +39,7 @@ LINEAR_EXTRAS = (
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (
-    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "progressive", "air", "bump-stop", "tyre-curve",
+    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "rounded-knee", "progressive", "air", "bump-stop", "tyre-curve",
 )  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
@@ -173,9 +173,11 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
             damper = _damper_travel(station, tracks, extras)
             elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
         if "damper-curve" in extras:
-            before = (f"c_s{axle}", f"r_{axle}") if "rebound" in extras else (f"c_s{axle}",)
+            rebound, rounded = "rebound" in extras, "rounded-knee" in extras
+            before = (f"c_s{axle}", *(f"r_{axle}",) * rebound, *(f"w_k{axle}",) * rounded)
+            law = damper_curve(has_ratio=rebound, is_rounded=rounded)
             damper = _damper_travel(station, tracks, extras)
-            elements.append(NonlinearElement(DAMPER_CURVE, (*before, f"v_k{axle}", f"q_{axle}"), damper))
+            elements.append(NonlinearElement(law, (*before, f"v_k{axle}", f"q_{axle}"), damper))
         if "progressive" in extras:
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
         if "air" in extras:

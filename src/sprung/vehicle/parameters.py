@@ -129,6 +129,8 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "v_kr": Parameter("m/s", "velocity at which the curve of the rear dampers has its knee", False),
         "q_f": Parameter("1", "damping beyond the knee over that before it, front", False),
         "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
+        "w_kf": Parameter("m/s", "half the width over which the knee of the front dampers is rounded", False, False),
+        "w_kr": Parameter("m/s", "half the width over which the knee of the rear dampers is rounded", False, False),
         "p_f": Parameter(
             "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
         ),
@@ -161,6 +163,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
     "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
+    "rounded-knee": ("w_kf", "w_kr"),
     "progressive": ("p_f", "p_r"),
     "air": ("e_f", "e_r"),
     "tyre-curve": ("h_tf", "h_tr"),

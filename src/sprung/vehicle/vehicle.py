@@ -46,8 +46,9 @@ class Vehicle:
         Dry friction of each suspension, N, and its presliding stiffness, N/m.
     r_f, r_r
         Rebound damping over compression damping; c_s is then that of compression.
-    v_kf, v_kr, q_f, q_r
-        Velocity at which the damper curves have their knee, m/s, and the damping beyond it over that before it.
+    v_kf, v_kr, q_f, q_r, w_kf, w_kr
+        Velocity at which the damper curves have their knee, m/s, the damping beyond it over that before it, and half the width
+        over which it is rounded, m/s.
     p_f, p_r
         Growth of the spring rates with compression, as a part of them per metre.
     e_f, e_r
@@ -129,6 +130,8 @@ class Vehicle:
     v_kr: float = 1.0
     q_f: float = 1.0
     q_r: float = 1.0
+    w_kf: float = 0.0
+    w_kr: float = 0.0
     p_f: float = 0.0
     p_r: float = 0.0
     e_f: float = 0.0
