@@ -25,6 +25,7 @@ from sprung.estimation.starts import (
     USUAL_MOUNTING,
     USUAL_RELAXATION,
     Mounting,
+    VehicleSize,
     mountings_of,
     usual_rubber,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "Scale",
     "ScoreTest",
     "Unidentifiable",
+    "VehicleSize",
     "autocorrelation_inflation",
     "canonical_basis",
     "characteristics_of",
