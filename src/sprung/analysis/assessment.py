@@ -109,8 +109,8 @@ def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult
     """Return the force curves of the dampers, springs and tyres that are not linear."""
     if not structure.is_nonlinear:
         return {}
-    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights)
-    nonlinear = nonlinear_elements(structure.tracks, structure.terms)
+    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights, structure.wheelbase)
+    nonlinear = nonlinear_elements(structure.tracks, structure.terms, structure.wheelbase)
     return force_curves(fit, optimum, structure.nonlinear_models, linear, nonlinear)
 
 

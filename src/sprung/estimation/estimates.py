@@ -28,7 +28,15 @@ _HARDLY = (
     "would determine it"
 )
 
-_PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
+_PER_MASS = {
+    "kg": "1",
+    "kg m^2": "m^2",
+    "N/m": "1/s^2",
+    "N s/m": "1/s",
+    "N": "m/s^2",
+    "N m": "m^2/s^2",
+    "N m s": "m^2/s",
+}
 
 
 @shown

@@ -170,7 +170,7 @@ class MeasurementSetup:
         names = {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
         heights = self.vehicle.heights
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights)
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights, self.vehicle.wheelbase)
         models = {
             name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
             for load, name in names.items()

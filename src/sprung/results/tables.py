@@ -37,6 +37,12 @@ _CHARACTERISTICS = (
     ("ride damping ratio", "front_ride_damping", "rear_ride_damping", ""),
     ("wheel hop frequency, Hz", "front_hop_frequency", "rear_hop_frequency", ""),
     ("wheel hop damping ratio", "front_hop_damping", "rear_hop_damping", ""),
+    ("twist of the body, Hz", "", "", "twist_frequency"),
+    ("damping ratio of twist", "", "", "twist_damping"),
+    ("bending of the body, Hz", "", "", "bending_frequency"),
+    ("damping ratio of bending", "", "", "bending_damping"),
+    ("people on seats, Hz", "", "", "seat_frequency"),
+    ("damping ratio of seats", "", "", "seat_damping"),
 )
 """Rows of the table of characteristics: what is shown, and the quantities of front axle, rear axle and whole vehicle."""
 

@@ -84,7 +84,12 @@ def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple
     for variant, (gain, estimates) in zip(variants, tests, strict=True):
         if gain >= score[0]:
             score = gain, abs(TERMS[term].size(estimates))
-            best = replace(search.structure, engine_mounting=variant.engine_mounting)
+            best = replace(
+                search.structure,
+                engine_mounting=variant.engine_mounting,
+                body_frequency=variant.body_frequency,
+                seat_place=variant.seat_place,
+            )
     return replace(search, structure=best), score
 
 

@@ -12,10 +12,13 @@ from sprung.estimation import FitResult, fit_linear, fit_nonlinear, mountings_of
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import ENGINE, TERMS
+from sprung.selection.terms import BENDING, ENGINE, OCCUPANTS, TERMS, TWIST
 from sprung.vehicle import NEUTRAL, LinearModel, Rows, nonlinear_elements, state_variables, with_separate_tracks
 
 Real = NDArray[np.float64]
+
+_BODY_FREQUENCIES, _SEAT_PLACES = (9.0, 12.0, 16.0), (0.3, 0.7)
+"""Hz of twist and bending, and places of seats behind the front axle as parts of the wheelbase, where a fit may begin."""
 
 _STOP_GAPS = (0.35, 0.6, 0.85)
 """Parts of the largest compression at which stops may be met, where a fit begins."""
@@ -145,7 +148,7 @@ def fit_structure(
 
 def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Return compressions at which stops may be met, m, from how far a fitted vehicle moves."""
-    elements = nonlinear_elements(structure.tracks, ("bump-stop",))
+    elements = nonlinear_elements(structure.tracks, ("bump-stop",), structure.wheelbase)
     G = Rows.of([element.row for element in elements], structure.names).at(fit.values)
     motions = (fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
@@ -153,7 +156,14 @@ def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDe
 
 
 def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
-    """Return the structures from which the fit of a term may begin: an engine may be mounted in several ways."""
+    """Return the structures from which the fit of a term may begin: an engine may be mounted in several ways.
+
+    A body may bend at several frequencies, and people sit at several places.
+    """
+    if term in (TWIST, BENDING):
+        return [replace(structure, body_frequency=frequency) for frequency in _BODY_FREQUENCIES]
+    if term == OCCUPANTS:
+        return [replace(structure, seat_place=place) for place in _SEAT_PLACES]
     if term != ENGINE:
         return [structure]
     variants = [replace(structure, engine_mounting=mounting) for mounting in mountings_of(own["a"] + own["b"])]

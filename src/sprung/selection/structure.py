@@ -8,7 +8,7 @@ from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimation import USUAL_MOUNTING, Mounting, UsualValue
+from sprung.estimation import USUAL_MOUNTING, Mounting, UsualValue, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     EXTRAS,
@@ -56,6 +56,10 @@ class ModelStructure:
         Compression at which bump stops are met, where a fit begins, m.
     engine_mounting
         Mounting of an engine, where a fit begins.
+    body_frequency
+        Frequency of the body's twist or bending, where a fit begins, Hz.
+    seat_place
+        Place of people on soft seats behind the front axle, where a fit begins, as a part of the wheelbase.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
     usual
@@ -72,6 +76,8 @@ class ModelStructure:
     unilateral_tyres: bool = False
     stop_gap: float = 1.0
     engine_mounting: Mounting = USUAL_MOUNTING
+    body_frequency: float = 12.0
+    seat_place: float = 0.45
     carried_at: CarriedAt = "wheels"
     usual: Mapping[str, UsualValue] = field(default_factory=dict)
 
@@ -79,6 +85,11 @@ class ModelStructure:
     def heights(self) -> Heights:
         """Heights of the campaign, with the one at which the body is carried sideways."""
         return self.campaign.heights._replace(carried_at=self.carried_at)
+
+    @property
+    def wheelbase(self) -> float:
+        """Wheelbase over which the body twists and bends, m: the known one, or that of the sensors."""
+        return VehicleSize.of(self.known, self.campaign.sensors).wheelbase
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -90,7 +101,7 @@ class ModelStructure:
     @cached_property
     def linear_models(self) -> Mapping[str, LinearModel]:
         """Linear equations of motion by load name, without nonlinear forces."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
+        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights, self.wheelbase)
         return {
             load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
             for load in self.campaign.loads
@@ -99,8 +110,8 @@ class ModelStructure:
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with nonlinear forces."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
-        forces = nonlinear_elements(self.tracks, self.terms) + (
+        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights, self.wheelbase)
+        forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase) + (
             ground_contact_elements(self.terms) if self.unilateral_tyres else ()
         )
         return {

@@ -85,7 +85,7 @@ class Item:
             x, y, z = self.position
             yield Element("mass", mass, kinematics.body_point(x, y))
             for row, own, arm in zip(
-                (kinematics.roll(), kinematics.pitch()), self.inertia, heights.item_arms(z), strict=True
+                (kinematics.roll_at(x), kinematics.pitch_at(x)), self.inertia, heights.item_arms(z), strict=True
             ):
                 yield Element("mass", own, row)
                 yield Element("mass", mass, row, arm**2)

@@ -23,8 +23,8 @@ class Parameter(NamedTuple):
     """Whether it must be positive; the others may be zero."""
     signed: bool = False
     """Whether it may be negative."""
-    in_series: bool = False
-    """Whether it is the rate of a spring in series with another element, which is without effect where it is infinite."""
+    vanishes_at_infinity: bool = False
+    """Whether the effect of its term vanishes where it is infinite: the rate of a spring in series, or a modal mass."""
 
 
 LOAD_MASS = "mass of "
@@ -108,10 +108,16 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
         "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
         "k_df": Parameter(
-            "N/m", "rate of the rubber mount in series with the damper, each front wheel", True, in_series=True
+            "N/m",
+            "rate of the rubber mount in series with the damper, each front wheel",
+            True,
+            vanishes_at_infinity=True,
         ),
         "k_dr": Parameter(
-            "N/m", "rate of the rubber mount in series with the damper, each rear wheel", True, in_series=True
+            "N/m",
+            "rate of the rubber mount in series with the damper, each rear wheel",
+            True,
+            vanishes_at_infinity=True,
         ),
         "c_df": Parameter("N s/m", "damping of the rubber mount of the damper, each front wheel", True, False),
         "c_dr": Parameter("N s/m", "damping of the rubber mount of the damper, each rear wheel", True, False),
@@ -119,6 +125,38 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
         "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
         "c_zr": Parameter("N s/m", "damping in series with the relaxing spring rate, each rear wheel", True),
+        "I_w": Parameter(
+            "kg m^2",
+            "modal inertia of the body's twist, for the angle between the axles",
+            True,
+            vanishes_at_infinity=True,
+        ),
+        "k_w": Parameter("N m", "stiffness of the body's twist, for the angle between the axles", True),
+        "c_w": Parameter("N m s", "damping of the body's twist, for the angle between the axles", True),
+        "a_w": Parameter("m", "node of the body's twist, ahead of the middle between the axles", False, False, True),
+        "m_v": Parameter(
+            "kg",
+            "modal mass of the body's bending, for the rise of its middle above its axles",
+            True,
+            vanishes_at_infinity=True,
+        ),
+        "k_v": Parameter("N/m", "stiffness of the body's bending, for the rise of its middle above its axles", True),
+        "c_v": Parameter("N s/m", "damping of the body's bending, for the rise of its middle above its axles", True),
+        "b_v": Parameter(
+            "1",
+            "rise of the centre of gravity as the body bends, over that of the middle above its axles",
+            False,
+            False,
+            True,
+        ),
+        "p_v": Parameter(
+            "1/m", "mean pitch of the body as it bends, over the rise of its middle above its axles", False, False, True
+        ),
+        "m_o": Parameter("kg", "people on soft seats, a part of the sprung mass", True, False),
+        "k_o": Parameter("N/m", "seats of these people, all together", True),
+        "c_o": Parameter("N s/m", "damping of the seats of these people, all together", True, False),
+        "x_o": Parameter("m", "people on soft seats, forward of the front axle", False, False, True),
+        "y_o": Parameter("m", "people on soft seats, left of the centreline", False, False, True),
         "F_f": Parameter("N", "dry friction, each front wheel", True, False),
         "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
         "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
@@ -160,6 +198,9 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "engine": ("m_e", "k_e", "c_e", "x_e"),
     "damper-mount": ("k_df", "k_dr", "c_df", "c_dr"),
     "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
+    "twist": ("I_w", "k_w", "c_w", "a_w"),
+    "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
+    "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
     "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
@@ -173,15 +214,15 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 """The parameters that each extra may add; see `parameters_of_term`."""
 
-_INDIFFERENT = frozenset(
-    {"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_df", "c_dr", "c_zf", "c_zr"}
-)
+_INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"}) | {
+    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_df", "c_dr"
+}  # fmt: skip
 """Parameters of extras without effect where the others of the extra are neutral."""
 
 _FACTORS = frozenset({"r_f", "r_r", "q_f", "q_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
 
 NEUTRAL: Mapping[str, float] = {
-    name: math.inf if PARAMETERS[name].in_series else float(name in _FACTORS)
+    name: math.inf if PARAMETERS[name].vanishes_at_infinity else float(name in _FACTORS)
     for names in EXTRA_PARAMETERS.values()
     for name in names
     if name not in _INDIFFERENT
