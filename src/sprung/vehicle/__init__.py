@@ -22,6 +22,7 @@ from sprung.vehicle.elements import (
     nonlinear_elements,
     seven_degrees_of_freedom,
 )
+from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
 from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
@@ -98,6 +99,7 @@ __all__ = [
     "Vehicle",
     "Wheel",
     "affine_response",
+    "body_sinking",
     "checked_record",
     "coordinates",
     "differentiate_motions",
@@ -112,6 +114,7 @@ __all__ = [
     "parse_record",
     "problems_of_record",
     "segments_of",
+    "second_order_readings",
     "separate_track_names",
     "seven_degrees_of_freedom",
     "wheel_loads",

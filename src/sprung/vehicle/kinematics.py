@@ -37,7 +37,11 @@ WHEELS_AT = slice(3, 7)
 HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 """A unit of heave: everything moving up alike, in the coordinates."""
 
-_Z, _THETA, _PHI, *_WHEELS, _ENGINE = np.eye(len(COORDINATES))
+UNCONSTRAINED = ("x", "y", "psi")
+"""Displacement of the body's centre of gravity forward and to the left, m, and yaw angle, rad, positive to the left: no force of
+the suspension acts on them, so that they follow from the others; see `LinearModel`. In a row they are the last."""
+
+_Z, _THETA, _PHI, *_WHEELS, _ENGINE, _X, _Y, _PSI = np.eye(len(COORDINATES) + len(UNCONSTRAINED))
 
 
 @shown
@@ -118,6 +122,47 @@ def pitch() -> Row:
 def roll() -> Row:
     """Roll angle of the body, rad."""
     return Row(_PHI)
+
+
+def forward(y: float = 0.0, height: float = 0.0) -> Row:
+    """Forward displacement of a point of the body.
+
+    Parameters
+    ----------
+    y, height
+        Position, m: left of the centreline, above the centre of gravity.
+    """
+    return Row(_X - y * _PSI + height * _THETA)
+
+
+def sideways(x: float, height: float) -> Row:
+    """Displacement of a point of the body to the left.
+
+    Parameters
+    ----------
+    x, height
+        Position, m: forward of the front axle, above the centre of gravity.
+    """
+    return Row(_Y + x * _PSI - height * _PHI, {"a": _PSI})
+
+
+def sideways_at(axle: str, height: float) -> Row:
+    """Displacement to the left of a point of the body over an axle, or over the centre of gravity.
+
+    Parameters
+    ----------
+    axle
+        ``f``, ``r``, or nothing for the centre of gravity.
+    height
+        Above the centre of gravity, m.
+    """
+    along = {"f": {"a": _PSI}, "r": {"b": -_PSI}}
+    return Row(_Y - height * _PHI, along.get(axle, {}))
+
+
+def yaw() -> Row:
+    """Yaw angle of the body, rad."""
+    return Row(_PSI)
 
 
 def bounce(off_centre: bool = False) -> Row:
