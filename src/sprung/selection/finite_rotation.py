@@ -1,8 +1,8 @@
-"""Finite rotation: whether the recordings show effects of the second order in the angles, and what a load does to the geometry.
+"""Finite rotation: whether the recordings show effects of the second order in the angles, and how a load changes the geometry.
 
-A simulated vehicle of the linear model has neither, a real one both. They have no parameter of their own: the recordings decide by
-their likelihood, as about any term. What sensors read to second order follows from the fitted motion and is subtracted from the
-recordings.
+A simulated vehicle of the linear model has neither, a real one both. They have no parameter of their own: the recordings decide
+by their likelihood, as about any term. What sensors read to second order follows from the fitted motion and is subtracted from
+the recordings.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, Heights, body_sinking, second_order_readings
 
 _WHEEL_HEIGHT = 0.32
-"""Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans are 0.28
-to 0.37 m (ETRTO Standards Manual). It only counts for the height of loads above the wheels; the other assumption is that the
-loads are level with the centre of gravity."""
+"""Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans are
+0.28 to 0.37 m (ETRTO Standards Manual). It only counts for the height of loads above the wheels; the other assumption is that
+the loads are level with the centre of gravity."""
 
 _PASSES = 2
 """Fits, each with the motion and the geometry of the one before; the second changes little."""
@@ -40,7 +40,7 @@ class _Assumption(NamedTuple):
     is_load_level: bool
     """Whether loads are level with the centre of gravity, where no heights are stated."""
     sinks: bool
-    """Whether the body rests lower on its wheels; not where it is levelled, or where a simulated vehicle rests as the empty one."""
+    """Whether the body rests lower on its wheels; not where it is levelled, or where a simulation lets it rest as without load."""
 
 
 _ASSUMPTIONS = (
@@ -128,7 +128,9 @@ def _corrected(
     return search
 
 
-def _with_geometry(structure: ModelStructure, parameters: Mapping[str, float], assumption: _Assumption) -> ModelStructure:
+def _with_geometry(
+    structure: ModelStructure, parameters: Mapping[str, float], assumption: _Assumption
+) -> ModelStructure:
     """Return a structure with the heights that a fitted vehicle shows, and with the sinking of its body under each load."""
     stated = structure.campaign.heights
     own = start_values(structure, parameters)

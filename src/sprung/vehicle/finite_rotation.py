@@ -1,10 +1,10 @@
 """Finite rotation: what sensors read to second order in the angles, beyond the linear equations of motion.
 
-The motion is X₁ + X₂ with X₁ of first order, the linear free vibration, and X₂ of second order. X₂ obeys the linear equations of
-motion with the second-order inertia and suspension forces of X₁ as their input, so that it follows without iteration (regular
-perturbation: Nayfeh and Mook, Nonlinear Oscillations, 1979, section 2.3). Wheels slide along the body's own vertical axis and tyres
-press vertically. Pitch comes first, then roll: a point of the body at (x, y, h) from the centre of gravity is at the height
-z - x sin θ + y cos θ sin φ + h cos θ cos φ.
+The motion is X₁ + X₂ with X₁ of first order, the linear free vibration, and X₂ of second order. X₂ obeys the linear equations
+of motion with the second-order inertia and suspension forces of X₁ as their input, so that it follows without iteration
+(regular perturbation: Nayfeh and Mook, Nonlinear Oscillations, 1979, section 2.3). Wheels slide along the body's own vertical
+axis and tyres press vertically. Pitch comes first, then roll: a point of the body at (x, y, h) from the centre of gravity is at
+the height z - x sin θ + y cos θ sin φ + h cos θ cos φ.
 """
 
 from __future__ import annotations
@@ -148,13 +148,11 @@ def _sensor_rotation(
     return np.array(readings)
 
 
-def _suspension_forces(
-    model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: _Signal
-) -> Array:
+def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: _Signal) -> Array:
     """Return the second-order generalised forces of springs and dampers, SI, shape (coordinate, time).
 
-    The compression is q = (q₁ + d)(1 + (θ² + φ²)/2) - d to third order, with the linear q₁ and the height d of the wheel's centre
-    above the body's centre of gravity.
+    The compression is q = (q₁ + d)(1 + (θ² + φ²)/2) - d to third order, with the linear q₁ and the height d of the wheel's
+    centre above the body's centre of gravity.
     """
     arm = heights.wheel_arms[1]
     half = _half_square(signals)

@@ -38,8 +38,8 @@ HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
 """A unit of heave: everything moving up alike, in the coordinates."""
 
 UNCONSTRAINED = ("x", "y", "psi")
-"""Displacement of the body's centre of gravity forward and to the left, m, and yaw angle, rad, positive to the left: no force of
-the suspension acts on them, so that they follow from the others; see `LinearModel`. In a row they are the last."""
+"""Displacement of the body's centre of gravity forward and to the left, m, and yaw angle, rad, positive to the left: no force
+of the suspension acts on them, so that they follow from the others; see `LinearModel`. In a row they are the last."""
 
 _Z, _THETA, _PHI, *_WHEELS, _ENGINE, _X, _Y, _PSI = np.eye(len(COORDINATES) + len(UNCONSTRAINED))
 

@@ -114,9 +114,9 @@ class LinearModel:
     most three parameters: k_sf, k_sf a, k_sf a². Only these products, which are few, depend on the parameters; their
     coefficients are constant matrices.
 
-    Where masses also move along the coordinates `UNCONSTRAINED`, on which no force acts, their momentum along these stays zero, as
-    it is at rest before the release. With M = [[M₁₁, M₁₂], [M₂₁, M₂₂]], the second block for these, they are -M₂₂⁻¹ M₂₁ X, and
-    the mass matrix of X is the Schur complement M₁₁ - M₁₂ M₂₂⁻¹ M₂₁ (Routh's reduction of cyclic coordinates: Goldstein,
+    Where masses also move along the coordinates `UNCONSTRAINED`, on which no force acts, their momentum along these stays zero,
+    as it is at rest before the release. With M = [[M₁₁, M₁₂], [M₂₁, M₂₂]], the second block for these, they are -M₂₂⁻¹ M₂₁ X,
+    and the mass matrix of X is the Schur complement M₁₁ - M₁₂ M₂₂⁻¹ M₂₁ (Routh's reduction of cyclic coordinates: Goldstein,
     Classical Mechanics, section 8.3).
 
     Attributes
@@ -239,7 +239,7 @@ class LinearModel:
         return self.terms.shape[-1] > self.size
 
     def unconstrained_motion(self, values: ArrayLike) -> Array:
-        """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); zero where no mass moves along them."""
+        """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); 0 where no mass moves along them."""
         if not self.is_reduced:
             return np.zeros((len(UNCONSTRAINED), self.size))
         return self._reduction(self._all_matrices(values)[0])[self.size :]
