@@ -112,6 +112,8 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
+    if campaign.motion_ratio:
+        vehicle["motion_ratio"] = {name: _measured(ratio) for name, ratio in campaign.motion_ratio.items()}
     sections = {
         "vehicle": vehicle,
         "test": document_of_record(campaign.test),

@@ -1,6 +1,6 @@
 """Maximum likelihood estimation of a vehicle's parameters from free decays: problem, fit, tests, covariance."""
 
-from sprung.estimation.characteristics import characteristics_of, estimate_quantity
+from sprung.estimation.characteristics import characteristics_of, estimate_quantity, rates_at_motion_ratios
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
@@ -68,6 +68,7 @@ __all__ = [
     "parameters_from_matrices",
     "predictions",
     "profiled",
+    "rates_at_motion_ratios",
     "score_added",
     "score_linear_term",
     "score_linear_terms",

@@ -99,6 +99,11 @@ class FitResult:
         return -0.5 * self.problem.cost(self.iterate)
 
     @property
+    def remaining_gain(self) -> float:
+        """What one more Newton step is expected to gain in twice the log-likelihood; nearly 0 at an optimum."""
+        return self.problem.normal_equations(self.iterate).step()[1]
+
+    @property
     def absolute_loglikelihood(self) -> float:
         """Natural logarithm of the likelihood, with its constant: -½ Σ (ln 2πσ² + r²/σ²), and the priors."""
         observations = self.problem.objective.observations.sum(axis=0)

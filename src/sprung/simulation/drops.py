@@ -134,4 +134,8 @@ def simulate(
         accelerations = [motion.acceleration for motion in motions]
     accelerations = [np.hstack([np.zeros((len(one), before)), one]) for one in accelerations]
     campaign = setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))
-    return campaign if file is None else replace(campaign, identification=file.identification, test=file.test)
+    return (
+        campaign
+        if file is None
+        else replace(campaign, identification=file.identification, test=file.test, motion_ratio=file.motion_ratio)
+    )
