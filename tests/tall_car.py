@@ -1,8 +1,9 @@
 """A tall car with anti-roll bars, simulated by a rigid-body engine that is not ours.
 
-Truth and recordings are from MuJoCo 4.0.0 (RK4, 0.5 ms): a free body, wheels on slide joints along its own vertical axis, vertical tyre
-forces at the wheel centres that cannot pull, ballast as bodies fixed to it, accelerometers that read specific force in the turning
-body. Drops from 0.05 m blocks that vanish at 0.4 to 0.5 s; 500 Hz, white noise of 0.02 m/s², stored in steps of 0.001 m/s².
+Truth and recordings are from MuJoCo 4.0.0 (RK4, 0.5 ms): a free body, wheels on slide joints along its own vertical axis,
+vertical tyre forces at the wheel centres that cannot pull, ballast as bodies fixed to it, accelerometers that read specific
+force in the turning body. Drops from 0.05 m blocks that vanish at 0.4 to 0.5 s; 500 Hz, white noise of 0.02 m/s², stored in
+steps of 0.001 m/s².
 """
 
 from __future__ import annotations
@@ -72,7 +73,9 @@ def campaign_in(folder: Path, heights: Heights | None) -> sprung.Campaign:
         lines += ["[[sensor]]", f'channel = "{sensor.channel}"', f'on = "{sensor.on}"', *place]
     lines += ["[[load]]", 'name = "ballast"', "items = ["]
     for item in BALLAST.items:
-        lines.append(f"  {{ mass = {item.mass}, position = {list(item.position or ())}, inertia = {list(item.inertia)} }},")
+        lines.append(
+            f"  {{ mass = {item.mass}, position = {list(item.position or ())}, inertia = {list(item.inertia)} }},"
+        )
     lines.append("]")
     with np.load(FOLDER / "recordings.npz") as stored:
         for name in stored.files:

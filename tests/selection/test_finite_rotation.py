@@ -8,7 +8,7 @@ import pytest
 
 import sprung
 from sprung.vehicle import Heights
-from tests.tall_car import HEIGHTS, TALL_CAR, campaign_in
+from tall_car import HEIGHTS, TALL_CAR, campaign_in
 
 
 @pytest.mark.parametrize("heights", [None, HEIGHTS])

@@ -21,7 +21,7 @@ from sprung.vehicle import (
     second_order_readings,
     seven_degrees_of_freedom,
 )
-from tests.tall_car import BALLAST, HEIGHTS, RATE, SENSORS, TALL_CAR, second_order
+from tall_car import BALLAST, HEIGHTS, RATE, SENSORS, TALL_CAR, second_order
 
 Array = NDArray[np.float64]
 
@@ -95,7 +95,9 @@ def test_a_load_lets_the_body_rest_lower_and_stiffens_roll() -> None:
 
     rest = root(gradient, np.zeros(7)).x
     along = 2e-3 * np.eye(7)[2]
-    curvature = (potential(rest + along, BALLAST) - 2 * potential(rest, BALLAST) + potential(rest - along, BALLAST)) / 4e-6
+    curvature = (
+        potential(rest + along, BALLAST) - 2 * potential(rest, BALLAST) + potential(rest - along, BALLAST)
+    ) / 4e-6
     model, sunk = model_of(BALLAST)
     unsunk = TALL_CAR.model(BALLAST).matrices(VALUES).K[2, 2]
     change = curvature - unsunk
@@ -122,7 +124,9 @@ def test_a_vehicle_that_nothing_holds_turns_with_the_least_kinetic_energy() -> N
             right += [-np.sqrt(mass) * h * (angle == 1), np.sqrt(mass) * h * (angle == 2)]
         _, (left,), *_ = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)
         vertical = sum(m * (x**2 if angle == 1 else y**2) for m, x, y, _ in points[3:])
-        assert TALL_CAR.model(BALLAST).matrices(VALUES).M[angle, angle] == pytest.approx(own + vertical + left, rel=1e-12)
+        assert TALL_CAR.model(BALLAST).matrices(VALUES).M[angle, angle] == pytest.approx(
+            own + vertical + left, rel=1e-12
+        )
 
 
 def test_derivatives_of_the_reduced_mass_matrix() -> None:

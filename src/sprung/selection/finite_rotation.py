@@ -23,9 +23,9 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, Heights, body_sinking, second_order_readings
 
 _WHEEL_HEIGHT = 0.32
-"""Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans are
-0.28 to 0.37 m (ETRTO Standards Manual). It only counts for the height of loads above the wheels; the other assumption is that
-the loads are level with the centre of gravity."""
+"""Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans
+are 0.28 to 0.37 m (ETRTO Standards Manual). It only counts for the height of loads above the wheels; the other assumption is
+that the loads are level with the centre of gravity."""
 
 _PASSES = 2
 """Fits, each with the motion and the geometry of the one before; the second changes little."""
@@ -40,7 +40,7 @@ class _Assumption(NamedTuple):
     is_load_level: bool
     """Whether loads are level with the centre of gravity, where no heights are stated."""
     sinks: bool
-    """Whether the body rests lower on its wheels; not where it is levelled, or where a simulation lets it rest as without load."""
+    """Whether the body rests lower on its wheels; not where it is levelled, or where a simulation keeps it level."""
 
 
 _ASSUMPTIONS = (

@@ -18,7 +18,7 @@ from scipy.signal import lfilter
 
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
-from sprung.vehicle.elements import Tracks, half_distances
+from sprung.vehicle.elements import LinearLaw, Tracks, half_distances
 from sprung.vehicle.heights import Heights
 from sprung.vehicle.kinematics import WHEELS, Wheel
 from sprung.vehicle.load import Load
@@ -158,7 +158,7 @@ def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, val
     half = _half_square(signals)
     tilt = np.zeros_like(signals.value)
     tilt[[_PITCH, _ROLL]] = signals.value[[_PITCH, _ROLL]]
-    springs, dampers = (-_travels(model, tracks, law, values) for law in ("spring", "damper"))
+    springs, dampers = -_travels(model, tracks, "spring", values), -_travels(model, tracks, "damper", values)
     rates, damping = _by_axle(model, "k_s", values), _by_axle(model, "c_s", values)
     matrices = model.matrices(values)
     static = rates * -(springs @ np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY))
@@ -233,11 +233,10 @@ def _above_centre(heights: Heights, height: float) -> float:
     return height - heights.cg_height if heights.has_effect and heights.cg_height is not None else 0.0
 
 
-def _travels(model: LinearModel, tracks: Tracks, law: str, values: Array) -> Array:
+def _travels(model: LinearModel, tracks: Tracks, law: LinearLaw, values: Array) -> Array:
     """Return the rows of the suspension travel at each wheel, shape (wheel, coordinate)."""
     distances = half_distances(tracks)
-    key = "spring" if law == "spring" else "damper"
-    rows = [kinematics.travel(station, distances[station[0], key]) for station in WHEELS]
+    rows = [kinematics.travel(station, distances[station[0], law]) for station in WHEELS]
     return Rows.of(rows, model.names).at(values)
 
 
@@ -263,4 +262,5 @@ def _forced_accelerations(A: Array, inputs: Array, step: float) -> Array:
     states = np.zeros_like(modal)
     for state, part, factor in zip(states, added, decay[:, 0], strict=True):
         state[1:] = lfilter([1.0], [1.0, -factor], part)
-    return (vectors @ (poles[:, None] * states)).real + inputs
+    forced: Array = (vectors @ (poles[:, None] * states)).real + inputs
+    return forced

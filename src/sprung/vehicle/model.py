@@ -236,7 +236,7 @@ class LinearModel:
     @property
     def is_reduced(self) -> bool:
         """Whether masses also move along coordinates on which no force acts."""
-        return self.terms.shape[-1] > self.size
+        return int(self.terms.shape[-1]) > self.size
 
     def unconstrained_motion(self, values: ArrayLike) -> Array:
         """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); 0 where no mass moves along them."""
