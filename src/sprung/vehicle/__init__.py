@@ -26,9 +26,9 @@ from sprung.vehicle.elements import (
 from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
+from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, state_variables
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
-from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows
+from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
@@ -108,6 +108,7 @@ __all__ = [
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "highest_derivatives",
     "integrate_near",
     "nonlinear_elements",
     "parameter_names",
@@ -118,6 +119,8 @@ __all__ = [
     "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",
+    "state_matrix",
+    "state_variables",
     "wheel_loads",
     "with_separate_tracks",
 ]

@@ -22,7 +22,7 @@ from sprung.vehicle.elements import LinearLaw, Tracks, half_distances
 from sprung.vehicle.heights import Heights
 from sprung.vehicle.kinematics import WHEELS, Wheel
 from sprung.vehicle.load import Load
-from sprung.vehicle.model import LinearModel, Rows
+from sprung.vehicle.model import LinearModel, Rows, highest_derivatives
 from sprung.vehicle.sensor import Sensor
 
 Array = NDArray[np.float64]
@@ -75,8 +75,9 @@ def body_sinking(empty: LinearModel, loaded: LinearModel, tracks: Tracks, values
         Mean of the wheels, each with the force of its spring: with that, the moment of gravity changes.
     """
     with_load = loaded.matrices(values)
-    weights = STANDARD_GRAVITY * np.array([with_load.weight, with_load.weight - empty.matrices(values).weight])
-    compressions = _travels(loaded, tracks, "spring", values) @ np.linalg.solve(with_load.K, weights.T)
+    masses = np.array([with_load.M, with_load.M - empty.matrices(values).M])
+    weights = STANDARD_GRAVITY * masses @ loaded.heave
+    compressions = _travels(loaded, tracks, "spring", values) @ with_load.deflection(weights.T)
     force = _by_axle(loaded, "k_s", values) * compressions[:, 0]
     return float(force @ compressions[:, 1] / force.sum())
 
@@ -118,14 +119,17 @@ def second_order_readings(
         m/s², shape (sensor, time).
     """
     matrices = model.matrices(values)
-    n, A = len(matrices.M), matrices.state
-    signals = _Signal(motion[:n], motion[n:], (A @ motion)[n:])
+    n, m, A = len(matrices.M), model.massive, matrices.state
+    # Where no mass is, the velocity follows from the displacements, and there is no acceleration to be known.
+    rates = A @ motion
+    signals = _Signal(motion[:n], rates[:n], np.vstack([rates[n:], np.zeros_like(motion[: n - m])]))
     forces = _suspension_forces(model, tracks, heights, values, signals) + _inertia_forces(
         model, tracks, heights, load, values, signals
     )
     rows = Rows.of([sensor.row for sensor in sensors], model.names).at(values)
-    inputs = np.vstack([np.zeros_like(forces), np.linalg.solve(matrices.M, forces)])
-    readings = rows @ _forced_accelerations(A, inputs, step)[n:]
+    inputs = np.zeros_like(motion)
+    inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, forces)
+    readings = rows[:, :m] @ _forced_accelerations(A, inputs, step)[n:]
     return readings + _sensor_rotation(model, heights, sensors, values, signals)
 
 
@@ -161,7 +165,7 @@ def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, val
     springs, dampers = -_travels(model, tracks, "spring", values), -_travels(model, tracks, "damper", values)
     rates, damping = _by_axle(model, "k_s", values), _by_axle(model, "c_s", values)
     matrices = model.matrices(values)
-    static = rates * -(springs @ np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY))
+    static = rates * -(springs @ matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY))
     forces = np.zeros_like(signals.value)
     for spring, damper, k, c, held in zip(springs, dampers, rates, damping, static, strict=True):
         compression = signals.along(spring).value
