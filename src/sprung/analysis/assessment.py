@@ -36,7 +36,8 @@ METHOD = "joint maximum likelihood"
 def assess(run: Analysis, progress: Progress) -> Analysis:
     """Validate the fit, decide on the verdict, and put the result together."""
     run = _with_drifts(run)
-    campaign, structure, fit, optimum = run.campaign, run.model.structure, run.uncertainty, run.fit
+    campaign, structure, optimum = run.campaign, run.model.structure, run.fit
+    statistics, fit = run.uncertainty, run.uncertainty.of_vehicle
     decays, suspected = run.decays, run.suspected
     progress(Step("judging the fit: each drop predicted by the others"))
     channels = tuple(sensor.channel for sensor in campaign.sensors)
@@ -44,13 +45,13 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, structure.known)
     misfit = estimate_model_error(fit, decays)
-    motions = body_motions(fit, decays, campaign.sensors)
+    motions = body_motions(statistics, decays, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     verdict = decide_verdict(
         fit, misfit, estimates.parameters, channels, [fault.what for fault in suspected], validated
     )
     rejected = verdict.state == "reject"
-    profiles = {} if rejected else profiles_of(run.options.profile, optimum, fit, structure.known, progress)
+    profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     result = Result(
         version=version("sprung"),

@@ -16,7 +16,7 @@ from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
-from sprung.estimation.score_test import ScoreTest, score_added, wald_test
+from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
 from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
@@ -57,6 +57,7 @@ __all__ = [
     "fit_linear",
     "fit_nonlinear",
     "identifiable_subspace",
+    "lift_priors",
     "mode_estimates",
     "mountings_of",
     "parameters_from_matrices",

@@ -18,7 +18,7 @@ from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import ElementInput, NonlinearModel, Rows, Stepper, Trajectory
+from sprung.vehicle import ElementInput, NonlinearModel, Readout, Stepper, Trajectory
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -47,7 +47,7 @@ class TimeSteppingObjective:
     models
         Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters, in the order of the decays' channels.
+        The sensors over the fit's parameters, in the order of the decays' channels.
     states
         {X, Ẋ} of each drop at its first sample, from which an evaluation starts, and memories where they are known, from where
         the vehicle rests with its load; shape (drop, state) or (drop, state + memory).
@@ -59,7 +59,7 @@ class TimeSteppingObjective:
 
     decays: Sequence[FreeDecay]
     models: Mapping[str, NonlinearModel]
-    sensors: Rows
+    sensors: Readout
     states: Real
     sensors_tilt: bool
     longest_step: float
@@ -155,7 +155,7 @@ class TimeSteppingObjective:
 
     def at_states(self, values: Real, weights: Real, begin: Real) -> TimeSteppingAt:
         """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory)."""
-        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values)
+        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
         states, memories = np.split(begin, [self.state_size], axis=1)
         trajectory = stepper.integrate(states, memories, self.every * (self.records.shape[2] - 1))
         return TimeSteppingAt(self, values, weights, begin, stepper, trajectory)
@@ -163,7 +163,7 @@ class TimeSteppingObjective:
     def sag(self, values: Real) -> Real:
         """Displacement of each drop's resting point under its load; (drop, state + memory), only X is not zero."""
         sag = np.zeros((len(self.decays), len(self.prior_std)))
-        by_kind = np.array([model.sag(values) for model in self.models_by_kind])[self.kind]
+        by_kind = np.array([model.sag(values[: self.sensors.shared]) for model in self.models_by_kind])[self.kind]
         sag[:, : by_kind.shape[1]] = by_kind
         return sag
 
@@ -186,11 +186,12 @@ class TimeSteppingObjective:
         impossible = np.abs(memories) > _MOST_MEMORY
         if not impossible.any():
             return None
-        rows = forces.rows.at(values)
+        values_of_model = values[: self.sensors.shared]
+        rows = forces.rows.at(values_of_model)
         memory = np.zeros((len(memories), forces.number))
         memory[:, forces.with_memory] = memories
         travel = X @ rows.T
-        answer = forces.evaluate(values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
+        answer = forces.evaluate(values_of_model, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
         by_memory = answer.by_memory[:, forces.with_memory]
         lost = np.where(impossible, memories, 0.0) * by_memory @ rows[forces.with_memory]
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
@@ -266,7 +267,8 @@ class TimeSteppingAt:
     @cached_property
     def _acceleration_rows(self) -> tuple[Real, Real]:
         """Accelerations from {X, Ẋ, u, 1} of every drop, (drop, coordinate, input), and by parameter, next to it."""
-        by_kind = [model.accelerations(self.values) for model in self.objective.models_by_kind]
+        values = self.values[: self.objective.sensors.shared]
+        by_kind = [model.accelerations(values) for model in self.objective.models_by_kind]
         rows, derivatives = (np.stack(part)[self.objective.kind] for part in zip(*by_kind, strict=True))
         return rows, derivatives
 
@@ -293,13 +295,28 @@ class TimeSteppingAt:
         """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
         objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            residuals = objective.records - objective.sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
+            readings = objective.sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
             angles = self._inputs[:, :, 1:3]
-            residuals += 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+            readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+            residuals = objective.records - self._delayed(readings)
             residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
             residuals *= objective.is_sample[:, None, :]
         counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
         return counted
+
+    def _delayed(self, readings: Real) -> Real:
+        """Return the readings of sensors with their delays, shape (drop, channel, time), to the second order in these."""
+        if not self.objective.sensors.has_delays:
+            return readings
+        samples = self.objective.sensors.delays(self.values)[:, None] * self._rates
+        rising = np.gradient(readings, axis=-1)
+        delayed: Real = readings - samples * rising + 0.5 * samples**2 * np.gradient(rising, axis=-1)
+        return delayed
+
+    @cached_property
+    def _rates(self) -> Real:
+        """Samples per second of every drop, shape (drop, 1, 1)."""
+        return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
 
     @cached_property
     def residual_sums(self) -> Real:
@@ -314,6 +331,12 @@ class TimeSteppingAt:
         return float(np.sum((self.begin / self.objective.prior_std) ** 2))
 
     @cached_property
+    def _late(self) -> Real:
+        """Derivative of the readings by a delay, m/s³, shape (drop, channel, time)."""
+        readings = self.objective.records - self._residuals
+        return np.asarray(-self._rates * np.gradient(readings, axis=-1))
+
+    @cached_property
     def _products(self) -> Real:
         """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
 
@@ -321,9 +344,11 @@ class TimeSteppingAt:
         """
         objective, every = self.objective, self.objective.every
         rows, derivatives = self._acceleration_rows
-        S, by_S = objective.sensors.at(self.values), np.swapaxes(objective.sensors.slopes, 1, 2)
+        S, by_S = objective.sensors.at(self.values), np.swapaxes(objective.sensors.slopes(self.values), 1, 2)
         drops, channels, _ = objective.records.shape
-        parameters, unknown = len(self.values), len(self.values) + self.begin.shape[1]
+        # Those of the sensors come between the parameters of the model and the initial states.
+        parameters, shared = len(self.values), objective.sensors.shared
+        unknown = parameters + self.begin.shape[1]
         total, squares = np.zeros((drops, channels, unknown + 1)), np.zeros((drops, channels, unknown + 1, unknown + 1))
         for step, states, forces in self.stepper.sensitivities(self.trajectory):
             chosen = slice(-step % every, None, every)
@@ -334,14 +359,16 @@ class TimeSteppingAt:
             last = first + len(driven)
             inputs = self._inputs[first:last]
             moved = rows[:, :, :-1] @ driven
-            moved[..., :parameters] += np.einsum("dpij,kdj->kdip", derivatives, inputs, optimize=True)
-            columns = np.empty((drops, channels, last - first, unknown + 1))
+            moved[..., :shared] += np.einsum("dpij,kdj->kdip", derivatives, inputs, optimize=True)
+            columns = np.zeros((drops, channels, last - first, unknown + 1))
             readings = S @ moved
-            by_sensor = np.einsum("kdi,cip->kdcp", self._accelerations[first:last], by_S, optimize=True)
-            readings[..., :parameters] += by_sensor
-            turned = inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3]
-            readings -= self._gravity * turned
-            columns[..., :unknown] = readings.transpose(1, 2, 0, 3)
+            readings -= self._gravity * (inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3])
+            readings = readings.transpose(1, 2, 0, 3)
+            columns[..., :shared], columns[..., parameters:unknown] = readings[..., :shared], readings[..., shared:]
+            by_sensor = np.einsum("kdi,cip->dckp", self._accelerations[first:last], by_S, optimize=True)
+            columns[..., :parameters] += by_sensor
+            for channel, position in objective.sensors.delay_positions:
+                columns[:, channel, :, position] = self._late[:, channel, first:last]
             columns[..., :unknown] *= objective.is_sample[:, None, first:last, None]
             columns[..., unknown] = self._residuals[:, :, first:last]
             total += columns.sum(axis=2)

@@ -27,6 +27,7 @@ from sprung.vehicle import (
     PARAMETERS,
     LinearModel,
     Load,
+    Readout,
     Rows,
     Sensor,
     Tracks,
@@ -175,7 +176,7 @@ class MeasurementSetup:
             name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
             for load, name in names.items()
         }
-        objective = ClosedFormObjective(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
+        objective = ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names))
         weights = self.rate / sampling / self.noise**2
         of_parameters = objective.at(self.values, weights).information
         directions = self.slopes[:, None] * self.free

@@ -13,7 +13,7 @@ from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import ENGINE, TERMS
-from sprung.vehicle import NEUTRAL, Rows, coordinates, nonlinear_elements, with_separate_tracks
+from sprung.vehicle import NEUTRAL, Rows, coordinates, is_nuisance, nonlinear_elements, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -45,7 +45,9 @@ def neutral_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[
     values = {**NEUTRAL}
     for part in (*undefined, with_separate_tracks(own), shared, own):
         values |= part
-    return {name: values[name] for name in structure.names}
+    # What was found of the sensors, which belong to no structure, holds for any.
+    of_sensors = [name for name in own if is_nuisance(name) and name not in structure.names]
+    return {name: values[name] for name in (*structure.names, *of_sensors)}
 
 
 def start_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
@@ -136,7 +138,7 @@ def fit_structure(
 def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Return compressions at which stops may be met, m, from how far a fitted vehicle moves."""
     elements = nonlinear_elements(structure.tracks, ("bump-stop",))
-    G = Rows.of([element.row for element in elements], structure.names).at(fit.values)
+    G = Rows.of([element.row for element in elements], fit.names).at(fit.values)
     motions = (fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
     return [part * largest for part in _STOP_GAPS] if largest > 0 else []

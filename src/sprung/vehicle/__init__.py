@@ -33,14 +33,23 @@ from sprung.vehicle.parameters import (
     LOAD_MASS,
     NEUTRAL,
     PARAMETERS,
+    SENSOR_DELAY,
+    SENSOR_GAIN,
+    SENSOR_UNKNOWNS,
+    SENSOR_X,
+    SENSOR_Y,
     Parameter,
+    SensorUnknown,
+    is_nuisance,
+    is_of_sensor,
     parameter_names,
     parameters_of_term,
     separate_track_names,
     with_separate_tracks,
 )
+from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
-from sprung.vehicle.sensor import Sensor
+from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
 
@@ -58,6 +67,11 @@ __all__ = [
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
+    "SENSOR_DELAY",
+    "SENSOR_GAIN",
+    "SENSOR_UNKNOWNS",
+    "SENSOR_X",
+    "SENSOR_Y",
     "TABLE_1_CAR",
     "UNKNOWN_KEY",
     "WHEELS",
@@ -82,9 +96,11 @@ __all__ = [
     "NotNegative",
     "Parameter",
     "Positive",
+    "Readout",
     "Row",
     "Rows",
     "Sensor",
+    "SensorUnknown",
     "Stepper",
     "Tracks",
     "Trajectory",
@@ -97,6 +113,8 @@ __all__ = [
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "is_nuisance",
+    "is_of_sensor",
     "nonlinear_elements",
     "parameter_names",
     "parameters_of_term",
@@ -104,6 +122,7 @@ __all__ = [
     "problems_of_record",
     "separate_track_names",
     "seven_degrees_of_freedom",
+    "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",
 ]

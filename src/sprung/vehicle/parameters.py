@@ -27,12 +27,34 @@ LOAD_MASS = "mass of "
 """First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
 
 
+class SensorUnknown(NamedTuple):
+    """What is uncertain of a sensor, and an unknown of a fit."""
+
+    prefix: str
+    """First words of its name, which the name of the channel follows."""
+    unit: str
+    """SI."""
+    meaning: str
+    """In words."""
+
+
+SENSOR_GAIN = SensorUnknown("gain of ", "1", "part by which a channel reads too much")
+SENSOR_X = SensorUnknown("x of ", "m", "how much further forward than stated a body sensor sits")
+SENSOR_Y = SensorUnknown("y of ", "m", "how much further left than stated a body sensor sits")
+SENSOR_DELAY = SensorUnknown("delay of ", "s", "how much later than the other channels a channel is")
+SENSOR_UNKNOWNS = (SENSOR_GAIN, SENSOR_X, SENSOR_Y, SENSOR_DELAY)
+"""What may be uncertain of a sensor."""
+
+
 class _Parameters(dict[str, Parameter]):
-    """The parameters by name; a name that begins with `LOAD_MASS` is the mass of a load, which each campaign names itself."""
+    """The parameters by name; masses of loads and unknowns of sensors have names of which only the first words are fixed."""
 
     def __missing__(self, name: str) -> Parameter:
         if name.startswith(LOAD_MASS):
             return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
+        for unknown in SENSOR_UNKNOWNS:
+            if name.startswith(unknown.prefix):
+                return Parameter(unknown.unit, unknown.meaning, False, False, True)
         raise KeyError(name)
 
 
@@ -186,6 +208,28 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
     other: Tracks = "shared" if tracks == "separate" else "separate"
     elsewhere = set(inboard_shares(other).values())
     return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
+
+
+def is_of_sensor(name: str) -> bool:
+    """Whether a parameter is an unknown of a sensor.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+    """
+    return name.startswith(tuple(unknown.prefix for unknown in SENSOR_UNKNOWNS))
+
+
+def is_nuisance(name: str) -> bool:
+    """Whether a parameter belongs to a load or to a sensor, not to the vehicle.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+    """
+    return name.startswith(LOAD_MASS) or is_of_sensor(name)
 
 
 def separate_track_names(name: str) -> tuple[str, ...]:
