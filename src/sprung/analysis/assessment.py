@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,8 +52,9 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
+    setup = setup_of(campaign, fit, structure.known, run.options.texts)
     result = Result(
-        version=version("sprung"),
+        version=setup.software["sprung"],
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else recommend_next_step(run),
@@ -76,7 +76,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
         validation=validated,
-        setup=setup_of(campaign, fit, structure.known, run.options.texts),
+        setup=setup,
         series={
             decay.name: _series(decay, fitted, motion, channels)
             for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)

@@ -19,7 +19,7 @@ from sprung.estimation.projected_response import ExponentialSums, ProjectedRespo
 from sprung.estimation.records import RecordBatch, batch_records, in_order
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Readout
-from sprung.vibration import exponentials
+from sprung.vibration import exponentials, real_product
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -221,9 +221,8 @@ class ClosedFormAt:
         gradients = self._in_order([projected.gradient(own) for projected, own in pairs])
         return gradients, self._in_order([projected.information(own, by_record=True) for projected, own in pairs])
 
-    @property
     def noise_bias_of_information(self) -> Real:
-        """Information that noise alone adds: a motion that no drop excites has amplitudes too, those that noise fits."""
+        """Return the information that noise alone adds: a motion that no drop excites has amplitudes too, those of noise."""
         pairs = zip(self._projected, self._derivatives, strict=True)
         bias: Real = np.sum([projected.noise_bias_of_information(own) for projected, own in pairs], axis=0)
         return bias
@@ -256,10 +255,10 @@ class ClosedFormAt:
         upper = poles.imag >= 0
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
-        motion[:, before:] = _real_part(coefficients, exponentials(poles[upper] * step, after))
+        motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
         exponent = np.outer(np.arange(-before, 0) * step, poles[upper])
         powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
-        motion[:, :before] = _real_part(coefficients, powers)
+        motion[:, :before] = real_product(coefficients, powers)
         return motion
 
     def _load(self, drop: int) -> tuple[int, float]:
@@ -321,9 +320,3 @@ class ClosedFormAt:
         )
         modes = self.modes
         return modes.poles[load], modes.left[load], modes.shapes[load], self._derivatives[batch][group]
-
-
-def _real_part(coefficients: Complex, waves: Complex) -> Real:
-    """Return the real part of coefficients (row, mode) times waves (time, mode), as a product of pairs of real numbers."""
-    product: Real = np.ascontiguousarray(coefficients.conj()).view(float) @ np.ascontiguousarray(waves).view(float).T
-    return product

@@ -7,7 +7,7 @@ tested for these forces, so it has to be quick.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
 from sprung.vehicle import ElementInput, NonlinearModel
+from sprung.vibration import exponentials, real_product
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -80,55 +81,70 @@ def _of_drop(
     brought: Sequence[str],
 ) -> tuple[Real, Real]:
     """Return information and gradient of the fitted parameters and of those that are brought, of one drop."""
-    decay, residual = fit.decays[drop], fit.residuals[drop]
-    step, samples = 1.0 / decay.rate, decay.samples
+    decay = fit.decays[drop]
+    every = max(int(decay.rate / _RATE), 1)
+    step, samples = every / decay.rate, -(-decay.samples // every)
     poles, left, shapes, derivatives = at.response_of(drop)
-    state, motion = fit.states[drop], fit.motion(drop, 0, samples)
+    # A pole and its conjugate add the same real part twice, so that one of them is enough.
+    upper = poles.imag >= 0
+    poles, left, shapes = poles[upper], left[upper], shapes[:, upper] * np.where(poles[upper].imag > 0, 2.0, 1.0)
+    derivatives = derivatives[..., np.tile(upper, 2)] * np.tile(np.where(poles.imag > 0, 2.0, 1.0), 2)
+    state, motion = fit.states[drop], fit.motion(drop, 0, decay.samples)[:, ::every]
     neutral = np.array([values[name] for name in model.names])
     force_rows = -np.linalg.solve(model.linear.matrices(neutral).M, model.forces.rows.at(neutral).T)
-    unit = _unit_forces(model, neutral, motion, step, [model.names.index(name) for name in brought])
+    participation, direct = left[:, len(motion) // 2 :] @ force_rows, at.sensor_rows @ force_rows
 
-    every = max(int(decay.rate / _RATE), 1)
-    chosen = np.arange(0, samples, every)
-    responses = _modal_responses(poles, left[:, len(motion) // 2 :] @ force_rows, unit, step)
-    forced = np.einsum("cj,jbt->tcb", shapes, responses[:, :, chosen], optimize=True).real
-    forced += np.einsum("cf,tfb->tcb", at.sensor_rows @ force_rows, unit[chosen], optimize=True)
-    waves = np.exp(np.multiply.outer(chosen, poles * step))
-    driven = waves * (left @ state)
-    flat = derivatives.reshape(-1, derivatives.shape[-1])
-    fitted = (np.hstack([driven, driven * chosen[:, None]]) @ flat.T).real
-    fitted = fitted.reshape(len(chosen), *derivatives.shape[:2])
-    by_state = (waves @ (shapes[:, None, :] * left.T[None]).reshape(-1, len(poles)).T).real
-    by_state = by_state.reshape(len(chosen), len(shapes), len(poles))
-    columns = [fitted, forced, by_state, np.nan_to_num(residual)[:, chosen].T[:, :, None]]
-    whole = np.concatenate(columns, axis=2)
-    counted = decay.usable * channel_rate_ratios(decay)
-    whole = (whole - whole.mean(axis=0)) * np.sqrt(fit.weights * counted)[:, None]
-    rows = whole.reshape(-1, whole.shape[2])
-    products = rows.T @ rows * (samples / len(chosen))
-    count = fitted.shape[2] + forced.shape[2]
+    columns = derivatives.shape[1], len(brought), len(state)
+    whole = np.zeros((sum(columns) + 1, len(shapes), samples))
+    fitted, forced, by_state, residual = np.split(whole, np.cumsum(columns))
+    waves = exponentials(poles * step, samples)
+    # The secular terms count the samples of the decay.
+    secular = waves * (every * np.arange(samples))[:, None]
+    amplitudes = left @ state
+    coefficients = np.swapaxes(derivatives * np.tile(amplitudes, 2), 0, 1)
+    fitted[:] = real_product(coefficients, np.hstack([waves, secular]))
+    by_state[:] = real_product(left.T[:, None, :] * shapes, waves)
+    residual[0] = np.nan_to_num(fit.residuals[drop][:, ::every])
+    for name, own, forces in _unit_forces(model, neutral, motion, step):
+        if name in brought:
+            modal = np.asarray(participation[:, own] @ forces, dtype=np.complex128)
+            responses = _modal_responses(poles, modal, step)
+            forced[brought.index(name)] += real_product(shapes, responses.T) + direct[:, own] @ forces
+
+    whole -= whole.mean(axis=2, keepdims=True)
+    whole *= np.sqrt(fit.weights * decay.usable * channel_rate_ratios(decay))[:, None]
+    rows = whole.reshape(len(whole), -1)
+    products = rows @ rows.T * (decay.samples / samples)
+    count = columns[0] + columns[1]
     products[count:-1, count:-1] += np.diag(initial_state_prior_std(len(state)) ** -2.0)
     information, gradient, _ = eliminate(products[:-1, :-1], products[:-1, -1], count)
     return information, gradient
 
 
-def _unit_forces(model: NonlinearModel, values: Real, motion: Real, step: float, chosen: Sequence[int]) -> Real:
-    """Return the forces per unit of each chosen parameter along a motion, shape (time, force, parameter)."""
+def _unit_forces(
+    model: NonlinearModel, values: Real, motion: Real, step: float
+) -> Iterator[tuple[str, list[int], Real]]:
+    """Yield parameters, the elements in which each occurs and their forces per unit of it along a motion, (element, time).
+
+    Parameters without any force are left out: what has no stiffness has no clearance that matters.
+    """
     rows = model.forces.rows.at(values)
     X, V = np.split(motion, 2)
-    travel, rate = rows @ (X + model.sag(values)[:, None]), rows @ V
-    way = np.diff(travel, axis=1, prepend=travel[:, :1] - step * rate[:, :1])
-    felt = ElementInput(travel.T, rate.T, way.T, np.zeros_like(travel.T))
-    return np.asarray(model.forces.differentiate(values, felt)[0][:, :, list(chosen)])
+    travel, rate = (rows @ (X + model.sag(values)[:, None])).T, (rows @ V).T
+    way = np.diff(travel, axis=0, prepend=travel[:1] - step * rate[:1])
+    for law, chosen, positions in model.forces.laws:
+        felt = ElementInput(*(part[:, chosen] for part in (travel, rate, way, np.zeros_like(travel))))
+        by_parameter, _ = law.differentiate(values[positions], felt)
+        for of_elements, forces in zip(positions, by_parameter, strict=True):
+            for position in np.unique(of_elements).tolist() if forces.any() else ():
+                own = np.flatnonzero(of_elements == position)
+                yield model.names[position], (chosen.start + own).tolist(), forces[:, own].T
 
 
-def _modal_responses(poles: Complex, participation: Complex, forces: Real, step: float) -> Complex:
-    """Return the response of every mode to forces that run straight between samples, shape (mode, parameter, time)."""
-    modal = np.einsum("jf,tfb->jbt", participation, forces, optimize=True)
-    responses = np.empty(modal.shape, dtype=np.complex128)
-    for j, pole in enumerate(poles):
-        turn = np.exp(pole * step)
-        held = (turn - 1) / pole
-        rising = (held / step - 1) / pole
-        responses[j] = lfilter([rising, held - rising], [1.0, -turn], modal[j], axis=-1)
-    return responses
+def _modal_responses(poles: Complex, modal: Complex, step: float) -> Complex:
+    """Return the response of every mode to modal forces that run straight between samples; both of shape (mode, time)."""
+    turn = np.exp(poles * step)
+    held = (turn - 1) / poles
+    rising = (held / step - 1) / poles
+    filters = zip(rising, held, turn, modal, strict=True)
+    return np.array([lfilter([now, whole - now], [1.0, -z], force) for now, whole, z, force in filters])

@@ -244,7 +244,7 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
         match optimum.at:
             case HasModalResponse() as at:
                 basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
-                bias = basis.T @ at.noise_bias_of_information @ basis
+                bias = basis.T @ at.noise_bias_of_information() @ basis
                 eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
             case _:
                 pass  # a stepped motion follows its initial states: nothing is known of a bias

@@ -177,15 +177,14 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     left = optimum.residuals
     noise = estimate_sensor_noise(decays, pool_moments(left))
     few = noise.samples < _FEW
-    second_difference = (
-        np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
-    )
-    level = np.sqrt(np.where(few, second_difference, noise.variance) + noise.added)
+    variance = noise.variance
+    if few.any():
+        differences = [np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left]
+        variance = np.where(few, np.sum(differences, axis=0) / 6 / samples, variance)
+    level = np.sqrt(variance + noise.added)
     level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)
     return ReferenceNoise(level, np.where(few, 1.0, noise.per_independent), np.maximum(noise.samples, _FEW))
 
 
 def _energy(decay: FreeDecay) -> Real:
-    centred = decay.values - decay.values.mean(axis=1, keepdims=True)
-    energy: Real = np.nansum(centred**2, axis=1)
-    return energy
+    return np.where(decay.usable, decay.samples * decay.values.var(axis=1), 0.0)

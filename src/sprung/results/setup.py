@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -110,13 +111,19 @@ def setup_of(
         model=campaign.model,
         options={name: _in_words(value) for name, value in options.items()},
         files=campaign.files,
-        software={
-            "sprung": version("sprung"),
-            "Python": platform.python_version(),
-            **{name: version(name) for name in _LIBRARIES},
-        },
+        software=dict(software_versions()),
         test=campaign.test,
     )
+
+
+@cache  # they are read from files, and are those of a process
+def software_versions() -> Mapping[str, str]:
+    """Return the versions that a result depends on, by name."""
+    return {
+        "sprung": version("sprung"),
+        "Python": platform.python_version(),
+        **{name: version(name) for name in _LIBRARIES},
+    }
 
 
 def _compared(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> PriorComparison:

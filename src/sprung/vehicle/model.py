@@ -138,30 +138,32 @@ class LinearModel:
             If an element needs a parameter that is not listed.
         """
         index = {name: i for i, name in enumerate(names, start=1)}
-        terms: dict[tuple[int, ...], Array] = {}
-        rows = Rows.of([element.row for element in elements], names).affine
-        shape_of_term = (len(LINEAR_LAWS), rows.shape[1], rows.shape[1])
-        for element, row in zip(elements, rows, strict=True):
-            named = isinstance(element.coefficient, str)
-            kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
-            size *= element.factor
-            factors = np.flatnonzero(row.any(axis=0))
-            parts = size * row.T[factors]
-            squares = parts[:, None, :, None] * row.T[factors][None, :, None, :]
-            law = LINEAR_LAWS.index(element.law)
-            for first, products_of_first in zip(factors.tolist(), squares, strict=True):
-                for second, square in zip(factors.tolist(), products_of_first, strict=True):
-                    key = tuple(sorted((kappa, first, second)))
-                    if key not in terms:
-                        terms[key] = np.zeros(shape_of_term)
-                    terms[key][law] += square
-        kept = {key: term for key, term in terms.items() if term.any()}
-        shape = (len(kept), *shape_of_term)
-        products, constants = (
-            np.array(list(kept), dtype=np.int64).reshape(-1, 3),
-            np.array(list(kept.values())).reshape(shape),
-        )
-        return cls(tuple(names), products, constants, tuple(elements))
+        coefficients = [
+            (index[one.coefficient], one.factor)
+            if isinstance(one.coefficient, str)
+            else (0, one.coefficient * one.factor)
+            for one in elements
+        ]
+        kappa, size = np.array(coefficients, dtype=float).reshape(-1, 2).T
+        laws = np.array([LINEAR_LAWS.index(one.law) for one in elements], dtype=np.int64)
+        rows = Rows.of([one.row for one in elements], names).affine
+        n, base = rows.shape[1], 1 + len(names)
+        # Every pair of an element's factors, the constant among them, is a part of κ g gᵀ.
+        owner, factor = np.nonzero(rows.any(axis=1))
+        first, second = np.nonzero(owner[:, None] == owner)
+        own = owner[first]
+        squares = (size[own, None] * rows[own, :, factor[first]])[:, :, None] * rows[own, :, factor[second]][:, None]
+        keys = np.sort([kappa[own].astype(np.int64), factor[first], factor[second]], axis=0)
+        code = np.ravel_multi_index((*keys, laws[own]), (base, base, base, len(LINEAR_LAWS)))
+        order = np.argsort(code, kind="stable")
+        codes, begins = np.unique(code[order], return_index=True)
+        by_law = np.add.reduceat(squares[order], begins) if codes.size else squares
+        products, which = np.unique(codes // len(LINEAR_LAWS), return_inverse=True)
+        terms = np.zeros((len(products), len(LINEAR_LAWS), n, n))
+        terms[which, codes % len(LINEAR_LAWS)] = by_law
+        kept = terms.any(axis=(1, 2, 3))
+        products = np.stack(np.unravel_index(products[kept], (base, base, base)), axis=1)
+        return cls(tuple(names), products, terms[kept], tuple(elements))
 
     def with_known(self, known: Mapping[str, float]) -> LinearModel:
         """Return the model in which some parameters that multiply elements are known numbers, SI by name."""

@@ -6,6 +6,7 @@ from sprung.vibration.exponential_sums import (
     exponential_gram,
     exponential_moments,
     exponentials,
+    real_product,
     split_into_blocks,
 )
 from sprung.vibration.modes import (
@@ -46,6 +47,7 @@ __all__ = [
     "name_modes",
     "name_modes_at_sensors",
     "paper_name",
+    "real_product",
     "sort_modes",
     "split_into_blocks",
 ]

@@ -31,6 +31,9 @@ _TRAMP = {
 
 _ENGINE = "engine bounce"
 
+_TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)
+"""Shapes of all modes but an engine's, in the order of `MODE_NAMES`, shape (7, mode)."""
+
 MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), _ENGINE)
 """Every name that a mode may get. Of the eight names of wheel modes one vehicle has four: for hop and for tramp either those of
 the axles or those of all four wheels."""
@@ -106,21 +109,17 @@ def name_modes(
         return ()
     # The body counts at its four corners, and an engine as much, of which it is a large part.
     scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])[: len(groups[0][0].shape)]
-    shapes = [scale[:, None] * np.stack([mode.shape for mode in group], axis=1) for group in groups]
+    together = scale[:, None] * np.stack([mode.shape for group in groups for mode in group], axis=1)
+    # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
+    of_shapes = np.hstack(
+        [modal_assurance_criterion(together[:7], _TEMPLATES), modal_assurance_criterion(together, _alone(scale))]
+    )
+    sizes = np.array([len(group) for group in groups])
+    of_groups = np.add.reduceat(of_shapes, np.cumsum(sizes) - sizes, axis=0) / sizes[:, None]
     best, name_of = -np.inf, dict[int, str]()
-    for (hop, of_hop), (tramp, of_tramp) in product(_HOP.items(), _TRAMP.items()):
-        names = (*_BODY, *hop, *tramp, _ENGINE)
-        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T)
-        # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
-        alike = np.stack(
-            [
-                np.append(
-                    modal_assurance_criterion(shape[:7], templates).mean(axis=0),
-                    modal_assurance_criterion(shape, _alone(scale)).mean(axis=0),
-                )
-                for shape in shapes
-            ]
-        )
+    for hop, tramp in product(_HOP, _TRAMP):
+        names = (*_BODY, *hop, *tramp, *([_ENGINE] if len(scale) > _TEMPLATES.shape[0] else []))
+        alike = of_groups[:, [MODE_NAMES.index(name) for name in names]]
         rows, columns = linear_sum_assignment(alike, maximize=True)
         total = float(alike[rows, columns].sum())
         if total > best + _TIE:
