@@ -25,9 +25,9 @@ from sprung.estimation import FitResult, FitStatistics, characteristics_of, esti
 from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
-from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
+from sprung.results import FitReport, Result, SensorEstimate, Series, TestedVehicle, setup_of, withhold_estimates
 from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS
+from sprung.vehicle import EMPTY, LOAD_MASS, SENSOR_UNKNOWNS, Sensor
 
 METHOD = "joint maximum likelihood"
 
@@ -72,6 +72,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
             load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
             for load in loads
         },
+        sensors=_sensor_estimates(statistics, structure.sensors),
         fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
@@ -85,6 +86,28 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     )
     run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _sensor_estimates(fit: FitStatistics, sensors: Sequence[Sensor]) -> tuple[SensorEstimate, ...]:
+    """Return what was found of the sensors, channel by channel."""
+    std = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    found = []
+    for sensor in sensors:
+        for kind in SENSOR_UNKNOWNS:
+            name = f"{kind.prefix}{sensor.channel}"
+            if name in fit.names:
+                at = fit.names.index(name)
+                found.append(
+                    SensorEstimate(
+                        channel=sensor.channel,
+                        quantity=kind.quantity,
+                        value=float(fit.values[at]),
+                        std=float(std[at]),
+                        stated_std=sensor.uncertainties[name].std,
+                        unit=kind.unit,
+                    )
+                )
+    return tuple(found)
 
 
 def _fit_report(

@@ -50,7 +50,7 @@ def fit_baseline_model(run: Analysis, decays: Sequence[FreeDecay], progress: Pro
     return fit_linear(
         decays,
         structure.linear_models,
-        run.campaign.sensors,
+        structure.sensors,
         structure.known,
         start=None if run.clock_fit is None else run.clock_fit.parameters,
         guess=run.options.start,

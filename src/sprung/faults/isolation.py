@@ -123,7 +123,7 @@ class FaultIsolation:
         structure = choose_structure(campaign, tracks, extras)
         if fit is None:
             fit = fit_linear(
-                decays, structure.linear_models, campaign.sensors, structure.known, starts=_STARTS, enough=NEAR
+                decays, structure.linear_models, structure.sensors, structure.known, starts=_STARTS, enough=NEAR
             )
         table, noise = residual_table(recordings, decays, fit), reference_noise(decays, fit)
         base = CandidateFit(campaign, tuple(decays), structure.linear_models, fit, table, noise)
@@ -197,7 +197,7 @@ class FaultIsolation:
         fit = fit_linear(
             decays,
             structure.linear_models,
-            campaign.sensors,
+            structure.sensors,
             structure.known,
             start=None if start is None else start.parameters,
             starts=_STARTS if most > 1 else 1,

@@ -105,8 +105,8 @@ class ResidualTable:
 
     def misfit(self, noise: ReferenceNoise) -> float:
         """Return what the residuals are beyond noise, and the sensors beyond what is stated, in twice the log-likelihood."""
-        beyond = max(self.penalty - self._largest_penalty, 0.0)
-        return float(np.sum(self.counts * 2 * np.log(np.maximum(self._excess(noise), 1.0)))) + beyond
+        excess = max(self.penalty - self._largest_penalty, 0.0)
+        return float(np.sum(self.counts * 2 * np.log(np.maximum(self._excess(noise), 1.0)))) + excess
 
     @cached_property
     def _largest_penalty(self) -> float:

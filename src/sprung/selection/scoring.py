@@ -51,7 +51,7 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
 
 
 def _linear(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, float]]:
-    own, sensors = search.fit.parameters, search.structure.campaign.sensors
+    own, sensors = search.fit.parameters, search.structure.sensors
     best, score = search.structure, (0.0, 0.0)
     for variant in start_variants(term, search.with_terms([term]), own):
         values = neutral_values(variant, own)
@@ -89,7 +89,7 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     gains = score_stepped_terms(
         decays,
         largest.nonlinear_models,
-        search.structure.campaign.sensors,
+        search.structure.sensors,
         largest.known,
         values=neutral_values(largest, own),
         states=states_by_coordinates(search.fit.states, search.fit.names, largest.names),

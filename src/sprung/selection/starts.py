@@ -112,7 +112,7 @@ def fit_structure(
     -------
     FitResult
     """
-    sensors, known = structure.campaign.sensors, structure.known
+    sensors, known = structure.sensors, structure.known
     start = start_values(structure, before.parameters)
     if not structure.is_time_stepped:
         fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough, most=most)

@@ -17,6 +17,7 @@ from sprung.vehicle import (
     Heights,
     LinearModel,
     NonlinearModel,
+    Sensor,
     Tracks,
     ground_contact_elements,
     nonlinear_elements,
@@ -76,6 +77,12 @@ class ModelStructure:
     def heights(self) -> Heights:
         """Heights of the campaign, with the one at which the body is carried sideways."""
         return self.campaign.heights._replace(carried_at=self.carried_at)
+
+    @cached_property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Sensors of the campaign, with what their tilt adds to the uncertainty of their places where heights are known."""
+        height, sensors = self.heights.cg_height, self.campaign.sensors
+        return sensors if height is None else tuple(sensor.at_height_above(height) for sensor in sensors)
 
     @property
     def names(self) -> tuple[str, ...]:

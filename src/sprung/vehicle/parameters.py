@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
 
@@ -30,18 +30,27 @@ LOAD_MASS = "mass of "
 class SensorUnknown(NamedTuple):
     """What is uncertain of a sensor, and an unknown of a fit."""
 
-    prefix: str
-    """First words of its name, which the name of the channel follows."""
+    quantity: Literal["gain", "x", "y", "delay"]
+    """In results."""
     unit: str
     """SI."""
     meaning: str
     """In words."""
 
+    @property
+    def prefix(self) -> str:
+        """First words of its name among the parameters of a fit, which the name of the channel follows."""
+        return f"{self.quantity} of "
 
-SENSOR_GAIN = SensorUnknown("gain of ", "1", "part by which a channel reads too much")
-SENSOR_X = SensorUnknown("x of ", "m", "how much further forward than stated a body sensor sits")
-SENSOR_Y = SensorUnknown("y of ", "m", "how much further left than stated a body sensor sits")
-SENSOR_DELAY = SensorUnknown("delay of ", "s", "how much later than the other channels a channel is")
+
+SENSOR_GAIN = SensorUnknown("gain", "1", "part by which a channel reads too much")
+"""The gain of a sensor."""
+SENSOR_X = SensorUnknown("x", "m", "how much further forward than stated a body sensor sits")
+"""The place of a sensor along the vehicle."""
+SENSOR_Y = SensorUnknown("y", "m", "how much further left than stated a body sensor sits")
+"""The place of a sensor across the vehicle."""
+SENSOR_DELAY = SensorUnknown("delay", "s", "how much later than the other channels a channel is")
+"""The delay of a sensor."""
 SENSOR_UNKNOWNS = (SENSOR_GAIN, SENSOR_X, SENSOR_Y, SENSOR_DELAY)
 """What may be uncertain of a sensor."""
 
@@ -217,6 +226,10 @@ def is_of_sensor(name: str) -> bool:
     ----------
     name
         Of any parameter.
+
+    Returns
+    -------
+    bool
     """
     return name.startswith(tuple(unknown.prefix for unknown in SENSOR_UNKNOWNS))
 
@@ -228,6 +241,10 @@ def is_nuisance(name: str) -> bool:
     ----------
     name
         Of any parameter.
+
+    Returns
+    -------
+    bool
     """
     return name.startswith(LOAD_MASS) or is_of_sensor(name)
 

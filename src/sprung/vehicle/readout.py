@@ -116,7 +116,7 @@ class Readout:
         return rows
 
     def at(self, values: ArrayLike) -> Array:
-        """Return the rows at parameter values of shape (..., parameter); shape (..., channel, coordinate)."""
+        """Return the rows, 1 and m, at parameter values of shape (..., parameter); shape (..., channel, coordinate)."""
         values = np.asarray(values, dtype=float)
         placed = self._placed(values)
         return placed * (1 + self._unknown(_GAIN, values)[..., None]) if self._has[_GAIN] else placed

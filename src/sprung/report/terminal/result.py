@@ -20,6 +20,7 @@ from sprung.results import (
     other_quantities,
     parameters_table,
     ratios_table,
+    sensors_table,
 )
 from sprung.tables import unit_text
 from sprung.uncertainty import Estimate, round_by_uncertainty
@@ -58,6 +59,8 @@ def result_view(result: Result) -> RenderableType:
         parts += [render_table(ratios_table(result.scale.per_total_mass)), Text()]
     for load, modes in result.modes.items():
         parts += [render_table(modes_table(load, modes)), Text()]
+    if result.sensors:
+        parts += [render_table(sensors_table(result.sensors)), Text()]
     parts += [fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
