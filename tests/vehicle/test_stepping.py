@@ -13,13 +13,18 @@ from sprung.vehicle import (
     TABLE_1_CAR,
     Load,
     NonlinearModel,
+    Prediction,
+    Rows,
     Stepper,
     Vehicle,
+    differentiate_motions,
     free_decay,
     ground_contact_elements,
+    integrate_near,
     nonlinear_elements,
     parameter_names,
     parse_record,
+    segments_of,
     seven_degrees_of_freedom,
 )
 from sprung.vehicle.force_laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ElementInput, ForceLaw
@@ -29,6 +34,7 @@ Array = NDArray[np.float64]
 CAR = Vehicle.from_parameters(
     TABLE_1_CAR.parameters
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
+    | {"k_bf": 3e4, "k_br": 2e4, "x_bf": 0.01, "x_br": 0.015}
 )
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
@@ -81,13 +87,11 @@ def test_a_load_pushes_with_its_weight() -> None:
 @pytest.mark.parametrize("extras", [("friction",), ("rebound",), ("friction", "rebound", "progressive")])
 def test_against_another_solver(extras: tuple[str, ...]) -> None:
     """The same equations, written out and left to an implicit solver with a tight tolerance."""
-    matrices, rows, state = CAR.matrices(), model_of(extras).forces.rows, some_states(1, 3)[0]
-    values = values_of(extras)[1]
-    G = rows.at(values)
-    kinds = [force.law.name for force in nonlinear_elements("separate", extras)]
-    axles = [force.parameters[0][-1] for force in nonlinear_elements("separate", extras)]
-    order = [i for law in dict.fromkeys(kinds) for i, kind in enumerate(kinds) if kind == law]
-    kinds, axles = [kinds[i] for i in order], [axles[i] for i in order]
+    matrices, state, elements = CAR.matrices(), some_states(1, 3)[0], nonlinear_elements("separate", extras)
+    names, values = values_of(extras)
+    G = Rows.of([element.row for element in elements], names).at(values)
+    kinds = [element.law.name for element in elements]
+    axles = [element.parameters[0][-1] for element in elements]
 
     def slope(_: float, y: Array) -> Array:
         X, V, memory = y[:7], y[7:14], y[14:]
@@ -125,9 +129,15 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
     trajectory = before.integrate(states, memories, steps)
-    chunks = list(before.sensitivities(trajectory))
-    found = np.concatenate([np.concatenate([states, forces], axis=2) for _, states, forces in chunks])
-    assert [first for first, _, _ in chunks] == [0, 128]
+    outputs = 14 + before.forces.number
+    every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
+    sensitivities = differentiate_motions(before, trajectory, every_output, 1)
+    found = np.stack(list(sensitivities.outputs), axis=1)
+    assert found.shape == (steps + 1, 2, outputs, len(names) + 18)
+    number, length = segments_of(steps, 1)
+    assert 1 < number < number * length
+    for segment in range(number):
+        np.testing.assert_array_equal(sensitivities.starts[:, segment, :14], found[segment * length, :, :14])
     if ground:
         assert np.any(trajectory.forces[0, :, -4:] < 0)
         assert not np.any(trajectory.forces[-1, :, -4:] < 0)
@@ -149,6 +159,25 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
         scale = np.abs(slope).max(axis=(0, 1)) + 1e-9 * np.abs(slope).max()
         # In the step in which a wheel lands, the force at its end is put right only so often.
         assert np.all(np.abs(found[..., unknown] - slope) < (1e-2 if ground else 2e-3) * scale)
+
+
+@pytest.mark.parametrize("extras", [("friction", "rebound"), ("bump-stop",)])
+def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) -> None:
+    """Segments that are followed side by side end where whole motions do: with a prediction near by, far away, and none."""
+    names, values = values_of(extras)
+    states, before = some_states(2, 5), stepper(extras, 0.002)
+    memories = np.full((2, before.forces.memories), 0.2)
+    sequential = before.integrate(states, memories, 301)
+    found = differentiate_motions(before, sequential, np.zeros((2, 0, 14 + before.forces.number)), 2)
+    first = np.arange(found.starts.shape[1]) * segments_of(301, 2)[1]
+    starts = np.concatenate([sequential.states[first], sequential.memories[first]], axis=2)
+    for size in (1e-5, 3e-3, 1.0):
+        there = stepper(extras, 0.002, values * (1 + size * np.cos(np.arange(len(names)))))
+        near = Prediction(np.swapaxes(starts, 0, 1), found.transitions)
+        expected = there.integrate(states, memories, 301)
+        # Forces at the end of a step are corrected only so often, those at the start of a segment once more.
+        for one, other in zip(integrate_near(there, states, memories, 301, 2, near), expected, strict=True):
+            np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max(initial=0.0))
 
 
 @pytest.mark.parametrize(

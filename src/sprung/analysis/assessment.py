@@ -21,13 +21,29 @@ from sprung.assessment import (
     estimate_model_error,
 )
 from sprung.checking import check_prepared
-from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
+from sprung.estimation import (
+    FitResult,
+    FitStatistics,
+    ForceCurve,
+    characteristics_of,
+    estimate_of,
+    force_curves,
+    mode_estimates,
+    to_estimates,
+)
 from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, SensorEstimate, Series, TestedVehicle, setup_of, withhold_estimates
-from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS, SENSOR_UNKNOWNS, Sensor
+from sprung.selection import SEPARATE_TRACKS, TERMS, ModelStructure, SelectionStep, describe_terms
+from sprung.vehicle import (
+    EMPTY,
+    LOAD_MASS,
+    SENSOR_UNKNOWNS,
+    Sensor,
+    nonlinear_elements,
+    seven_degrees_of_freedom,
+)
 
 METHOD = "joint maximum likelihood"
 
@@ -73,6 +89,8 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
             for load in loads
         },
         sensors=_sensor_estimates(statistics, structure.sensors),
+        additional_terms="" if rejected else _additional_terms(structure, fit),
+        curves={} if rejected else _curves_of(structure, fit, optimum),
         fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
@@ -108,6 +126,21 @@ def _sensor_estimates(fit: FitStatistics, sensors: Sequence[Sensor]) -> tuple[Se
                     )
                 )
     return tuple(found)
+
+
+def _additional_terms(structure: ModelStructure, fit: FitStatistics) -> str:
+    """Return one sentence that states what the vehicle has besides springs and dampers."""
+    terms = [SEPARATE_TRACKS] * (structure.tracks == "separate") + list(structure.terms)
+    return describe_terms([TERMS[name].description for name in terms], fit)
+
+
+def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult) -> dict[str, ForceCurve]:
+    """Return the force curves of the dampers, springs and tyres that are not linear."""
+    if not structure.is_nonlinear:
+        return {}
+    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights)
+    nonlinear = nonlinear_elements(structure.tracks, structure.terms)
+    return force_curves(fit, optimum, structure.nonlinear_models, linear, nonlinear)
 
 
 def _fit_report(

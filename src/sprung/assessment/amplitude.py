@@ -149,7 +149,7 @@ def _decay(model: LinearModel | NonlinearModel, values: Real, mode: Mode, amplit
     if isinstance(model, LinearModel):
         return free_decay(model.matrices(values), begin, _STEP, samples).acceleration[:3]
     stepper = Stepper.of([model], [_STEP], np.zeros(1, dtype=np.int64), values)
-    path = stepper.integrate(begin[None], np.zeros((1, len(model.forces.with_memory))), samples - 1)
+    path = stepper.integrate(begin[None], np.zeros((1, model.forces.memories)), samples - 1)
     inputs = np.concatenate([path.states[:, 0], path.forces[:, 0], np.ones((samples, 1))], axis=1)
     accelerations: Real = (inputs @ model.accelerations(values)[0].T).T[:3]
     return accelerations

@@ -1,8 +1,9 @@
 """Maximum likelihood estimation of a vehicle's parameters from free decays: problem, fit, tests, covariance."""
 
-from sprung.estimation.characteristics import characteristics_of
+from sprung.estimation.characteristics import characteristics_of, estimate_quantity
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
+from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, score_linear_term
@@ -34,9 +35,11 @@ __all__ = [
     "ClosedFormObjective",
     "Coordinates",
     "Correlation",
+    "CurvePoint",
     "Estimates",
     "FitResult",
     "FitStatistics",
+    "ForceCurve",
     "HasModalResponse",
     "Inflater",
     "ModeEstimate",
@@ -52,10 +55,12 @@ __all__ = [
     "clear_of_splines",
     "escape_local_optimum",
     "estimate_of",
+    "estimate_quantity",
     "fit_from_contact",
     "fit_jointly",
     "fit_linear",
     "fit_nonlinear",
+    "force_curves",
     "identifiable_subspace",
     "lift_priors",
     "mode_estimates",

@@ -46,7 +46,7 @@ def characteristics_of(fit: FitStatistics, known: Mapping[str, KnownValue], empt
             found[name] = estimate_of(fit, known, name)
         elif one.needs <= set(fit.names):
             value, gradient = evaluate_quantity(name, fit.names, fit.values)
-            found[name] = _estimate(fit, value, gradient, one.unit, one.signed)
+            found[name] = estimate_quantity(fit, value, gradient, one.unit, one.signed)
     return found | _wheel_loads(fit, empty)
 
 
@@ -58,14 +58,33 @@ def _wheel_loads(fit: FitStatistics, empty: LinearModel) -> dict[str, Estimate]:
     else:
         names = {"fl": "front_wheel_load", "rl": "rear_wheel_load"}
     return {
-        name: _estimate(fit, load, gradient, "N", signed=False)
+        name: estimate_quantity(fit, load, gradient, "N", signed=False)
         for station, name in names.items()
         for load, gradient in [each[station]]
     }
 
 
-def _estimate(fit: FitStatistics, value: float, gradient: Real, unit: str, signed: bool) -> Estimate:
-    """Estimate a quantity of which value and gradient by the parameters are given, SI."""
+def estimate_quantity(fit: FitStatistics, value: float, gradient: Real, unit: str, signed: bool) -> Estimate:
+    """Estimate a quantity that follows from the parameters.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    value
+        Of the quantity, in the unit.
+    gradient
+        By each parameter, SI, shape (parameter,).
+    unit
+        SI.
+    signed
+        Whether it may be zero or negative.
+
+    Returns
+    -------
+    Estimate
+        Its standard uncertainty is that of the gradient under the joint covariance; without a value where it is not determined.
+    """
     # What may be zero counts as determined beside what its parameters would have to be to matter.
     size = max(abs(value), *(abs(slope) * fit.size(name) for name, slope in zip(fit.names, gradient, strict=True)))
     std = fit.spread(gradient * fit.slopes, size if signed else value)

@@ -86,7 +86,7 @@ def fit_nonlinear(
     -------
     FitResult
     """
-    laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
+    laws = ", ".join(own.law.name for own in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     known = {**known, **uncertainties_of(sensors)}
     steps, values = 0, expected_nuisances(known) | dict(start)
@@ -96,7 +96,9 @@ def fit_nonlinear(
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
-        objective = _objective(part, models, sensors, states, tilting, longest_step)
+        objective = _objective(
+            part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
+        )
         problem = _problem(objective, known, values)
         found = _maximise(problem, objective, values, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
@@ -143,7 +145,7 @@ def score_stepped_terms(
     """
     known = {**known, **uncertainties_of(sensors)}
     values = expected_nuisances(known) | dict(values)
-    objective = _objective(decays, models, sensors, states, tilting, _COARSE)
+    objective = _objective(decays, models, sensors, states, tilting, _COARSE, _COARSE)
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
@@ -178,9 +180,10 @@ def _objective(
     states: Real,
     tilting: bool,
     longest_step: float,
+    longest_derivative_step: float,
 ) -> TimeSteppingObjective:
     readout = Readout.with_unknowns(sensors, next(iter(models.values())).names)
-    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step)
+    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, longest_derivative_step)
 
 
 def _problem(

@@ -124,7 +124,7 @@ def _of_drop(
 def _unit_forces(
     model: NonlinearModel, values: Real, motion: Real, step: float
 ) -> Iterator[tuple[str, list[int], Real]]:
-    """Yield parameters, the elements in which each occurs and their forces per unit of it along a motion, (element, time).
+    """Yield parameters, the rows on which each acts and their forces per unit of it along a motion, (row, time).
 
     Parameters without any force are left out: what has no stiffness has no clearance that matters.
     """
@@ -132,13 +132,14 @@ def _unit_forces(
     X, V = np.split(motion, 2)
     travel, rate = (rows @ (X + model.sag(values)[:, None])).T, (rows @ V).T
     way = np.diff(travel, axis=0, prepend=travel[:1] - step * rate[:1])
-    for law, chosen, positions in model.forces.laws:
+    for law, chosen, _, positions in model.forces.laws:
         felt = ElementInput(*(part[:, chosen] for part in (travel, rate, way, np.zeros_like(travel))))
+        at = np.arange(model.forces.number)[chosen]
         by_parameter, _ = law.differentiate(values[positions], felt)
         for of_elements, forces in zip(positions, by_parameter, strict=True):
             for position in np.unique(of_elements).tolist() if forces.any() else ():
                 own = np.flatnonzero(of_elements == position)
-                yield model.names[position], (chosen.start + own).tolist(), forces[:, own].T
+                yield model.names[position], at[own].tolist(), forces[:, own].T
 
 
 def _modal_responses(poles: Complex, modal: Complex, step: float) -> Complex:

@@ -18,7 +18,17 @@ from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import ElementInput, NonlinearModel, Readout, Stepper, Trajectory
+from sprung.vehicle import (
+    ElementInput,
+    NonlinearModel,
+    Prediction,
+    Readout,
+    Stepper,
+    Trajectory,
+    differentiate_motions,
+    integrate_near,
+    segments_of,
+)
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -29,7 +39,7 @@ _MEMORY_STD = 1.0
 _MOST_MEMORY = 1.15
 """Memory that no friction has: it slides at one, and noise adds little."""
 
-_WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_products")
+_WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_linearised")
 """Cached properties of a `TimeSteppingAt` that do not depend on the weights."""
 
 _STATE_STEPS, _STATE_GAIN = 20, 1e-2
@@ -55,6 +65,8 @@ class TimeSteppingObjective:
         Whether the sensors turn with the body, and measure the less of gravity.
     longest_step
         s: over a longer one forces do not run straight.
+    longest_derivative_step
+        s, of the steps by which motions are differentiated, if that is longer: rougher derivatives lead to the same optimum.
     """
 
     decays: Sequence[FreeDecay]
@@ -63,6 +75,7 @@ class TimeSteppingObjective:
     states: Real
     sensors_tilt: bool
     longest_step: float
+    longest_derivative_step: float = 0.0
 
     @cached_property
     def _kinds(self) -> list[tuple[str, float]]:
@@ -88,6 +101,12 @@ class TimeSteppingObjective:
     def every(self) -> int:
         """Steps from one sample to the next."""
         return max(int(np.ceil(1.0 / (min(decay.rate for decay in self.decays) * self.longest_step))), 1)
+
+    @cached_property
+    def derivative_every(self) -> int:
+        """Steps over each of which the derivatives make one."""
+        most = self.longest_derivative_step / max(self.times)
+        return max(part for part in range(1, self.every + 1) if self.every % part == 0 and part <= max(most, 1))
 
     @cached_property
     def samples(self) -> Index:
@@ -134,7 +153,7 @@ class TimeSteppingObjective:
     @cached_property
     def prior_std(self) -> Real:
         """Prior standard uncertainty of initial states and memories, shape (state + memory,)."""
-        memories = len(self.models_by_kind[0].forces.with_memory)
+        memories = self.models_by_kind[0].forces.memories
         return np.concatenate([initial_state_prior_std(self.state_size), np.full(memories, _MEMORY_STD)])
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> TimeSteppingObjective:
@@ -153,17 +172,24 @@ class TimeSteppingObjective:
         begin[:, : self.states.shape[1]] += self.states[:, : begin.shape[1]]
         return self.at_states(values, weights, begin)
 
-    def at_states(self, values: Real, weights: Real, begin: Real) -> TimeSteppingAt:
-        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory)."""
+    def at_states(self, values: Real, weights: Real, begin: Real, near: Prediction | None = None) -> TimeSteppingAt:
+        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory).
+
+        A prediction of the motions saves time.
+        """
         stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
         states, memories = np.split(begin, [self.state_size], axis=1)
-        trajectory = stepper.integrate(states, memories, self.every * (self.records.shape[2] - 1))
+        steps = self.every * (self.records.shape[2] - 1)
+        if near is None:
+            trajectory = stepper.integrate(states, memories, steps)
+        else:
+            trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
         return TimeSteppingAt(self, values, weights, begin, stepper, trajectory)
 
     def sag(self, values: Real) -> Real:
         """Displacement of each drop's resting point under its load; (drop, state + memory), only X is not zero."""
         sag = np.zeros((len(self.decays), len(self.prior_std)))
-        by_kind = np.array([model.sag(values[: self.sensors.shared]) for model in self.models_by_kind])[self.kind]
+        by_kind = np.array([model.sag(values) for model in self.models_by_kind])[self.kind]
         sag[:, : by_kind.shape[1]] = by_kind
         return sag
 
@@ -186,14 +212,12 @@ class TimeSteppingObjective:
         impossible = np.abs(memories) > _MOST_MEMORY
         if not impossible.any():
             return None
-        values_of_model = values[: self.sensors.shared]
-        rows = forces.rows.at(values_of_model)
-        memory = np.zeros((len(memories), forces.number))
-        memory[:, forces.with_memory] = memories
+        rows = forces.rows.at(values)
         travel = X @ rows.T
-        answer = forces.evaluate(values_of_model, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
-        by_memory = answer.by_memory[:, forces.with_memory]
-        lost = np.where(impossible, memories, 0.0) * by_memory @ rows[forces.with_memory]
+        answer = forces.evaluate(
+            forces.parameters(values), ElementInput(travel, V @ rows.T, np.zeros_like(travel), memories)
+        )
+        lost = np.where(impossible, memories, 0.0) * answer.by_memory @ rows[forces.memory_rows]
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
         return np.hstack([X, V, np.where(impossible, 0.0, memories)]) - self.sag(values)
@@ -242,7 +266,20 @@ class TimeSteppingAt:
             "dzp,p->dz", information[:, parameters:, :parameters], values - self.values
         )
         step = np.linalg.solve(information[:, parameters:, parameters:], right[:, :, None])[:, :, 0]
-        return self.objective.at_states(values, self.weights, self.begin + step)
+        of_model = (values - self.values)[: self.objective.sensors.shared]
+        change = np.hstack([np.tile(of_model, (len(step), 1)), step])
+        return self.objective.at_states(values, self.weights, self.begin + step, self._predict(change))
+
+    def _predict(self, change: Real) -> Prediction:
+        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
+        _, by_unknown, transitions = self._linearised
+        steps = len(self.trajectory.states) - 1
+        number, length = segments_of(steps, self.objective.every)
+        first = np.minimum(np.arange(number) * length, steps)
+        starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
+        return Prediction(
+            np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True), transitions
+        )
 
     def with_optimal_states(self) -> TimeSteppingAt:
         """Return the likelihood with the initial states that maximise it at these parameters."""
@@ -267,8 +304,7 @@ class TimeSteppingAt:
     @cached_property
     def _acceleration_rows(self) -> tuple[Real, Real]:
         """Accelerations from {X, Ẋ, u, 1} of every drop, (drop, coordinate, input), and by parameter, next to it."""
-        values = self.values[: self.objective.sensors.shared]
-        by_kind = [model.accelerations(values) for model in self.objective.models_by_kind]
+        by_kind = [model.accelerations(self.values) for model in self.objective.models_by_kind]
         rows, derivatives = (np.stack(part)[self.objective.kind] for part in zip(*by_kind, strict=True))
         return rows, derivatives
 
@@ -290,33 +326,35 @@ class TimeSteppingAt:
         """What the sensors measure less of where they turn, m/s²."""
         return STANDARD_GRAVITY if self.objective.sensors_tilt else 0.0
 
+    @property
+    def _readings(self) -> Real:
+        """What the sensors read, shape (drop, channel, time)."""
+        sensors, angles = self.objective.sensors, self._inputs[:, :, 1:3]
+        readings: Real = sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
+        if self._gravity:
+            readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+        if sensors.has_delays:
+            # To the second order: a delay is a small part of a period.
+            samples = sensors.delays(self.values)[:, None] * self._rates
+            rising = np.gradient(readings, axis=-1, edge_order=2)
+            readings += 0.5 * samples**2 * np.gradient(rising, axis=-1, edge_order=2) - samples * rising
+        return readings
+
+    @property
+    def _rates(self) -> Real:
+        """Samples per second of every drop, shape (drop, 1, 1)."""
+        return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
+
     @cached_property
     def _residuals(self) -> Real:
         """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
         objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            readings = objective.sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
-            angles = self._inputs[:, :, 1:3]
-            readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
-            residuals = objective.records - self._delayed(readings)
+            residuals = objective.records - self._readings
             residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
             residuals *= objective.is_sample[:, None, :]
         counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
         return counted
-
-    def _delayed(self, readings: Real) -> Real:
-        """Return the readings of sensors with their delays, shape (drop, channel, time), to the second order in these."""
-        if not self.objective.sensors.has_delays:
-            return readings
-        samples = self.objective.sensors.delays(self.values)[:, None] * self._rates
-        rising = np.gradient(readings, axis=-1)
-        delayed: Real = readings - samples * rising + 0.5 * samples**2 * np.gradient(rising, axis=-1)
-        return delayed
-
-    @cached_property
-    def _rates(self) -> Real:
-        """Samples per second of every drop, shape (drop, 1, 1)."""
-        return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
 
     @cached_property
     def residual_sums(self) -> Real:
@@ -330,51 +368,52 @@ class TimeSteppingAt:
         """Twice the negative log-likelihood of the initial states under their prior."""
         return float(np.sum((self.begin / self.objective.prior_std) ** 2))
 
-    @cached_property
-    def _late(self) -> Real:
-        """Derivative of the readings by a delay, m/s³, shape (drop, channel, time)."""
-        readings = self.objective.records - self._residuals
-        return np.asarray(-self._rates * np.gradient(readings, axis=-1))
-
-    @cached_property
+    @property
     def _products(self) -> Real:
         """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
 
         Shape (drop, channel, unknown + 1, unknown + 1); what offsets explain is subtracted.
         """
-        objective, every = self.objective, self.objective.every
-        rows, derivatives = self._acceleration_rows
-        S, by_S = objective.sensors.at(self.values), np.swapaxes(objective.sensors.slopes(self.values), 1, 2)
-        drops, channels, _ = objective.records.shape
-        # Those of the sensors come between the parameters of the model and the initial states.
-        parameters, shared = len(self.values), objective.sensors.shared
-        unknown = parameters + self.begin.shape[1]
-        total, squares = np.zeros((drops, channels, unknown + 1)), np.zeros((drops, channels, unknown + 1, unknown + 1))
-        for step, states, forces in self.stepper.sensitivities(self.trajectory):
-            chosen = slice(-step % every, None, every)
-            first = (step + (-step % every)) // every
-            driven = np.concatenate([states[chosen], forces[chosen]], axis=2)
-            if not len(driven):
-                continue
-            last = first + len(driven)
-            inputs = self._inputs[first:last]
-            moved = rows[:, :, :-1] @ driven
-            moved[..., :shared] += np.einsum("dpij,kdj->kdip", derivatives, inputs, optimize=True)
-            columns = np.zeros((drops, channels, last - first, unknown + 1))
-            readings = S @ moved
-            readings -= self._gravity * (inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3])
-            readings = readings.transpose(1, 2, 0, 3)
-            columns[..., :shared], columns[..., parameters:unknown] = readings[..., :shared], readings[..., shared:]
-            by_sensor = np.einsum("kdi,cip->dckp", self._accelerations[first:last], by_S, optimize=True)
-            columns[..., :parameters] += by_sensor
+        return self._linearised[0]
+
+    @cached_property
+    def _linearised(self) -> tuple[Real, Real, Real]:
+        """The products, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
+        objective = self.objective
+        S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
+        channels, shared = len(S), objective.sensors.shared
+        by_kind = [model.accelerations(self.values) for model in objective.models_by_kind]
+        outputs = np.stack([S @ rows[:, :-1] for rows, _ in by_kind])
+        direct = [np.swapaxes(by_S, 0, 1) @ rows for rows, _ in by_kind]
+        for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
+            by_row[:shared] += S @ slopes
+        if self._gravity:
+            # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
+            angles = np.broadcast_to(np.eye(2, outputs.shape[2], k=1), (len(outputs), 2, outputs.shape[2]))
+            outputs = np.concatenate([outputs, angles], axis=1)
+        stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
+        if skipped > 1:
+            longer = [skipped * time for time in objective.times]
+            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values[:shared])
+            trajectory = Trajectory(*(part[::skipped] for part in trajectory))
+        found = differentiate_motions(stepper, trajectory, outputs, objective.every // skipped)
+        products = []
+        for drop, (moved, samples) in enumerate(zip(found.outputs, objective.samples, strict=True)):
+            inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
+            if self._gravity:
+                readings -= self._gravity * (inputs[:, None, 1:3] @ moved[:samples, channels:])
+            # The unknowns of the sensors come between the parameters of the model and the initial states.
+            readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
+            by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
+            readings[..., : len(self.values)] += by_sensor
             for channel, position in objective.sensors.delay_positions:
-                columns[:, channel, :, position] = self._late[:, channel, first:last]
-            columns[..., :unknown] *= objective.is_sample[:, None, first:last, None]
-            columns[..., unknown] = self._residuals[:, :, first:last]
-            total += columns.sum(axis=2)
-            squares += np.swapaxes(columns, 2, 3) @ columns
-        squares -= total[..., :, None] * total[..., None, :] / objective.samples[:, None, None, None]
-        return squares * objective.channel_weights[:, :, None, None]
+                readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
+                readings[:, channel, position] *= objective.decays[drop].rate
+            columns = np.empty((channels, samples, readings.shape[2] + 1))
+            columns[..., :-1] = np.swapaxes(readings - readings.mean(axis=0), 0, 1)
+            columns[..., -1] = self._residuals[drop, :, :samples]
+            products.append(np.swapaxes(columns, 1, 2) @ columns)
+        return np.array(products) * objective.channel_weights[:, :, None, None], found.starts, found.transitions
 
     @cached_property
     def _normal_equations(self) -> tuple[Real, Real]:
@@ -431,7 +470,7 @@ class TimeSteppingAt:
         NaN for the samples before its first: friction cannot be followed backward in time.
         """
         chosen = slice(None, self.objective.every * after, self.objective.every)
-        memories = self.trajectory.memories[chosen, drop][:, self.stepper.forces.with_memory]
+        memories = self.trajectory.memories[chosen, drop]
         whole = np.hstack([self.trajectory.states[chosen, drop], memories]) - self.objective.sag(self.values)[drop]
         unknown = np.full((whole.shape[1], before), np.nan)
         return np.hstack([unknown, whole.T])

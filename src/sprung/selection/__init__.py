@@ -1,5 +1,6 @@
 """Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
+from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
@@ -14,17 +15,20 @@ from sprung.selection.stepwise import (
     select_roll_axis_height,
 )
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.selection.terms import ENGINE, TERMS, ModelTerm
+from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, TERMS, ModelTerm
 
 __all__ = [
     "ENGINE",
     "FALSE_ALARM_SHARE",
+    "SEPARATE_TRACKS",
     "TERMS",
     "ModelSearch",
     "ModelStructure",
     "ModelTerm",
     "SelectionStep",
+    "TermDescription",
     "choose_structure",
+    "describe_terms",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",

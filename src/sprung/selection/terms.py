@@ -14,11 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sprung.estimation import USUAL_ENGINE
+from sprung.selection.description import TermDescription, Values
 from sprung.selection.structure import ModelStructure
 from sprung.vehicle import LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, parameters_of_term
-
-Values = Mapping[str, float]
-"""Parameters by name, SI."""
 
 StartValues = Callable[[Values, ModelStructure], Values]
 """From the fitted vehicle and the structure to fit, values of some parameters."""
@@ -54,6 +52,8 @@ class ModelTerm:
         Practical effect, dimensionless, from the parameters of a vehicle that has it; a sign means a direction only.
     typical, spread
         Usual size where the term is present, and the factor by which one standard deviation lies above or below it.
+    description
+        How a sentence states it.
     negligible
         Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
     explains_all
@@ -73,6 +73,7 @@ class ModelTerm:
     typical: float
     spread: float
     negligible: float
+    description: TermDescription
     explains_all: bool = False
     resembles_others: bool = False
     undefined: StartValues | None = None
@@ -143,6 +144,11 @@ def _asymmetry(values: Values, axle: str) -> float:
     return max(abs(values["y_s"]) / _half_distance(values, axle), *map(abs, rates))
 
 
+def _inboard_share(values: Values, axle: str) -> float:
+    """Place of the springs on a rigid axle, as a part of its wheels' half-distance."""
+    return values[f"n_{axle}" if f"n_{axle}" in values else f"n_{axle}2"]
+
+
 def _gravity(values: Values) -> float:
     """Share of the roll stiffness of all springs."""
     roll = 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
@@ -158,6 +164,12 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=0.15,
             spread=2.0,
             negligible=0.01,
+            description=TermDescription(
+                "{axle} dampers at {0} times the half-distance of the springs",
+                ((lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"], "1"),),
+                again="{axle} ones at {0} times",
+                neutral=1.0,
+            ),
             equal_tracks=(("t_f1", "t_f2"), ("t_r1", "t_r2")),
         ),
         ModelTerm(
@@ -166,6 +178,11 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=0.3,
             spread=2.5,
             negligible=0.01,
+            description=TermDescription(
+                "a {axle} anti-roll bar of {0}",
+                ((lambda p, axle: p[f"k_a{axle}"] / 1e3, "N/mm"),),
+                again="a {axle} one of {0}",
+            ),
         ),
         ModelTerm(
             "tyre-damping",
@@ -173,15 +190,47 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=0.06,
             spread=2.5,
             negligible=0.005,
+            description=TermDescription(
+                "tyre damping of {0} at each {axle} wheel",
+                ((lambda p, axle: p[f"c_t{axle}"], "N s/m"),),
+                again="{0} at each {axle} wheel",
+            ),
         ),
-        ModelTerm("gravity", _gravity, typical=0.1, spread=2.0, negligible=0.005),
-        ModelTerm("asymmetry", _of_axles(_asymmetry), typical=0.05, spread=2.0, negligible=0.01, explains_all=True),
+        ModelTerm(
+            "gravity",
+            _gravity,
+            typical=0.1,
+            spread=2.0,
+            negligible=0.005,
+            description=TermDescription(
+                "gravity that takes {0} off the roll stiffness of the springs",
+                ((lambda p, _: 100 * _gravity(p), "%"),),
+            ),
+        ),
+        ModelTerm(
+            "asymmetry",
+            _of_axles(_asymmetry),
+            typical=0.05,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "left and right sides that differ by up to {0}",
+                ((lambda p, _: 200 * max(_asymmetry(p, axle) for axle in "fr"), "%"),),
+            ),
+            explains_all=True,
+        ),
         ModelTerm(
             "rigid-axle",
-            _of_axles(lambda p, axle: 1 - p[f"n_{axle}" if f"n_{axle}" in p else f"n_{axle}2"]),
+            _of_axles(lambda p, axle: 1 - _inboard_share(p, axle)),
             typical=0.3,
             spread=1.6,
             negligible=0.05,
+            description=TermDescription(
+                "a rigid {axle} axle with its springs at {0} of the half-distance of its wheels",
+                ((_inboard_share, "1"),),
+                again="a rigid {axle} axle with its springs at {0}",
+                neutral=1.0,
+            ),
             explains_all=True,
         ),
         ModelTerm(
@@ -190,6 +239,7 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=USUAL_ENGINE,
             spread=1.6,
             negligible=0.02,
+            description=TermDescription("an engine of {0} that moves on its mounts", ((lambda p, _: p["m_e"], "kg"),)),
             explains_all=True,
             undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
             first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
@@ -200,13 +250,39 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=1.0,
             spread=3.0,
             negligible=0.01,
+            description=TermDescription(
+                "dry friction of {0} at each {axle} wheel",
+                ((lambda p, axle: p[f"F_{axle}"], "N"),),
+                again="{0} at each {axle} wheel",
+            ),
             resembles_others=True,
             undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
             first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
         ),
-        ModelTerm("rebound", _of_axles(lambda p, axle: p[f"r_{axle}"] - 1), typical=0.8, spread=2.0, negligible=0.01),
         ModelTerm(
-            "progressive", _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]), typical=0.2, spread=2.5, negligible=0.02
+            "rebound",
+            _of_axles(lambda p, axle: p[f"r_{axle}"] - 1),
+            typical=0.8,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "{axle} dampers {0} times as stiff in rebound as in compression",
+                ((lambda p, axle: p[f"r_{axle}"], "1"),),
+                again="{axle} ones {0} times",
+                neutral=1.0,
+            ),
+        ),
+        ModelTerm(
+            "progressive",
+            _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]),
+            typical=0.2,
+            spread=2.5,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} springs whose rate grows by {0} over 5 cm of compression",
+                ((lambda p, axle: 100 * _STROKE * p[f"p_{axle}"], "%"),),
+                again="{axle} ones by {0}",
+            ),
         ),
         ModelTerm(
             BUMP_STOP,
@@ -214,6 +290,11 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=3.0,
             spread=3.0,
             negligible=0.02,
+            description=TermDescription(
+                "{axle} bump stops of {0}, met after {1} of compression",
+                ((lambda p, axle: p[f"k_b{axle}"] / 1e3, "N/mm"), (lambda p, axle: 1e3 * p[f"x_b{axle}"], "mm")),
+                again="{axle} ones of {0}, met after {1}",
+            ),
             undefined=lambda _, structure: dict.fromkeys(("x_bf", "x_br"), structure.stop_gap),
         ),
     )

@@ -153,7 +153,7 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
     for _ in range(_ITERATIONS):
         travel = G @ X - raised + offsets
         zero = np.zeros_like(travel)
-        found = forces.evaluate(values, ElementInput(travel, zero, zero, zero))
+        found = forces.evaluate(forces.parameters(values), ElementInput(travel, zero, zero, np.zeros(forces.memories)))
         residual = K @ X + load + G.T @ found.force
         X = X - np.linalg.solve(K + (G.T * found.by_travel) @ G, residual)
         if np.abs(residual).max() < 1e-9 * np.abs(load).max():
@@ -171,11 +171,10 @@ def _sample(
     start: float,
 ) -> list[Motion]:
     every = max(math.ceil(step / _LONGEST_STEP), 1)
-    with_memory = models[0].forces.with_memory
-    memories = np.zeros((len(states), len(with_memory)))
+    memories = np.zeros((len(states), models[0].forces.memories))
     if start > 0:
         before = Stepper.of(models, [start / every] * len(models), kind, values).integrate(states, memories, every)
-        states, memories = before.states[-1], before.memories[-1][:, with_memory]
+        states, memories = before.states[-1], before.memories[-1]
     stepper = Stepper.of(models, [step / every] * len(models), kind, values)
     trajectory = stepper.integrate(states, memories, every * (samples - 1))
     motions = []

@@ -9,6 +9,7 @@ from sprung.vehicle.characteristics import (
     wheel_loads,
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
+from sprung.vehicle.curves import FORCE_CURVES, CurveElements, ForceCurveKind
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -49,6 +50,8 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
+from sprung.vehicle.segments import Prediction, integrate_near, segments_of
+from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
@@ -60,6 +63,7 @@ __all__ = [
     "EMPTY",
     "EXTRAS",
     "EXTRA_PARAMETERS",
+    "FORCE_CURVES",
     "LEVEL",
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
@@ -80,9 +84,11 @@ __all__ = [
     "Added",
     "CarriedAt",
     "Characteristic",
+    "CurveElements",
     "Element",
     "ElementInput",
     "Finite",
+    "ForceCurveKind",
     "Heights",
     "Item",
     "LinearLaw",
@@ -96,6 +102,7 @@ __all__ = [
     "NotNegative",
     "Parameter",
     "Positive",
+    "Prediction",
     "Readout",
     "Row",
     "Rows",
@@ -109,10 +116,12 @@ __all__ = [
     "affine_response",
     "checked_record",
     "coordinates",
+    "differentiate_motions",
     "evaluate_quantity",
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "integrate_near",
     "is_nuisance",
     "is_of_sensor",
     "nonlinear_elements",
@@ -120,6 +129,7 @@ __all__ = [
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
+    "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",
     "uncertainties_of",

@@ -110,7 +110,7 @@ class Readout:
 
     def _placed(self, values: Array) -> Array:
         """Return the rows with their places, without gains."""
-        rows = self.rows.at(values[..., : self.shared])
+        rows = self.rows.at(values)
         for kind, row in self._angles.items():
             rows = rows + self._unknown(kind, values)[..., None] * row
         return rows

@@ -109,9 +109,9 @@ class Sensor:
         A gain is the part by which it reads too much; a place is how much further forward or left it sits, on the body.
 
         A tilt τ lowers the gain by 1 - cos τ: with a standard uncertainty s about both horizontal axes by s² on average; the
-        standard deviation is s² too, and larger deviations are more frequent than normal ones. On the body it mixes in gravity times the angle of the body, which at an angular frequency ω
-        is g/ω² times the angular acceleration: as if the sensor sat τ g/ω² elsewhere. That is 0.16 m at 1.25 Hz, and nothing at
-        wheel hop. What a height adds is for `at_height_above`.
+        standard deviation is s² too, and larger deviations are more frequent than normal ones. On the body it mixes in gravity
+        times the angle of the body, which at an angular frequency ω is g/ω² times the angular acceleration: as if the sensor
+        sat τ g/ω² elsewhere. That is 0.16 m at 1.25 Hz, and nothing at wheel hop. What a height adds is for `at_height_above`.
         """
         tilt = math.radians(self.tilt_std)
         place = math.hypot(self.position_std, tilt * _PENDULUM) if self.position is not None else 0.0

@@ -59,8 +59,9 @@ def result_view(result: Result) -> RenderableType:
         parts += [render_table(ratios_table(result.scale.per_total_mass)), Text()]
     for load, modes in result.modes.items():
         parts += [render_table(modes_table(load, modes)), Text()]
-    if result.sensors:
-        parts += [render_table(sensors_table(result.sensors)), Text()]
+    parts += _sensors(result)
+    if result.additional_terms:
+        parts += [hanging_text("", result.additional_terms), Text()]
     parts += [fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
@@ -68,6 +69,11 @@ def result_view(result: Result) -> RenderableType:
     if result.next_step is not None:
         parts += [Text(), next_line(result.next_step)]
     return Group(*parts)
+
+
+def _sensors(result: Result) -> list[RenderableType]:
+    """Return the table of what was found of the sensors, as far as they are uncertain."""
+    return [render_table(sensors_table(result.sensors)), Text()] if result.sensors else []
 
 
 def _rejected_view(result: Result) -> RenderableType:

@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from sprung.report.page.sections.context import Context
 from sprung.report.page.summary import symbol_parts
+from sprung.report.pictures.curves import curve_pictures
 from sprung.report.pictures.parameters import half_width, limits_percent
 from sprung.results import (
     Result,
@@ -55,6 +56,26 @@ def parameters(result: Result) -> Context:
         "undetermined": result.unidentifiable,
         "ratios": ratios_table(result.scale.per_total_mass) if scale_free else None,
     }
+
+
+def curves(result: Result) -> Context | None:
+    """Return the force curves of dampers, springs and tyres."""
+    pictures = list(curve_pictures(result.curves).values())
+    text = (
+        "Force of each damper, spring and tyre, mean of left and right, with its 95 % band. Solid: the range that the drops "
+        "reached, its ends marked by rings. Dashed: beyond it, extrapolated by the model."
+    )
+    friction = [
+        f"{friction} at each {name.removeprefix('damper_')} wheel"
+        for name, curve in result.curves.items()
+        if (friction := curve.friction) is not None and friction.value is not None
+    ]
+    notes = (
+        [f"Dry friction acts beside the dampers and is not part of the curves: {', '.join(friction)}."]
+        if friction
+        else []
+    )
+    return {"text": text, "pictures": pictures, "notes": notes} if pictures else None
 
 
 def _parameter(name: str, estimate: Estimate, half: float) -> Context:
@@ -183,5 +204,5 @@ def _cell(value: float, same: bool) -> dict[str, str]:
 
 def _signed(value: float) -> str:
     # A correlation just below one must not be rounded to one, and zero has no sign.
-    text = f"{value:.3f}" if 0.995 <= abs(value) < 1 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
+    text = f"{value:.3f}" if 0.995 <= abs(value) < 1 - 1e-9 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
     return text.replace("-", "\N{MINUS SIGN}")
