@@ -29,6 +29,7 @@ from sprung.estimation import (
     estimate_of,
     force_curves,
     mode_estimates,
+    rates_at_motion_ratios,
     to_estimates,
 )
 from sprung.faults import detect_drift
@@ -77,6 +78,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
             **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
+            **({} if rejected else rates_at_motion_ratios(fit, campaign.motion_ratio)),
             **about_roll_axis(fit, structure.heights),
             **{name: estimate_of(fit, structure.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},

@@ -107,11 +107,15 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
     rows, noise = body_rows(fit, sensors), estimate_noise_level(fit, decays)
     at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
     known_from = float(at_rest or sum(decay.samples for decay in decays))
+    # Drops usually have all their channels, and then one inverse.
+    inverses = {
+        used: motion_from_channels(rows, np.where(used, noise, np.inf))
+        for used in {tuple(decay.usable.tolist()) for decay in decays}
+    }
     motions = []
     for decay, fitted in zip(decays, fit.fitted, strict=True):
-        inverse = motion_from_channels(rows, np.where(decay.usable, noise, np.inf))
-        values = np.nan_to_num(decay.values)
-        centred = values - values.mean(axis=1, keepdims=True)
+        inverse = inverses[tuple(decay.usable.tolist())]
+        centred = np.where(decay.usable[:, None], decay.values - decay.values.mean(axis=1, keepdims=True), 0.0)
         determined = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
         motions.append(
             BodyMotion(

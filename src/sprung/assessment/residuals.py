@@ -11,7 +11,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 
 from sprung.display import shown
 from sprung.estimation import FitStatistics
-from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
+from sprung.preprocess import FreeDecay, estimate_sensor_noise
 
 Real = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Rea
     ndarray
         m/s² root-mean-square, shape (channel,).
     """
-    noise = estimate_sensor_noise(decays, pool_moments(fit.residuals))
+    noise = estimate_sensor_noise(decays, fit.residual_moments)
     at_rest = np.where((noise.samples > 0) & (noise.variance > 0), np.sqrt(noise.variance + noise.added), np.inf)
     return np.minimum(at_rest, fit.noise)
 

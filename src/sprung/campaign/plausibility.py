@@ -18,6 +18,7 @@ _OTHER_UNITS: Mapping[str, Mapping[str, float]] = {
     "N/m": {"N/mm": 1e3, "kN/mm": 1e6, "lbf/in": 175.12684},
     "N s/m": {"N s/mm": 1e3, "kN s/mm": 1e6, "lbf s/in": 175.12684},
     "N": {"kN": 1e3, "kgf": 9.80665},
+    "m per m": {"percent": 1e-2},
 }
 """By SI unit the others in which such a quantity is stated, and what one of them is in SI."""
 
@@ -79,6 +80,7 @@ LIMITS: Mapping[str, Limits] = {
     "cg_height": Limits(0.1, 4.0, "m"),
     "wheel_height": Limits(0.05, 1.2, "m"),
     "roll_axis_height": Limits(-2.0, 3.0, "m"),
+    "motion ratio": Limits(0.2, 3.0, "m per m"),
     "block height": Limits(0.002, 0.6, "m"),
     "x": _SYMMETRIC_LENGTH,
     "y": Limits(-3.0, 3.0, "m"),

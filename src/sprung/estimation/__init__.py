@@ -1,12 +1,13 @@
 """Maximum likelihood estimation of a vehicle's parameters from free decays: problem, fit, tests, covariance."""
 
-from sprung.estimation.characteristics import characteristics_of, estimate_quantity
+from sprung.estimation.characteristics import characteristics_of, estimate_quantity, rates_at_motion_ratios
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, score_linear_term
+from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear
+from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
 from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
@@ -68,8 +69,10 @@ __all__ = [
     "parameters_from_matrices",
     "predictions",
     "profiled",
+    "rates_at_motion_ratios",
     "score_added",
     "score_linear_term",
+    "score_linear_terms",
     "score_nonlinear_terms",
     "score_stepped_terms",
     "shape_of",

@@ -256,8 +256,8 @@ class ClosedFormAt:
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
         motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
-        exponent = np.outer(np.arange(-before, 0) * step, poles[upper])
-        powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
+        growth = np.exp(np.minimum(np.outer(np.arange(-before, 0) * step, poles[upper].real), _BACKWARD))
+        powers = growth * exponentials(-1j * poles[upper].imag * step, before + 1)[:0:-1]
         motion[:, :before] = real_product(coefficients, powers)
         return motion
 

@@ -156,7 +156,7 @@ def force_curves(
     found = {}
     for name, elements in kinds.items():
         ranges = [next(reached) for _ in elements.rows]
-        which = 1 if elements.kind.law == "damper" else 0
+        which = 1 if elements.law == "damper" else 0
         low, high = min(limits[which][0] for limits in ranges), max(limits[which][1] for limits in ranges)
         curve = _curve(fit, elements, (low, high))
         if curve is not None:
@@ -185,7 +185,7 @@ def _curve(fit: FitStatistics, elements: CurveElements, reached: tuple[float, fl
         x=x[kept],
         force=force[kept],
         std=std[kept],
-        x_unit=elements.kind.unit,
+        x_unit="m/s" if elements.law == "damper" else "m",
         force_unit="N",
         reached=reached,
         friction=friction,

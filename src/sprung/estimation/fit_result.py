@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimation.objective import HasClockDelays, ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
 from sprung.estimation.problem import EstimationProblem, Iterate
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, Moments, pool_moments
 from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
@@ -102,9 +102,19 @@ class FitResult:
         )
 
     @cached_property
+    def residual_moments(self) -> Moments:
+        """Variance and covariance of neighbours of the residuals of each channel; see `pool_moments`."""
+        return pool_moments(self.residuals)
+
+    @cached_property
     def loglikelihood(self) -> float:
         """Up to a constant."""
         return -0.5 * self.problem.cost(self.iterate)
+
+    @property
+    def remaining_gain(self) -> float:
+        """What one more Newton step is expected to gain in twice the log-likelihood; nearly 0 at an optimum."""
+        return self.problem.normal_equations(self.iterate).step()[1]
 
     @property
     def absolute_loglikelihood(self) -> float:

@@ -24,11 +24,10 @@ from sprung.estimation.problem import (
     Iterate,
     least_information,
 )
-from sprung.estimation.score_test import score_test
 from sprung.estimation.start_ranking import rank_starts
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.optimisation import Maximum
-from sprung.preprocess import FreeDecay, pool_moments
+from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LinearModel, Readout, Sensor, is_nuisance, separate_track_names, uncertainties_of
@@ -37,9 +36,6 @@ Real = NDArray[np.float64]
 
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
-
-_LARGEST_STEP = 1.0
-"""Largest Newton step of a coordinate, dimensionless, that an estimate without a fit takes."""
 
 STARTS = 3
 """How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
@@ -108,17 +104,17 @@ def fit_linear(
         progress(Step("setting the loggers' clocks"))
         apart = fit_linear(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
-    objective = _objective(decays, models, sensors)
+    objective = objective_of(decays, models, sensors)
     known = {**known, **uncertainties_of(sensors)}
     nuisance = expected_nuisances(known)
     if start is not None:
         values = nuisance | dict(start)
-        problem = _problem(objective, known, values)
+        problem = problem_of(objective, known, values)
         return _fit_from(problem, values, enough, most)
     size = VehicleSize.of(known, sensors)
     has_engine = "m_e" in next(iter(models.values())).names
     usual = [vehicle | nuisance for vehicle in start_grid(size, known, has_engine)]
-    problem = _problem(objective, known, usual[0])
+    problem = problem_of(objective, known, usual[0])
     coordinates = problem.priors.coordinates
     nominal = {load: model.with_known(nuisance) if nuisance else model for load, model in models.items()}
     by_load = [nominal[load] for load in objective.loads]
@@ -148,16 +144,18 @@ def expected_nuisances(known: Mapping[str, KnownValue]) -> dict[str, float]:
     return {name: one.value for name, one in known.items() if is_nuisance(name)}
 
 
-def _objective(
+def objective_of(
     decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Sequence[Sensor]
 ) -> ClosedFormObjective:
+    """Return the likelihood of decays as a function of the parameters of linear models."""
     names = next(iter(models.values())).names
     return ClosedFormObjective(tuple(decays), models, Readout.with_unknowns(sensors, names))
 
 
-def _problem(
+def problem_of(
     objective: ClosedFormObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
 ) -> EstimationProblem:
+    """Return the problem of fitting them, its coordinates scaled by a typical vehicle's parameters, SI by name."""
     coordinates = Coordinates.scaled_by(objective.sensors.names, typical)
     return EstimationProblem(objective, PriorsAndConstraints(coordinates, known))
 
@@ -180,7 +178,7 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     """Whether the residuals of every channel are white noise, or rounding."""
     variance = fit.noise**2
     rounding = variance < 2 * fit.problem.least_variance
-    total, neighbours, _ = pool_moments(fit.residuals)
+    total, neighbours, _ = fit.residual_moments
     return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 
@@ -235,37 +233,3 @@ def escape_local_optimum(fit: FitResult) -> FitResult:
     if best is None or problem.cost(best.point) >= problem.cost(optimum):
         return fit
     return replace(fit, iterate=best.point, steps=fit.steps + best.steps, converged=best.converged)
-
-
-def score_linear_term(
-    decays: Sequence[FreeDecay],
-    models: Mapping[str, LinearModel],
-    sensors: Sequence[Sensor],
-    known: Mapping[str, KnownValue],
-    values: Mapping[str, float],
-) -> tuple[float, dict[str, float]]:
-    """Return what a model with more parameters would gain over one that is fitted already, by the :term:`score test`.
-
-    Parameters
-    ----------
-    decays, models, sensors, known
-        As for `fit_linear`, of the larger model.
-    values
-        Its parameters, SI, where it equals the fitted smaller one.
-
-    Returns
-    -------
-    float
-        In twice the log-likelihood, to second order.
-    dict
-        Parameters of the larger model after one Newton step, SI, by name.
-    """
-    known = {**known, **uncertainties_of(sensors)}
-    values = expected_nuisances(known) | dict(values)
-    problem = _problem(_objective(decays, models, sensors), known, values)
-    u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    information, gradient, null_space = problem.system(problem.start(u))
-    test = score_test(information, gradient, 0)
-    step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
-    estimates = problem.priors.coordinates.values(u + step)
-    return test.gain(), dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))

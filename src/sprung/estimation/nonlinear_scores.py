@@ -11,7 +11,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
@@ -20,13 +19,16 @@ from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
 from sprung.vehicle import ElementInput, NonlinearModel
-from sprung.vibration import exponentials, real_product
+from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 _RATE = 250.0
 """Samples per second, at least, that are enough: the others are left out."""
+
+_LARGEST_POWER = 300.0
+"""Powers of e that a number in double precision holds, and its inverse."""
 
 
 def score_nonlinear_terms(
@@ -94,30 +96,36 @@ def _of_drop(
     force_rows = -np.linalg.solve(model.linear.matrices(neutral).M, model.forces.rows.at(neutral).T)
     participation, direct = left[:, len(motion) // 2 :] @ force_rows, at.sensor_rows @ force_rows
 
-    columns = derivatives.shape[1], len(brought), len(state)
-    whole = np.zeros((sum(columns) + 1, len(shapes), samples))
-    fitted, forced, by_state, residual = np.split(whole, np.cumsum(columns))
+    # What was fitted are sums of exponentials, and the samples of these are all that is needed of them.
     waves = exponentials(poles * step, samples)
-    # The secular terms count the samples of the decay.
-    secular = waves * (every * np.arange(samples))[:, None]
-    amplitudes = left @ state
-    coefficients = np.swapaxes(derivatives * np.tile(amplitudes, 2), 0, 1)
-    fitted[:] = real_product(coefficients, np.hstack([waves, secular]))
-    by_state[:] = real_product(left.T[:, None, :] * shapes, waves)
-    residual[0] = np.nan_to_num(fit.residuals[drop][:, ::every])
+    basis = np.hstack([waves, waves * (every * np.arange(samples))[:, None]]).view(float).T
+    basis = basis - basis.mean(axis=1, keepdims=True)
+    by_parameter = np.swapaxes(derivatives * np.tile(left @ state, 2), 0, 1)
+    by_state = left.T[:, None, :] * shapes
+    by_state = np.concatenate([by_state, np.zeros_like(by_state)], axis=2)
+    sums = np.ascontiguousarray(np.concatenate([by_parameter, by_state]).conj()).view(float)
+
+    sampled = np.zeros((len(shapes), len(brought) + 1, samples))
+    sampled[:, -1] = np.nan_to_num(fit.residuals[drop][:, ::every])
+    powers = _powers(poles * step, samples)
     for name, own, forces in _unit_forces(model, neutral, motion, step):
         if name in brought:
-            modal = np.asarray(participation[:, own] @ forces, dtype=np.complex128)
-            responses = _modal_responses(poles, modal, step)
-            forced[brought.index(name)] += real_product(shapes, responses.T) + direct[:, own] @ forces
+            response = _response(poles, participation[:, own], shapes, forces, step, powers)
+            sampled[:, brought.index(name)] += response + direct[:, own] @ forces
+    sampled -= sampled.mean(axis=2, keepdims=True)
 
-    whole -= whole.mean(axis=2, keepdims=True)
-    whole *= np.sqrt(fit.weights * decay.usable * channel_rate_ratios(decay))[:, None]
-    rows = whole.reshape(len(whole), -1)
-    products = rows @ rows.T * (decay.samples / samples)
-    count = columns[0] + columns[1]
-    products[count:-1, count:-1] += np.diag(initial_state_prior_std(len(state)) ** -2.0)
-    information, gradient, _ = eliminate(products[:-1, :-1], products[:-1, -1], count)
+    weights = fit.weights * decay.usable * channel_rate_ratios(decay) * (decay.samples / samples)
+    weighted = (weights[:, None] * sums).reshape(len(sums), -1)
+    among_sums = weighted @ (sums @ (basis @ basis.T)).reshape(len(sums), -1).T
+    across = weighted @ np.swapaxes(sampled @ basis.T, 1, 2).reshape(weighted.shape[1], -1)
+    among_sampled = np.tensordot(weights, sampled @ np.swapaxes(sampled, 1, 2), 1)
+    products = np.block([[among_sums, across], [across.T, among_sampled]])
+    own_state = np.arange(len(by_parameter), len(sums))
+    products[own_state, own_state] += initial_state_prior_std(len(state)) ** -2.0
+    # The initial state is eliminated.
+    kept = np.delete(np.arange(len(products) - 1), own_state)
+    order = np.concatenate([kept, own_state])
+    information, gradient, _ = eliminate(products[np.ix_(order, order)], products[order, -1], len(kept))
     return information, gradient
 
 
@@ -139,13 +147,44 @@ def _unit_forces(
         for of_elements, forces in zip(positions, by_parameter, strict=True):
             for position in np.unique(of_elements).tolist() if forces.any() else ():
                 own = np.flatnonzero(of_elements == position)
-                yield model.names[position], at[own].tolist(), forces[:, own].T
+                yield model.names[position], at[own].tolist(), np.ascontiguousarray(forces[:, own].T)
 
 
-def _modal_responses(poles: Complex, modal: Complex, step: float) -> Complex:
-    """Return the response of every mode to modal forces that run straight between samples; both of shape (mode, time)."""
-    turn = np.exp(poles * step)
-    held = (turn - 1) / poles
+def _response(
+    poles: Complex, participation: Complex, shapes: Complex, forces: Real, step: float, powers: tuple[Complex, Complex]
+) -> Real:
+    """Return the response of the channels to forces that run straight between samples, shape (channel, time)."""
+    held = np.expm1(poles * step) / poles
     rising = (held / step - 1) / poles
-    filters = zip(rising, held, turn, modal, strict=True)
-    return np.array([lfilter([now, whole - now], [1.0, -z], force) for now, whole, z, force in filters])
+    both = np.vstack([forces, np.hstack([np.zeros((len(forces), 1)), forces[:, :-1]])])
+    weights = np.hstack([participation * rising[:, None], participation * (held - rising)[:, None]])
+    # As products of real matrices: one of a complex matrix with a real one is made sample by sample.
+    drive = np.empty((len(poles), both.shape[1]), dtype=np.complex128)
+    drive.real, drive.imag = weights.real @ both, weights.imag @ both
+    modal = _accumulated(drive, np.exp(poles * step), powers)
+    return np.asarray(shapes.real @ modal.real - shapes.imag @ modal.imag, dtype=np.float64)
+
+
+def _powers(exponent: Complex, samples: int) -> tuple[Complex, Complex]:
+    """Return e^{λk} and its inverse for as many samples as numbers hold both, each of shape (mode, time)."""
+    length = min(samples, max(int(_LARGEST_POWER / np.abs(exponent.real).max()), 1))
+    powers, inverse = (np.ascontiguousarray(exponentials(way, length).T) for way in (exponent, -exponent))
+    return powers, inverse
+
+
+def _accumulated(drive: Complex, turn: Complex, powers: tuple[Complex, Complex]) -> Complex:
+    """Return y of y(k) = z y(k-1) + d(k), from d of shape (mode, time), z of shape (mode,), its powers and their inverse.
+
+    That is z^k times the sum of d(i)/z^i up to k, over as many samples as there are powers.
+    """
+    growth, inverse = powers
+    parts, last = [], np.zeros_like(turn)
+    for begin in range(0, drive.shape[1], growth.shape[1]):
+        part = drive[:, begin : begin + growth.shape[1]]
+        part = part * inverse[:, : part.shape[1]]
+        part[:, 0] += turn * last
+        np.cumsum(part, axis=1, out=part)
+        part *= growth[:, : part.shape[1]]
+        parts.append(part)
+        last = part[:, -1]
+    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=1)

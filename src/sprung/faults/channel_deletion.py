@@ -64,6 +64,11 @@ class ChannelDeletion:
         """Of the channel."""
         return self.isolation.campaign.sensors[self.channel].channel
 
+    @property
+    def correction(self) -> Correction:
+        """Leaves the channel out."""
+        return mask_channel(self.channel)
+
     @cached_property
     def prediction(self) -> ChannelPrediction:
         """The channel beside the motion of that vehicle."""
@@ -76,7 +81,7 @@ class ChannelDeletion:
             self.candidate, self.channel, decays, np.array([states[decay.file] for decay in decays]), drift
         )
 
-    @property
+    @cached_property
     def limit(self) -> ResidualTable:
         """The residuals of all channels if this one measures any part of the motion, with any delay."""
         return self.table(self.prediction.least_residual)
@@ -133,7 +138,7 @@ class ChannelDeletion:
         return Hypothesis(
             fault,
             "left out",
-            mask_channel(self.channel),
+            self.correction,
             self.table(hypothesis.residual),
             self.candidate,
             hypothesis.free,
@@ -171,6 +176,7 @@ class ChannelCorrection(Hypothesis):
         numbers: Numbers,
         stds: Numbers = (),
         candidate: CandidateFit | None = None,
+        is_fitted: bool = False,
     ) -> ChannelCorrection:
         """Correct a channel; without a candidate fit the residuals are those predicted."""
         table = deletion.table(hypothesis.residual)
@@ -186,6 +192,7 @@ class ChannelCorrection(Hypothesis):
             table,
             candidate or deletion.candidate,
             len(numbers),
+            is_fitted=is_fitted,
             deletion=deletion,
             hypothesis=hypothesis,
             correct=correct,
@@ -228,7 +235,7 @@ class ChannelCorrection(Hypothesis):
             return None, fits
         stds = tuple(score.std for score in scores)
         confirmed = replace(
-            ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate),
+            ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate, is_fitted=True),
             is_beyond_prior=self.is_beyond_prior,
             required=self.required,
         )
@@ -236,7 +243,13 @@ class ChannelCorrection(Hypothesis):
             return confirmed, fits
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
         return Hypothesis(
-            fault, "left out", mask_channel(deletion.channel), confirmed.table, deletion.candidate, len(numbers)
+            fault,
+            "left out",
+            deletion.correction,
+            confirmed.table,
+            deletion.candidate,
+            len(numbers),
+            is_fitted=True,
         ), fits
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from sprung.campaign import Campaign
-from sprung.estimation import FitResult, autocorrelation_inflation
+from sprung.estimation import FitResult
 from sprung.faults.fault_scores import HYPOTHESES, FaultScore, score_faults
 from sprung.faults.high_pass import NEGLIGIBLE as NEGLIGIBLE_CORNER
 from sprung.faults.high_pass import CornerScores, score_corners
@@ -62,7 +62,7 @@ def consistency_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResu
     gain = max((score.gain for score in relevant if not score.is_beyond_prior), default=0.0)
     # What the residuals would gain says nothing of a sensor that is further off than is stated.
     is_far_off = any(score.is_beyond_prior and score.gain > score.required for score in relevant)
-    correlation = max(residual_autocorrelation(decays, fit), 1.0)
+    correlation = float(fit.autocorrelation_inflation.max())
     required = max(SIGNIFICANT, SHARE * table.misfit(noise))
     # That drops differ has been allowed for in what all corners gain together.
     together = (
@@ -87,11 +87,6 @@ def score_faults_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitRes
     tuple of FaultScore
     """
     return tuple(sorted(_scores(campaign, decays, fit)[0], key=lambda score: score.gain, reverse=True))
-
-
-def residual_autocorrelation(decays: Sequence[FreeDecay], fit: FitResult) -> float:
-    """Return the largest factor by which autocorrelation of the residuals enlarges the variance of their mean."""
-    return float(autocorrelation_inflation(fit.residuals, [decay.rate for decay in decays]).max())
 
 
 def _scores(

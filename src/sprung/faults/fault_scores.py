@@ -175,12 +175,20 @@ def _changes(
         if sensor.position is not None:
             for axis, row in enumerate(_along(sensor, fit.names)):
                 yield ("position", sensor.channel, axis, 0), of_channel(row @ modes.accelerations)
-    for number, name in enumerate(at.loads):
-        for item, piece in enumerate(loads[name].items):
-            for axis in (0, 1) if piece.position is not None else ():
-                forces = np.zeros_like(modes.accelerations[:, :, None])
-                forces[number, :, 0] = _moved(loads[name], item, axis, heights, fit) @ modes.accelerations[number]
-                yield ("load-position", name, axis, item), at.differentiate_response(forces)
+    places: list[_Labels] = [
+        ("load-position", name, axis, item)
+        for name in at.loads
+        for item, piece in enumerate(loads[name].items)
+        for axis in ((0, 1) if piece.position is not None else ())
+    ]
+    if places:
+        load, coordinate, mode = modes.accelerations.shape
+        forces = np.zeros((load, coordinate, len(places), mode), dtype=np.complex128)
+        for change, (_, name, axis, item) in enumerate(places):
+            number = at.loads.index(name)
+            forces[number, :, change] = _moved(loads[name], item, axis, heights, fit) @ modes.accelerations[number]
+        readings = at.differentiate_response(forces)
+        yield from ((labels, readings[:, :, [change]]) for change, labels in enumerate(places))
 
 
 def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
@@ -194,11 +202,11 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
 
 def _moved(load: Load, item: int, axis: int, heights: Heights, fit: FitResult) -> Real:
     """Return the change of M per metre that an item is moved; shape (coordinate, coordinate)."""
-    sides = []
-    for step in (-_NUDGE, _NUDGE):
+    elements = []
+    for side in (-1, 1):
+        step = side * _NUDGE
         x, y, z = load.items[item].position or (0.0, 0.0, 0.0)
         place = (x + step * (axis == 0), y + step * (axis == 1), z + step * (axis == 2))
         there = replace(load.items[item], position=place)
-        model = LinearModel.of(list(there.elements(heights)), fit.names)
-        sides.append(model.matrices(fit.values).M)
-    return (sides[1] - sides[0]) / (2 * _NUDGE)
+        elements += [replace(element, factor=side * element.factor) for element in there.elements(heights)]
+    return LinearModel.of(elements, fit.names).matrices(fit.values).M / (2 * _NUDGE)

@@ -41,8 +41,8 @@ class Hypothesis:
         The recording that is left out altogether; None where none is.
     is_specific
         Whether it says what is wrong, not only where.
-    is_rough
-        Whether the residuals are those of one step from far away, which a fit may leave much smaller.
+    is_fitted
+        Whether the residuals are those of a fit, and not only predicted.
     score_gain
         What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
     is_beyond_prior
@@ -59,7 +59,7 @@ class Hypothesis:
     free: int = 0
     recording: str | None = None
     is_specific: bool = True
-    is_rough: bool = False
+    is_fitted: bool = False
     score_gain: float = 0.0
     is_beyond_prior: bool = False
     required: float = SIGNIFICANT
@@ -87,7 +87,7 @@ class Hypothesis:
         if self.remedy != "corrected":
             return self, 0
         candidate = isolation.fit(self.correction, self.candidate.fit)
-        return replace(self, table=candidate.table, candidate=candidate, is_rough=False, score_gain=0.0), 1
+        return replace(self, table=candidate.table, candidate=candidate, is_fitted=True, score_gain=0.0), 1
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:  # noqa: ARG002 (one form for all)
         """Return the hypothesis with its numbers where the scores of a better fit have them, and the correction by the change.

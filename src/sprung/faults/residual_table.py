@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import FitResult
-from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
+from sprung.preprocess import FreeDecay, estimate_sensor_noise
 from sprung.selection import required_gain
 from sprung.vehicle import is_of_sensor
 
@@ -174,12 +174,11 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
-    left = optimum.residuals
-    noise = estimate_sensor_noise(decays, pool_moments(left))
+    noise = estimate_sensor_noise(decays, optimum.residual_moments)
     few = noise.samples < _FEW
     variance = noise.variance
     if few.any():
-        differences = [np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left]
+        differences = [np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in optimum.residuals]
         variance = np.where(few, np.sum(differences, axis=0) / 6 / samples, variance)
     level = np.sqrt(variance + noise.added)
     level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)

@@ -55,6 +55,8 @@ class Setup:
         By name: parameters and derived quantities, the wheelbase among them.
     heights
         By their keys in a campaign file: above the ground, m, as far as they were measured.
+    motion_ratio
+        Travel of springs and dampers per travel of their wheels, dimensionless, as far as the campaign file states it.
     sensors, loads
         As the campaign file describes them.
     model
@@ -80,6 +82,7 @@ class Setup:
     files: tuple[SourceFile, ...] = ()
     software: dict[str, str]
     test: TestRecord = field(default_factory=TestRecord)
+    motion_ratio: dict[str, KnownValue] = field(default_factory=dict)
 
 
 def setup_of(
@@ -113,6 +116,7 @@ def setup_of(
         files=campaign.files,
         software=dict(software_versions()),
         test=campaign.test,
+        motion_ratio=dict(campaign.motion_ratio),
     )
 
 

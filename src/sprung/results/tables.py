@@ -8,7 +8,7 @@ from sprung.estimation import ModeEstimate
 from sprung.results.records import SensorEstimate, TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
-from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, PARAMETERS, WHEEL_LOADS
+from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, MOTION_RATIOS, PARAMETERS, WHEEL_LOADS
 
 TRACE_TITLE = "How the result was reached"
 """Title of the trace wherever it is shown."""
@@ -20,6 +20,7 @@ _DERIVED = {
     "I_xx_roll_axis": "roll inertia of the sprung mass about the roll axis",
     "wheelbase": "front axle to rear axle",
     **{name: quantity.meaning for name, quantity in CHARACTERISTICS.items()},
+    **{quantity: meaning for _, quantity, meaning in MOTION_RATIOS.values()},
     **WHEEL_LOADS,
 }
 """Meaning of each derived quantity."""

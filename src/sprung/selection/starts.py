@@ -13,7 +13,15 @@ from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import ENGINE, TERMS
-from sprung.vehicle import NEUTRAL, Rows, coordinates, is_nuisance, nonlinear_elements, with_separate_tracks
+from sprung.vehicle import (
+    NEUTRAL,
+    LinearModel,
+    Rows,
+    coordinates,
+    is_nuisance,
+    nonlinear_elements,
+    with_separate_tracks,
+)
 
 Real = NDArray[np.float64]
 
@@ -149,13 +157,14 @@ def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float
     if term != ENGINE:
         return [structure]
     variants = [replace(structure, engine_mounting=mounting) for mounting in mountings_of(own["a"] + own["b"])]
-    return [variant for variant in variants if has_positive_masses(variant, own)]
+    # They differ in their values alone: one compilation of the equations of motion serves all.
+    return [variant for variant in variants if has_positive_masses(structure.linear_models, start_values(variant, own))]
 
 
-def has_positive_masses(structure: ModelStructure, own: Mapping[str, float]) -> bool:
-    """Whether the fit of a structure begins with a vehicle of which every part has mass."""
-    start = np.array(list(start_values(structure, own).values()))
-    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in structure.linear_models.values())
+def has_positive_masses(models: Mapping[str, LinearModel], values: Mapping[str, float]) -> bool:
+    """Whether every part of a vehicle has mass, by the parameters of its equations of motion, SI."""
+    masses = [model.matrices([values[name] for name in model.names]).M for model in models.values()]
+    return all(np.linalg.eigvalsh(M)[0] > 0 for M in masses)
 
 
 def thinned(decays: Sequence[FreeDecay], rate: float, duration: float) -> tuple[list[FreeDecay], float]:

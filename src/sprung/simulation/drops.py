@@ -145,4 +145,8 @@ def simulate(
         np.random.default_rng(seed),
         displacements if sensor_errors else None,
     )
-    return campaign if file is None else replace(campaign, identification=file.identification, test=file.test)
+    return (
+        campaign
+        if file is None
+        else replace(campaign, identification=file.identification, test=file.test, motion_ratio=file.motion_ratio)
+    )

@@ -3,13 +3,14 @@
 from sprung.vehicle.characteristics import (
     CHARACTERISTICS,
     DERIVED,
+    MOTION_RATIOS,
     WHEEL_LOADS,
     Characteristic,
     evaluate_quantity,
     wheel_loads,
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
-from sprung.vehicle.curves import FORCE_CURVES, CurveElements, ForceCurveKind
+from sprung.vehicle.curves import FORCE_CURVES, CurveElements
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -68,6 +69,7 @@ __all__ = [
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
     "LOAD_MASS",
+    "MOTION_RATIOS",
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
@@ -88,7 +90,6 @@ __all__ = [
     "Element",
     "ElementInput",
     "Finite",
-    "ForceCurveKind",
     "Heights",
     "Item",
     "LinearLaw",

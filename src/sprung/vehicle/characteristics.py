@@ -138,6 +138,21 @@ DERIVED: Mapping[str, Characteristic] = {
 }
 """Those that a campaign may state as known beforehand, by the names it gives them."""
 
+
+MOTION_RATIOS: Mapping[str, tuple[str, str, str]] = {
+    f"{part}_{name}": (
+        f"{letter}_s{axle}",
+        f"{letter}_s{axle}_at_{part}",
+        f"{part} rate at each {name} {part}: {letter}_s{axle} over the squared motion ratio",
+    )
+    for part, letter in (("spring", "k"), ("damper", "c"))
+    for name, axle in _AXLES.items()
+}
+"""Motion ratios, travel of a spring or damper per travel of its wheel, by the names that a campaign gives them.
+
+Each with the rate at the wheel, and with name and meaning of that at the spring or damper.
+"""
+
 WHEEL_LOADS: Mapping[str, str] = {
     "front_wheel_load": "static load of each front wheel of the empty vehicle",
     "rear_wheel_load": "static load of each rear wheel of the empty vehicle",

@@ -7,45 +7,27 @@ its half-width is stated beside that of the damper.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.elements import Element, NonlinearElement
+from sprung.vehicle.elements import Element, LinearLaw, NonlinearElement
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.kinematics import Row
 
 Array = NDArray[np.float64]
 
 
-class ForceCurveKind(NamedTuple):
-    """Which elements a force curve adds up.
-
-    Attributes
-    ----------
-    parameter
-        Name of the linear rate: the curve is that of its row.
-    law
-        Law of the linear elements: the argument of a ``damper`` is the rate, of a ``spring`` the travel.
-    unit
-        Unit of the argument.
-    """
-
-    parameter: str
-    law: Literal["damper", "spring"]
-    unit: str
-
-
-FORCE_CURVES: Mapping[str, ForceCurveKind] = {
-    "damper_front": ForceCurveKind("c_sf", "damper", "m/s"),
-    "damper_rear": ForceCurveKind("c_sr", "damper", "m/s"),
-    "spring_front": ForceCurveKind("k_sf", "spring", "m"),
-    "spring_rear": ForceCurveKind("k_sr", "spring", "m"),
-    "tyre_front": ForceCurveKind("k_tf", "spring", "m"),
-    "tyre_rear": ForceCurveKind("k_tr", "spring", "m"),
+FORCE_CURVES: Mapping[str, tuple[str, LinearLaw]] = {
+    "damper_front": ("c_sf", "damper"),
+    "damper_rear": ("c_sr", "damper"),
+    "spring_front": ("k_sf", "spring"),
+    "spring_rear": ("k_sr", "spring"),
+    "tyre_front": ("k_tf", "spring"),
+    "tyre_rear": ("k_tr", "spring"),
 }
-"""Every force curve by its name in a result."""
+"""Every force curve by its name in a result: the linear rate on whose row it is, and the law of the linear elements."""
 
 
 class CurveElements(NamedTuple):
@@ -53,8 +35,8 @@ class CurveElements(NamedTuple):
 
     Attributes
     ----------
-    kind
-        What the curve is a function of.
+    law
+        Of the linear elements: the force of a ``damper`` is a function of the rate, that of a ``spring`` of the travel.
     rows
         The row at each wheel.
     linear, nonlinear
@@ -63,7 +45,7 @@ class CurveElements(NamedTuple):
         Elements of these wheels whose force depends on a memory.
     """
 
-    kind: ForceCurveKind
+    law: LinearLaw
     rows: tuple[Row, ...]
     linear: tuple[Element, ...]
     nonlinear: tuple[NonlinearElement, ...]
@@ -80,19 +62,19 @@ class CurveElements(NamedTuple):
         linear, nonlinear
             Elements of the vehicle.
         """
-        kind = FORCE_CURVES[name]
-        rows = _rows_of(kind.parameter, linear, nonlinear)
+        parameter, law = FORCE_CURVES[name]
+        rows = _rows_of(parameter, linear, nonlinear)
         # Friction acts at the spring, and is stated with the damper.
-        rubbing = [*rows, *_rows_of(kind.parameter.replace("c_s", "k_s"), linear, nonlinear)]
+        rubbing = [*rows, *_rows_of(parameter.replace("c_s", "k_s"), linear, nonlinear)]
         return cls(
-            kind,
+            law,
             tuple(rows),
-            tuple(element for element in linear if element.law == kind.law and _is_on(element.row, rows)),
+            tuple(element for element in linear if element.law == law and _is_on(element.row, rows)),
             tuple(element for element in nonlinear if not element.law.has_memory and _is_on(element.row, rows)),
             tuple(
                 element
                 for element in nonlinear
-                if kind.law == "damper" and element.law.has_memory and _is_on(element.row, rubbing)
+                if law == "damper" and element.law.has_memory and _is_on(element.row, rubbing)
             ),
         )
 
@@ -154,7 +136,7 @@ class CurveElements(NamedTuple):
 
     def _nonlinear_force(self, names: Sequence[str], values: Array, x: Array) -> tuple[Array, Array]:
         zero = np.zeros_like(x)
-        travel, rate = (zero, x) if self.kind.law == "damper" else (x, zero)
+        travel, rate = (zero, x) if self.law == "damper" else (x, zero)
         force, gradient = _sum(self.nonlinear, names, values, ElementInput(travel, rate, zero, zero))
         rest = ElementInput(*np.zeros((4, 1)))
         force_at_rest, gradient_at_rest = _sum(self.nonlinear, names, values, rest)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Literal, NamedTuple
 
 from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
@@ -179,6 +180,7 @@ NEUTRAL: Mapping[str, float] = {
 """Values with which an extra has no effect; the others of its parameters then have none either."""
 
 
+@cache
 def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Return the names of the parameters of a model, in the order of `PARAMETERS`.
 
@@ -249,6 +251,7 @@ def is_nuisance(name: str) -> bool:
     return name.startswith(LOAD_MASS) or is_of_sensor(name)
 
 
+@cache
 def separate_track_names(name: str) -> tuple[str, ...]:
     """Return the names of a parameter in a model with separate half-distances of springs and dampers.
 
