@@ -48,12 +48,18 @@ class Truth(NamedTuple):
 def true_parameters(car: RealCar) -> dict[str, float]:
     """Return a car's parameters by their names in results, SI; of terms only those that the car has."""
     found = car.parameters
+    branch = (car.zener[0] * car.k_sf, car.zener[1] * car.k_sr)
     pairs = {
         "k_a": car.anti_roll,
         "c_t": car.tyre_damping,
         "F_": car.friction,
         "r_": tuple(x if x != 1 else 0.0 for x in car.rebound),
         "k_d": tuple(x if np.isfinite(x) else 0.0 for x in car.mount),
+        "k_z": branch,
+        "c_z": tuple(rate * time for rate, time in zip(branch, car.relaxation, strict=True)),
+        "v_k": tuple(x if np.isfinite(x) else 0.0 for x in car.knee),
+        "q_": tuple(x if x != 1 else 0.0 for x in car.slope),
+        "e_": tuple(1 / x for x in car.column),
     }
     for name, pair in pairs.items():
         found |= {f"{name}{axle}": value for axle, value in zip("fr", pair, strict=True) if value}
@@ -71,7 +77,12 @@ def rows_of(test: RealTest) -> list[Row]:
 
 
 def record(tests: Sequence[RealTest], duration: float = DURATION) -> list[tuple[sprung.Campaign, Truth]]:
-    """Record campaigns; all drops of cars with small angles are followed at once.
+    """Record campaigns and read them; arguments as for `simulate_recordings`."""
+    return [(campaign_of(truth.test, values), truth) for values, truth in simulate_recordings(tests, duration)]
+
+
+def simulate_recordings(tests: Sequence[RealTest], duration: float = DURATION) -> list[tuple[list[Real], Truth]]:
+    """Return the recordings of campaigns, each (channel, time), m/s²; drops with small angles are followed at once.
 
     Parameters
     ----------
@@ -92,7 +103,7 @@ def record(tests: Sequence[RealTest], duration: float = DURATION) -> list[tuple[
             assert all_small is not None  # noqa: S101 (this test is one of those that were followed)
             motion = all_small.of_rows(slice(first, first + len(mine)))
             first += len(mine)
-        found.append((_campaign(test, mine, motion), _truth(test, motion)))
+        found.append((_recordings(test, mine, motion), _truth(test, motion)))
     return found
 
 
@@ -106,16 +117,10 @@ def _truth(test: RealTest, motion: Motion) -> Truth:
     return Truth(test, tuple(one * motion.step for one in last), fastest)
 
 
-def _campaign(test: RealTest, rows: Sequence[Row], motion: Motion) -> sprung.Campaign:
-    random = test.random
-    axles = [mass + WEIGHING * z for mass, z in zip(test.car.axle_masses, random.standard_normal(2), strict=True)]
-    height = 0.55 if test.cg_height is None else test.cg_height
-    items = tuple(
-        Item(mass=one.mass, position=(one.x, one.y, round(height, 2)), inertia=one.inertia) for one in test.items
-    )
-    drops = []
-    for i, ((loaded, wheels), row) in enumerate(zip(test.drops, rows, strict=True)):
-        values = recorded(
+def _recordings(test: RealTest, rows: Sequence[Row], motion: Motion) -> list[Real]:
+    random = np.random.default_rng([test.own_seed, 1])
+    return [
+        recorded(
             row.car,
             test.sensors,
             motion,
@@ -124,13 +129,37 @@ def _campaign(test: RealTest, rows: Sequence[Row], motion: Motion) -> sprung.Cam
             noise=NOISE,
             random=random,
             filtered=test.filtered,
-            cg_height=height,
+            cg_height=_cg_height(test),
             slaps=test.slaps,
         )
+        for i, row in enumerate(rows)
+    ]
+
+
+def _cg_height(test: RealTest) -> float:
+    return 0.55 if test.cg_height is None else test.cg_height
+
+
+def campaign_of(test: RealTest, recordings: Sequence[Real]) -> sprung.Campaign:
+    """Return the campaign of a test; the axles are weighed with an error.
+
+    Parameters
+    ----------
+    test
+        What was recorded.
+    recordings
+        Of each drop, (channel, time), m/s².
+    """
+    errors = WEIGHING * np.random.default_rng([test.own_seed, 2]).standard_normal(2)
+    axles = zip(("front", "rear"), np.array(test.car.axle_masses) + errors, strict=True)
+    height = round(_cg_height(test), 2)
+    items = tuple(Item(mass=one.mass, position=(one.x, one.y, height), inertia=one.inertia) for one in test.items)
+    channels = tuple(one.channel for one in test.sensors)
+    drops = []
+    for (loaded, wheels), values in zip(test.drops, recordings, strict=True):
         load = LOADED if loaded else EMPTY
         label = f"{load}_{_LABELS[FIVE.index(wheels)] if wheels in FIVE else '_'.join(wheels)}"
         drop = Drop(file=f"{label}.csv", load=load, wheels=wheels, height=test.height)
-        channels = tuple(one.channel for one in test.sensors)
         drops.append(drop.with_recording(Recording(name=label, channels=channels, values=values, start=0.0, rate=RATE)))
     return sprung.Campaign(
         name=f"{test.kind} {test.seed}",
@@ -141,7 +170,5 @@ def _campaign(test: RealTest, rows: Sequence[Row], motion: Motion) -> sprung.Cam
         drops=tuple(drops),
         loads=(Load(name=EMPTY), Load(name=LOADED, items=items)),
         wheelbase=KnownValue(test.car.wheelbase),
-        known={
-            f"{axle}_axle_mass": KnownValue(mass, WEIGHING) for axle, mass in zip(("front", "rear"), axles, strict=True)
-        },
+        known={f"{axle}_axle_mass": KnownValue(float(mass), WEIGHING) for axle, mass in axles},
     )

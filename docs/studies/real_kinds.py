@@ -111,9 +111,9 @@ class RealTest:
     wheel_height: float | None = None
 
     @property
-    def random(self) -> np.random.Generator:
-        """Where noise and errors of weighing come from."""
-        return np.random.default_rng([crc32(self.kind.encode()), self.seed, 1])
+    def own_seed(self) -> int:
+        """Seed of its noise and of its errors of weighing."""
+        return crc32(f"{self.kind} {self.seed}".encode())
 
 
 class Draw:

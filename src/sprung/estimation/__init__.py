@@ -19,7 +19,15 @@ from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
-from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
+from sprung.estimation.starts import (
+    USUAL_ENGINE,
+    USUAL_MOUNT,
+    USUAL_MOUNTING,
+    USUAL_RELAXATION,
+    Mounting,
+    mountings_of,
+    usual_rubber,
+)
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
@@ -32,7 +40,9 @@ __all__ = [
     "STARTS",
     "UNNAMED",
     "USUAL_ENGINE",
+    "USUAL_MOUNT",
     "USUAL_MOUNTING",
+    "USUAL_RELAXATION",
     "ClosedFormObjective",
     "Coordinates",
     "Correlation",
@@ -78,5 +88,6 @@ __all__ = [
     "shape_of",
     "to_estimates",
     "uncertainty_of",
+    "usual_rubber",
     "wald_test",
 ]

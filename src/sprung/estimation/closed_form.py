@@ -102,9 +102,7 @@ class ClosedFormObjective:
             from sprung.estimation.matrix_exponential import MatrixExponentialAt  # noqa: PLC0415 (hardly ever needed)
 
             return MatrixExponentialAt(self, self.models, self.sensors, values, weights)
-        sums = tuple(
-            ExponentialSums.of(batch, values, modes.poles, modes.right, modes.shapes) for batch in self.batches
-        )
+        sums = tuple(ExponentialSums.of(batch, values, modes) for batch in self.batches)
         return ClosedFormAt(self, values, weights, modes, sums)
 
 

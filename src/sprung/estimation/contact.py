@@ -102,7 +102,7 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
 def _static_compression(model: LinearModel, values: Real) -> Real:
     """Return how far the standing vehicle compresses its tyres, m, shape (wheel,)."""
     matrices = model.matrices(values)
-    return np.asarray(np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY)[WHEELS_AT])
+    return matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)[WHEELS_AT]
 
 
 def _landing(decay: FreeDecay, fit: FitResult, drop: int) -> int:

@@ -220,9 +220,10 @@ def _reached(
     lowest, highest = np.full((2, len(rows)), np.inf), np.full((2, len(rows)), -np.inf)
     for drop, decay in enumerate(optimum.decays):
         motion = optimum.motion(drop, 0, decay.samples)
-        n = compiled.shape[1]
-        X = motion[:n] + models[decay.load].sag(optimum.values)[:, None]
-        both = np.stack([compiled @ X, compiled @ motion[n : 2 * n]])
+        model = models[decay.load]
+        velocities = model.linear.velocities(optimum.values)
+        X = motion[: compiled.shape[1]] + model.sag(optimum.values)[:, None]
+        both = np.stack([compiled @ X, compiled @ velocities @ motion[: velocities.shape[1]]])
         lowest, highest = np.minimum(lowest, both.min(axis=2)), np.maximum(highest, both.max(axis=2))
     for limits in np.stack([lowest, highest]).transpose(2, 1, 0).tolist():
         yield tuple(limits[0]), tuple(limits[1])

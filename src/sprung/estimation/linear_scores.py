@@ -18,9 +18,6 @@ from sprung.vehicle import LinearModel, Sensor, separate_track_names, uncertaint
 
 Real = NDArray[np.float64]
 
-_LARGEST_STEP = 1.0
-"""Largest Newton step of a coordinate, dimensionless, that an estimate without a fit takes."""
-
 Score = tuple[float, dict[str, float]]
 """The gain in twice the log-likelihood, to second order; and estimates by one Newton step, SI, by name."""
 
@@ -67,8 +64,7 @@ def score_linear_terms(
             scores = {}
             for term, parameters in candidates.items():
                 own = [list(brought).index(name) for name in parameters]
-                step = np.clip(test.joint_values(own) / coordinates.derivatives(u), -_LARGEST_STEP, _LARGEST_STEP)
-                estimates = coordinates.values(u + step)
+                estimates = coordinates.extrapolated(u, test.joint_values(own) / coordinates.derivatives(u))
                 scores[term] = (
                     test.gain(own),
                     {name: float(estimates[i]) for name, i in zip(parameters, own, strict=True)},
@@ -102,7 +98,7 @@ def score_linear_term(
     models, sensors, known
         As for `fit_linear`, of the larger one.
     starts
-        Its parameters, SI, where it equals the fitted smaller one, in each of several ways.
+        Its parameters, SI, where it equals the fitted smaller one, or nearly so, in each of several ways.
 
     Returns
     -------
@@ -119,7 +115,9 @@ def score_linear_term(
         iterate = Iterate(u, objective.at(problem.priors.coordinates.values(u), fit.weights))
         information, gradient, null_space = problem.system(iterate)
         test = score_test(information, gradient, 0)
-        step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
-        estimates = problem.priors.coordinates.values(u + step)
-        scores.append((test.gain(), dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))))
+        estimates = problem.priors.coordinates.extrapolated(u, null_space @ test.joint_values())
+        # A term whose parameters have no meaning without it is there a little, which the fitted model has not to bear.
+        lost = max(problem.cost(iterate) - fit.problem.cost(fit.iterate), 0.0)
+        named = dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))
+        scores.append((test.gain() - lost, named))
     return tuple(scores)

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle import LinearModel, Readout
+from sprung.vehicle import LinearModel, Readout, highest_derivatives
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -28,16 +28,19 @@ class ModalSolution:
     Attributes
     ----------
     poles
-        λ, 1/s, shape (..., mode): two for every coordinate.
+        λ, 1/s, shape (..., mode): two for every coordinate with mass, one for every other.
     right
         Eigenvectors of the state matrix as columns, shape (..., mode, mode).
     shapes
         s: reading of each channel per unit of modal amplitude, shape (..., channel, mode).
+    coordinates
+        Number of coordinates.
     """
 
     poles: Complex
     right: Complex
     shapes: Complex
+    coordinates: int
 
     @cached_property
     def left(self) -> Complex:
@@ -47,12 +50,12 @@ class ModalSolution:
     @property
     def displacements(self) -> Complex:
         """Displacements of the coordinates in each mode, shape (..., coordinate, mode)."""
-        return self.right[..., : self.right.shape[-1] // 2, :]
+        return self.right[..., : self.coordinates, :]
 
     @property
     def velocities(self) -> Complex:
         """Velocities of the coordinates in each mode, shape (..., coordinate, mode)."""
-        return self.right[..., self.right.shape[-1] // 2 :, :]
+        return self.displacements * self.poles[..., None, :]
 
     @property
     def accelerations(self) -> Complex:
@@ -62,8 +65,9 @@ class ModalSolution:
     @property
     def condition(self) -> float:
         """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
-        # Displacements and velocities are made comparable by a mean frequency.
-        balance = np.repeat([float(np.abs(self.poles).mean()), 1.0], self.right.shape[-1] // 2)
+        # Displacements and velocities are made comparable by a usual frequency.
+        balance = np.ones(self.right.shape[-1])
+        balance[: self.coordinates] = float(np.median(np.abs(self.poles)))
         right = _sizes(self.right * balance[:, None], axis=-2)
         return float((right * _sizes(self.left / balance, axis=-1)).max())
 
@@ -89,7 +93,7 @@ def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolu
     poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
     S = sensors.at(values)
     S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
-    modes = ModalSolution(poles, right, right)
+    modes = ModalSolution(poles, right, right, S.shape[-1])
     shapes = S @ modes.accelerations
     return replace(modes, shapes=shapes * turns_of_delays(sensors, values, poles) if sensors.has_delays else shapes)
 
@@ -129,7 +133,8 @@ def differentiate_modes(
     D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What remains is
     D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones.
 
-    With motions v, λv, λ²v of a mode, dA V is -M⁻¹ (dM λ²v + dC λv + dK v).
+    With motions v, λv, λ²v of a mode, dA V is -L⁻¹ (dM λ²v + dC λv + dK v), L being the coefficients of the highest
+    derivatives: M, and for coordinates without mass C.
     """
     motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
     # The rows of dM, dC and dK beside each other: (..., the rows of every parameter, 3 coordinate).
@@ -170,7 +175,8 @@ def differentiate_response(
     *lead, n, changes, m = forces.shape
     channels = len(sensors.positions)
     S = np.broadcast_to(sensors.at(values), (*lead, channels, n))
-    both = np.concatenate([modes.left[..., n:], S], axis=-2) @ -np.linalg.inv(model.matrices(values).M)
+    left = modes.left[..., highest_derivatives(n, model.massive)]
+    both = np.concatenate([left, S], axis=-2) @ -np.linalg.inv(model.matrices(values).leading)
     changed = (both @ forces.reshape(*lead, n, -1)).reshape(*lead, m + channels, changes, m)
     D, of_sensors = changed[..., :m, :, :], changed[..., m:, :, :]
 

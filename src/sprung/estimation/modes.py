@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
-from sprung.vehicle import LinearModel, Readout, Sensor
-from sprung.vibration import Mode, largest_entry, name_modes, paper_name
+from sprung.vehicle import LinearModel, Readout, Sensor, coordinates
+from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
 
 Real = NDArray[np.float64]
 
@@ -43,8 +43,9 @@ class ModeEstimate:
     damping_ratio, damping_ratio_std
         -re/|pole|, dimensionless; 1 for a real pole.
     motion
-        How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
-        imaginary part of each, the largest 1; empty in results of older versions, or where the mode is from the records alone.
+        How the coordinates with mass move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one:
+        real and imaginary part of each, the largest 1; empty in results of older versions, or where the mode is from the
+        records alone.
     paper_name
         What Table 3 of the paper calls it; None where it has no such mode, or an older sprung wrote the result.
     """
@@ -85,19 +86,21 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
         for direction in fit.undetermined.T
         for way in (-1, 1)
     ]
-    upper = np.flatnonzero(modes.poles.imag >= 0)
-    named = name_modes([Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper])
+    vibrations = is_vibration(modes.poles, modes.displacements, model.massive)
+    upper = np.flatnonzero((modes.poles.imag >= 0) & vibrations)
+    found = [Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper]
+    named = name_modes(found, coordinates=coordinates(fit.names))
     left = set(upper.tolist())
     estimates = []
     for mode in named:
         nearest = min(left, key=lambda j: abs(modes.poles[j] - mode.pole))
         left.remove(nearest)
-        estimates.append(_estimate(mode, slopes[:, nearest], away, fit))
+        estimates.append(_estimate(mode, slopes[:, nearest], away, fit, model.massive))
     return tuple(estimates)
 
 
 def _estimate(
-    mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.complex128]], fit: FitStatistics
+    mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.complex128]], fit: FitStatistics, massive: int
 ) -> ModeEstimate:
     pole, size = mode.pole, abs(mode.pole)
     of_size = (np.conj(pole) * slope).real / size
@@ -117,7 +120,7 @@ def _estimate(
         damped_frequency=mode.damped_frequency,
         damping_ratio=mode.damping_ratio,
         damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
-        motion=_largest_one(mode.shape),
+        motion=_largest_one(mode.shape[:massive]),
         paper_name=paper_name(mode.name),
     )
 

@@ -18,7 +18,7 @@ from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
-from sprung.vehicle import ElementInput, NonlinearModel
+from sprung.vehicle import ElementInput, NonlinearModel, highest_derivatives
 from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
@@ -93,8 +93,9 @@ def _of_drop(
     derivatives = derivatives[..., np.tile(upper, 2)] * np.tile(np.where(poles.imag > 0, 2.0, 1.0), 2)
     state, motion = fit.states[drop], fit.motion(drop, 0, decay.samples)[:, ::every]
     neutral = np.array([values[name] for name in model.names])
-    force_rows = -np.linalg.solve(model.linear.matrices(neutral).M, model.forces.rows.at(neutral).T)
-    participation, direct = left[:, len(motion) // 2 :] @ force_rows, at.sensor_rows @ force_rows
+    force_rows = -np.linalg.solve(model.linear.matrices(neutral).leading, model.forces.rows.at(neutral).T)
+    driven = highest_derivatives(len(force_rows), model.linear.massive)
+    participation, direct = left[:, driven] @ force_rows, at.sensor_rows @ force_rows
 
     # What was fitted are sums of exponentials, and the samples of these are all that is needed of them.
     waves = exponentials(poles * step, samples)
@@ -121,7 +122,7 @@ def _of_drop(
     among_sampled = np.tensordot(weights, sampled @ np.swapaxes(sampled, 1, 2), 1)
     products = np.block([[among_sums, across], [across.T, among_sampled]])
     own_state = np.arange(len(by_parameter), len(sums))
-    products[own_state, own_state] += initial_state_prior_std(len(state)) ** -2.0
+    products[own_state, own_state] += initial_state_prior_std(len(force_rows), len(state)) ** -2.0
     # The initial state is eliminated.
     kept = np.delete(np.arange(len(products) - 1), own_state)
     order = np.concatenate([kept, own_state])
@@ -137,8 +138,8 @@ def _unit_forces(
     Parameters without any force are left out: what has no stiffness has no clearance that matters.
     """
     rows = model.forces.rows.at(values)
-    X, V = np.split(motion, 2)
-    travel, rate = (rows @ (X + model.sag(values)[:, None])).T, (rows @ V).T
+    travel = (rows @ (motion[: rows.shape[1]] + model.sag(values)[:, None])).T
+    rate = (rows @ model.linear.velocities(values) @ motion).T
     way = np.diff(travel, axis=0, prepend=travel[:1] - step * rate[:1])
     for law, chosen, _, positions in model.forces.laws:
         felt = ElementInput(*(part[:, chosen] for part in (travel, rate, way, np.zeros_like(travel))))

@@ -19,6 +19,12 @@ _FINEST = 1e-6
 """Smallest relative uncertainty of a statement: with a finer one, rounding would hide the records."""
 
 
+_LARGEST_STEP = 1.0
+"""Of a logarithm, to which a linearisation may be followed."""
+
+_STIFFEST = 1e-9
+"""Part of the reciprocal of a rate in series, to which it is followed towards zero."""
+
 _TRAVEL = 0.03
 """m of travel at which a spring's force is the size of a friction that is large."""
 
@@ -50,6 +56,10 @@ class Coordinates:
     def _logarithmic(self) -> NDArray[np.bool_]:
         return np.array([PARAMETERS[name].positive for name in self.names])
 
+    @cached_property
+    def _in_series(self) -> NDArray[np.bool_]:
+        return np.array([PARAMETERS[name].in_series for name in self.names])
+
     def values(self, u: Real) -> Real:
         """Parameter values, SI, at coordinates."""
         values = self.references * u
@@ -69,6 +79,28 @@ class Coordinates:
         u = values / self.references
         u[self._logarithmic] = np.log(values[self._logarithmic])
         return u
+
+    def extrapolated(self, u: Real, step: Real) -> Real:
+        """Return the parameter values, SI, that a step of the coordinates leads to from far away.
+
+        A logarithm changes by one at the most. The motion of a vehicle is nearly linear in the reciprocal of the rate of a
+        spring in series, which is followed to any value.
+        """
+        values = self.values(u + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP))
+        softer = np.maximum(1.0 - step, _STIFFEST)
+        return np.where(self._in_series, self.values(u) / softer, values)
+
+    def distance(self, u: Real, name: str, value: float) -> float:
+        """Return how far the coordinate of a parameter is from that of another value, SI.
+
+        For the rate of a spring in series it is the distance of the reciprocals, to first order.
+        """
+        own = self.names.index(name)
+        if self._in_series[own]:
+            return float(self.values(u)[own] / value - 1.0)
+        values = self.values(u)
+        values[own] = value
+        return float(u[own] - self.from_values(values)[own])
 
 
 @dataclass(frozen=True, eq=False)

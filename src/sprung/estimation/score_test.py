@@ -209,8 +209,7 @@ def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) ->
             row[names.index(value)] = -1.0
             away[i] = row @ u
         else:
-            constrained = np.where(np.arange(len(names)) == own, value, fit.values)
-            away[i] = u[own] - coordinates.from_values(constrained)[own]
+            away[i] = coordinates.distance(u, name, value)
     equations = fit.problem.normal_equations(fit.iterate)
     along = rows @ equations.directions
     covariance = along @ np.linalg.solve(equations.information, along.T)

@@ -18,6 +18,14 @@ BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 USUAL_ENGINE = 0.1
 """Part of the sprung mass that an engine on mounts usually is."""
 
+USUAL_MOUNT = 12.0
+"""Rate of a usual damper mount over that of the spring."""
+
+USUAL_RELAXATION = 0.15
+"""Part of a spring rate that usual rubber adds in fast motion."""
+
+_RELAXATION_TIMES = {"f": 0.05, "r": 0.07}  # s; unlike, as branches that do next to nothing would have equal poles
+
 _MOUNTED = (7.0, 10.0, 14.0)  # Hz of an engine on its mounts
 
 HOP_FREQUENCIES = (8.5, 12.0, 18.0)
@@ -67,6 +75,27 @@ def mountings_of(wheelbase: float) -> list[Mounting]:
     list of Mounting
     """
     return [Mounting(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
+
+
+def usual_rubber(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the usual rubber of the suspension of a vehicle: damper mounts, and Zener branches beside its springs.
+
+    Parameters
+    ----------
+    values
+        Its spring rates, SI, by name.
+
+    Returns
+    -------
+    dict
+        Parameters, SI, by name.
+    """
+    rates = {axle: values[f"k_s{axle}"] for axle in "fr"}
+    return {
+        **{f"k_d{axle}": USUAL_MOUNT * rate for axle, rate in rates.items()},
+        **{f"k_z{axle}": USUAL_RELAXATION * rate for axle, rate in rates.items()},
+        **{f"c_z{axle}": _RELAXATION_TIMES[axle] * USUAL_RELAXATION * rate for axle, rate in rates.items()},
+    }
 
 
 class VehicleSize(NamedTuple):
@@ -142,6 +171,7 @@ def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool 
             values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
         values |= {"a": a, "b": b}
         values |= NEUTRAL
+        values |= usual_rubber(values)
         for mounting in mountings_of(wheelbase) if engine else [USUAL_MOUNTING]:
             values |= mounting.engine(USUAL_ENGINE * sprung_mass)
             yield values | {name: one.value for name, one in known.items() if name in values}

@@ -25,6 +25,7 @@ from sprung.vehicle import (
     Readout,
     Stepper,
     Trajectory,
+    coordinates,
     differentiate_motions,
     integrate_near,
     segments_of,
@@ -150,11 +151,18 @@ class TimeSteppingObjective:
         """How many numbers {X, Ẋ} has."""
         return self.models_by_kind[0].state_size
 
+    @property
+    def coordinates(self) -> int:
+        """How many numbers X has."""
+        return len(coordinates(self.models_by_kind[0].names))
+
     @cached_property
     def prior_std(self) -> Real:
         """Prior standard uncertainty of initial states and memories, shape (state + memory,)."""
         memories = self.models_by_kind[0].forces.memories
-        return np.concatenate([initial_state_prior_std(self.state_size), np.full(memories, _MEMORY_STD)])
+        return np.concatenate(
+            [initial_state_prior_std(self.coordinates, self.state_size), np.full(memories, _MEMORY_STD)]
+        )
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> TimeSteppingObjective:
         """Return the objective of other decays; those of the same recordings start from the same states, others from rest."""
@@ -208,15 +216,14 @@ class TimeSteppingObjective:
             {X, Ẋ} and memories, shape (drop, state + memory).
         """
         forces, size = self.models_by_kind[0].forces, self.state_size
-        X, V, memories = np.split(states + self.sag(values), [size // 2, size], axis=1)
+        X, V, memories = np.split(states + self.sag(values), [self.coordinates, size], axis=1)
         impossible = np.abs(memories) > _MOST_MEMORY
         if not impossible.any():
             return None
         rows = forces.rows.at(values)
         travel = X @ rows.T
-        answer = forces.evaluate(
-            forces.parameters(values), ElementInput(travel, V @ rows.T, np.zeros_like(travel), memories)
-        )
+        still = np.zeros_like(travel)  # a friction's force is its memory, whatever the rate
+        answer = forces.evaluate(forces.parameters(values), ElementInput(travel, still, still, memories))
         lost = np.where(impossible, memories, 0.0) * answer.by_memory @ rows[forces.memory_rows]
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]

@@ -8,7 +8,7 @@ from dataclasses import replace
 from sprung.estimation import score_linear_term, score_linear_terms, score_nonlinear_terms, score_stepped_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import neutral_values, start_variants, states_by_coordinates, stop_gaps, thinned
-from sprung.selection.terms import BUMP_STOP, ENGINE, TERMS
+from sprung.selection.terms import BUMP_STOP, TERMS
 from sprung.vehicle import separate_track_names
 
 _RATE, _DURATION = 250.0, 3.0
@@ -49,7 +49,10 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
 
 def _linear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
     """Score linear terms: those beside the same coordinates in one evaluation, where modal coordinates exist."""
-    at_once, scores = _of_same_coordinates(search, [term for term in terms if term != ENGINE]), Scores()
+    at_once, scores = (
+        _of_same_coordinates(search, [term for term in terms if not TERMS[term].adds_coordinates]),
+        Scores(),
+    )
     for term in terms:
         if term in at_once:
             scores[term] = at_once[term]

@@ -17,9 +17,9 @@ from sprung.vehicle import (
     NEUTRAL,
     LinearModel,
     Rows,
-    coordinates,
     is_nuisance,
     nonlinear_elements,
+    state_variables,
     with_separate_tracks,
 )
 
@@ -78,10 +78,10 @@ def states_by_coordinates(states: Real, before: Sequence[str], names: Sequence[s
     before, names
         Parameters of the structure that they belong to, and of the other.
     """
-    own, new = coordinates(before), coordinates(names)
-    X, V, memories = np.split(states, [len(own), 2 * len(own)], axis=1)
-    chosen = [own.index(coordinate) if coordinate in own else 0 for coordinate in new]
-    return np.hstack([X[:, chosen], V[:, chosen], memories])
+    own, new = state_variables(before), state_variables(names)
+    x, memories = np.split(states, [len(own)], axis=1)
+    chosen = [own.index(variable) if variable in own else own.index(("z_s", variable[1])) for variable in new]
+    return np.hstack([x[:, chosen], memories])
 
 
 def fit_structure(
@@ -134,7 +134,7 @@ def fit_structure(
         start=start,
         states=states,
         enough=enough,
-        near=states.shape[1] > 2 * len(coordinates(structure.names)),
+        near=states.shape[1] > len(state_variables(structure.names)),
         beginning_only=beginning_only,
         most=most,
         tilting=structure.gravity_leakage,
@@ -164,7 +164,8 @@ def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float
 def has_positive_masses(models: Mapping[str, LinearModel], values: Mapping[str, float]) -> bool:
     """Whether every part of a vehicle has mass, by the parameters of its equations of motion, SI."""
     masses = [model.matrices([values[name] for name in model.names]).M for model in models.values()]
-    return all(np.linalg.eigvalsh(M)[0] > 0 for M in masses)
+    massive = next(iter(models.values())).massive
+    return all(np.linalg.eigvalsh(M[:massive, :massive])[0] > 0 for M in masses)
 
 
 def thinned(decays: Sequence[FreeDecay], rate: float, duration: float) -> tuple[list[FreeDecay], float]:

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sprung.estimation import USUAL_ENGINE
+from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
 from sprung.selection.description import TermDescription, Values
 from sprung.selection.structure import ModelStructure
-from sprung.vehicle import LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, parameters_of_term
+from sprung.vehicle import COORDINATES, LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, coordinates, parameters_of_term
 
 StartValues = Callable[[Values, ModelStructure], Values]
 """From the fitted vehicle and the structure to fit, values of some parameters."""
@@ -38,6 +38,15 @@ _STROKE = 0.05
 
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
+
+
+_ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
+
+_ALMOST_NONE = 0.01
+"""Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
+
+_RIGID = 1e5
+"""Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +93,11 @@ class ModelTerm:
     def is_linear(self) -> bool:
         """Whether mass, damping and stiffness matrices carry it."""
         return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+
+    @property
+    def adds_coordinates(self) -> bool:
+        """Whether a vehicle with it moves in more coordinates than the paper's."""
+        return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
 
     def parameters(self, tracks: Tracks) -> tuple[str, ...]:
         """Return the parameters that a model with the term has and one without it has not, or not free.
@@ -243,6 +257,38 @@ TERMS: Mapping[str, ModelTerm] = {
             explains_all=True,
             undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
             first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
+        ),
+        ModelTerm(
+            "damper-mount",
+            _of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
+            typical=1 / USUAL_MOUNT,
+            spread=2.0,
+            negligible=0.003,
+            description=TermDescription(
+                "{axle} dampers on rubber mounts of {0}",
+                ((lambda p, axle: p[f"k_d{axle}"] / 1e3, "N/mm"),),
+                again="{axle} ones on mounts of {0}",
+                neutral=None,
+            ),
+            undefined=lambda own, _: {f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+            first=lambda own, _: usual_rubber(own),
+        ),
+        ModelTerm(
+            "zener",
+            _of_axles(lambda p, axle: p[f"k_z{axle}"] / p[f"k_s{axle}"]),
+            typical=USUAL_RELAXATION,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "{axle} springs stiffer by {0} in fast motion, which relaxes in {1}",
+                (
+                    (lambda p, axle: 100 * p[f"k_z{axle}"] / p[f"k_s{axle}"], "%"),
+                    (lambda p, axle: 1e3 * p[f"c_z{axle}"] / p[f"k_z{axle}"], "ms"),
+                ),
+                again="{axle} ones by {0}, which relaxes in {1}",
+            ),
+            undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
+            first=lambda own, _: usual_rubber(own),
         ),
         ModelTerm(
             FRICTION,

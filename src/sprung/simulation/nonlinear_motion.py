@@ -142,7 +142,8 @@ def _models(
 
 def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) -> Array:
     """Return the rest position on blocks, X from the empty vehicle at rest on the ground, shape (coordinate,)."""
-    forces, K = model.forces, model.linear.matrices(values).K
+    forces, matrices = model.forces, model.linear.matrices(values)
+    K = matrices.K
     G, offsets = forces.rows.at(values), model.travel_offsets(values)[0]
     tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
     load = -K @ model.sag(values)
@@ -155,7 +156,7 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
         zero = np.zeros_like(travel)
         found = forces.evaluate(forces.parameters(values), ElementInput(travel, zero, zero, np.zeros(forces.memories)))
         residual = K @ X + load + G.T @ found.force
-        X = X - np.linalg.solve(K + (G.T * found.by_travel) @ G, residual)
+        X = X - matrices._replace(K=K + (G.T * found.by_travel) @ G).deflection(residual)
         if np.abs(residual).max() < 1e-9 * np.abs(load).max():
             break
     return X
@@ -180,7 +181,10 @@ def _sample(
     motions = []
     for drop, which in enumerate(kind.tolist()):
         X, forces = trajectory.states[::every, drop].T, trajectory.forces[::every, drop].T
-        acceleration = models[which].accelerations(values)[0] @ np.vstack([X, forces, np.ones((1, X.shape[1]))])
-        sag = models[which].sag(values)[:, None]
-        motions.append(Motion(X[: len(sag)] - sag, X[len(sag) :], acceleration))
+        highest = models[which].accelerations(values)[0] @ np.vstack([X, forces, np.ones((1, X.shape[1]))])
+        sag, m = models[which].sag(values)[:, None], models[which].linear.massive
+        # Coordinates without mass have velocities by the equations of motion, and accelerations that nothing measures.
+        velocity = np.vstack([X[len(sag) :], highest[m:]])
+        acceleration = np.vstack([highest[:m], np.gradient(highest[m:], step, axis=1)])
+        motions.append(Motion(X[: len(sag)] - sag, velocity, acceleration))
     return motions

@@ -25,9 +25,9 @@ from sprung.vehicle.elements import (
 )
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
+from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, state_variables
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
-from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows
+from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
@@ -122,6 +122,7 @@ __all__ = [
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "highest_derivatives",
     "integrate_near",
     "is_nuisance",
     "is_of_sensor",
@@ -133,6 +134,8 @@ __all__ = [
     "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",
+    "state_matrix",
+    "state_variables",
     "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",

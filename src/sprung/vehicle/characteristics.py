@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.kinematics import HEAVE, WHEELS_AT
+from sprung.vehicle.kinematics import WHEELS_AT
 from sprung.vehicle.model import LinearModel
 
 Real = NDArray[np.float64]
@@ -212,13 +212,13 @@ def wheel_loads(model: LinearModel, values: Real) -> tuple[Real, Real]:
     gradient
         By each parameter, SI, shape (4, parameter).
     """
-    M, _, K = model.matrices(values)
+    matrices, heave = model.matrices(values), model.heave
+    M, _, K = matrices
     dM, _, dK = model.slopes(values)
-    heave = HEAVE[: len(M)]
     # Heave strains nothing but the tyres: K times it is their rates.
     tyres, tyre_slopes = (K @ heave)[WHEELS_AT], (dK @ heave)[:, WHEELS_AT]
-    sag = np.linalg.solve(K, STANDARD_GRAVITY * M @ heave)
-    sag_slopes = np.linalg.solve(K, (STANDARD_GRAVITY * dM @ heave - dK @ sag).T).T
+    sag = matrices.deflection(STANDARD_GRAVITY * M @ heave)
+    sag_slopes = matrices.deflection((STANDARD_GRAVITY * dM @ heave - dK @ sag).T).T
     loads = tyres * sag[WHEELS_AT]
     gradient = tyre_slopes * sag[WHEELS_AT] + tyres * sag_slopes[:, WHEELS_AT]
     return loads, gradient.T

@@ -169,9 +169,4 @@ def _rows_of(parameter: str, linear: Sequence[Element], nonlinear: Sequence[Nonl
 
 
 def _is_on(row: Row, rows: Sequence[Row]) -> bool:
-    return any(
-        np.array_equal(row.constant, other.constant)
-        and row.slopes.keys() == other.slopes.keys()
-        and all(np.array_equal(slope, other.slopes[name]) for name, slope in row.slopes.items())
-        for other in rows
-    )
+    return any(row.constant == other.constant and row.slopes == other.slopes for other in rows)

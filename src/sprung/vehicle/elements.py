@@ -23,7 +23,9 @@ LinearLaw = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 """Whether springs and dampers of an axle share their half-distance."""
 
-LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine")
+LINEAR_EXTRAS = (
+    "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount", "zener",
+)  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
@@ -156,7 +158,7 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
         if "friction" in extras:
             elements.append(NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), spring))
         if "rebound" in extras:
-            damper = travel(station, "damper")
+            damper = _damper_travel(station, tracks, extras)
             elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
         if "progressive" in extras:
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
@@ -193,6 +195,13 @@ def _travels(tracks: Tracks, extras: Collection[str]) -> Callable[[Wheel, Linear
     return lambda station, law: kinematics.travel(station, distances[station[0], law], shares.get((station[0], law)))
 
 
+def _damper_travel(station: Wheel, tracks: Tracks, extras: Collection[str]) -> Row:
+    """Return the travel of the damper itself at a wheel station: behind a mount it is a coordinate of its own."""
+    if "damper-mount" in extras:
+        return kinematics.behind_mount(station)
+    return _travels(tracks, extras)(station, "damper")
+
+
 def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
     asymmetric, travel = "asymmetry" in extras, _travels(tracks, extras)
     yield Element("mass", "m_s", kinematics.bounce(asymmetric))
@@ -202,7 +211,7 @@ def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element
         axle, side = station[0], kinematics.side(station)
         rates: list[tuple[LinearLaw, str, Row]] = [
             ("spring", f"k_s{axle}", travel(station, "spring")),
-            ("damper", f"c_s{axle}", travel(station, "damper")),
+            ("damper", f"c_s{axle}", _damper_travel(station, tracks, extras)),
             ("spring", f"k_t{axle}", kinematics.wheel(station)),
         ]
         yield Element("mass", f"m_u{axle}", kinematics.wheel(station))
@@ -212,6 +221,12 @@ def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element
                 yield Element(law, f"d_{rate.replace('_', '')}", row, side)
         if "tyre-damping" in extras:
             yield Element("damper", f"c_t{axle}", kinematics.wheel(station))
+        if "damper-mount" in extras:
+            yield Element("spring", f"k_d{axle}", travel(station, "damper") - kinematics.behind_mount(station))
+        if "zener" in extras:
+            branch = kinematics.behind_branch(station)
+            yield Element("spring", f"k_z{axle}", travel(station, "spring") - branch)
+            yield Element("damper", f"c_z{axle}", branch)
     if "gravity" in extras:
         yield Element("spring", "w_h", kinematics.roll(), -1.0)
         yield Element("spring", "w_h", kinematics.pitch(), -1.0)

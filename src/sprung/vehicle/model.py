@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
 from sprung.vehicle.elements import Element, LinearLaw
-from sprung.vehicle.kinematics import HEAVE, Row, coordinates
+from sprung.vehicle.kinematics import Row, coordinates, heave, massive_coordinates
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,15 @@ class Matrices(NamedTuple):
     Attributes
     ----------
     M, C, K
-        Mass (kg, kg m²), damping (N s/m, N s, N m s) and stiffness (N/m, N, N m), shape (..., n, n).
+        Mass (kg, kg m²), damping (N s/m, N s, N m s) and stiffness (N/m, N, N m), shape (..., n, n). The coordinates without
+        mass are the last; their rows of M are zero.
+
+    Notes
+    -----
+    The state is {X, Ẋ}, displacements of all n coordinates, then velocities of the m that move a mass: n + m numbers. The
+    highest derivatives are the accelerations of the m coordinates with mass and the velocities of the others. They follow from
+    the equations of motion, as M has no entry for the others: with L, the first m columns of M and the others of C, they are
+    -L⁻¹ (K X + C Ẋ). The poles of A are the finite eigenvalues of λ² M + λ C + K.
     """
 
     M: Array
@@ -36,18 +44,58 @@ class Matrices(NamedTuple):
 
     @property
     def state(self) -> Array:
-        """State matrix A of eq. (4), shape (..., 2n, 2n), for the state {X, Ẋ}."""
-        n = self.M.shape[-1]
-        A = np.zeros((*self.M.shape[:-2], 2 * n, 2 * n))
-        A[..., :n, n:] = np.eye(n)
-        A[..., n:, :] = -np.linalg.inv(self.M) @ np.concatenate([self.K, self.C], axis=-1)
-        return A
+        """State matrix A of eq. (4), shape (..., n + m, n + m), for the state {X, Ẋ}."""
+        forces = np.concatenate([self.K, self.C[..., : self.massive]], axis=-1)
+        return state_matrix(-np.linalg.inv(self.leading) @ forces, self.massive)
 
     @property
-    def weight(self) -> Array:
-        """Mass on each coordinate, kg, or kg m on an angle: M times a unit of heave; shape (..., n)."""
-        weight: Array = self.M @ HEAVE[: self.M.shape[-1]]
-        return weight
+    def massive(self) -> int:
+        """Number of coordinates that move a mass, m."""
+        return int(np.any(self.M, axis=tuple(range(self.M.ndim - 1))).sum())
+
+    @property
+    def leading(self) -> Array:
+        """Coefficients of the highest derivatives, L, shape (..., n, n)."""
+        m = self.massive
+        return self.M if m == self.M.shape[-1] else np.concatenate([self.M[..., :m], self.C[..., m:]], axis=-1)
+
+    def deflection(self, force: ArrayLike) -> Array:
+        """Return the displacements under constant forces, X, of the shape of the forces, (n,) or (n, force).
+
+        A coordinate without mass and without stiffness stays where it is.
+        """
+        is_free = (np.diag(self.K) == 0) & ~self.M.any(axis=0)
+        K = self.K + np.diag(is_free.astype(float))
+        return np.asarray(np.linalg.solve(K, np.asarray(force, dtype=float)), dtype=np.float64)
+
+
+def state_matrix(highest: ArrayLike, massive: int) -> Array:
+    """Return the matrix A of Ẏ = A Y from the rows of the highest derivatives.
+
+    Parameters
+    ----------
+    highest
+        Accelerations of the coordinates with mass, then velocities of the others, as functions of the state {X, Ẋ} and of any
+        inputs; shape (..., n, n + m + input).
+    massive
+        Number of coordinates that move a mass, m.
+
+    Returns
+    -------
+    ndarray
+        Shape (..., n + m, n + m + input).
+    """
+    highest = np.asarray(highest, dtype=float)
+    n = highest.shape[-2]
+    A = np.zeros((*highest.shape[:-2], n + massive, highest.shape[-1]))
+    A[..., :massive, n : n + massive] = np.eye(massive)
+    A[..., highest_derivatives(n, massive), :] = highest
+    return A
+
+
+def highest_derivatives(n: int, massive: int) -> NDArray[np.int64]:
+    """Return the positions in the state of what the highest derivatives of n coordinates are the rates of, shape (n,)."""
+    return np.concatenate([np.arange(n, n + massive), np.arange(massive, n)])
 
 
 @shown
@@ -73,12 +121,14 @@ class Rows:
             If a row depends on a parameter that is not listed.
         """
         index = {name: i for i, name in enumerate(names, start=1)}
-        size = len(coordinates(names))
-        affine = np.zeros((len(rows), size, 1 + len(names)))
+        position = {coordinate: i for i, coordinate in enumerate(coordinates(names))}
+        affine = np.zeros((len(rows), len(position), 1 + len(names)))
         for row, block in zip(rows, affine, strict=True):
-            block[:, 0] = row.constant[:size]
-            for name, slope in row.slopes.items():
-                block[:, index[name]] = slope[:size]
+            for name, shape in (("", row.constant), *row.slopes.items()):
+                for coordinate, value in shape.items():
+                    # Rows of sensors and loads hold whatever the body may do, also what this vehicle's does not.
+                    if coordinate in position:
+                        block[position[coordinate], index[name] if name else 0] = value
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
@@ -204,20 +254,39 @@ class LinearModel:
         return Matrices(*np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0))
 
     def accelerations(self, values: ArrayLike) -> tuple[Array, Array]:
-        """Return the lower half of the state matrix of eq. (4) and its derivatives.
+        """Return the highest derivatives as functions of the state {X, Ẋ}, and their derivatives; see `Matrices`.
 
         Returns
         -------
-        lower
-            [-M⁻¹K, -M⁻¹C], shape (n, 2n): accelerations from {X, Ẋ}.
+        highest
+            Accelerations of the coordinates with mass, then velocities of the others, shape (n, n + m): the lower half of the
+            state matrix of eq. (4), [-M⁻¹K, -M⁻¹C], where all have mass.
         slopes
-            Its derivative by each parameter, shape (parameter, n, 2n).
+            Its derivative by each parameter, shape (parameter, n, n + m).
         """
         M, C, K = self.matrices(values)
         dM, dC, dK = self.slopes(values)
-        lower: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C])), dtype=float)
-        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ lower + np.concatenate([dK, dC], axis=2)), dtype=float)
-        return lower, slopes
+        m = self.massive
+        leading = np.hstack([M[:, :m], C[:, m:]])
+        by_leading = np.concatenate([dM[..., :m], dC[..., m:]], axis=2)
+        highest: Array = -np.asarray(np.linalg.solve(leading, np.hstack([K, C[:, :m]])), dtype=float)
+        right = by_leading @ highest + np.concatenate([dK, dC[..., :m]], axis=2)
+        slopes: Array = -np.asarray(np.linalg.solve(leading, right), dtype=float)
+        return highest, slopes
+
+    def velocities(self, values: ArrayLike) -> Array:
+        """Return the velocities of all coordinates as functions of the state {X, Ẋ}, shape (n, n + m)."""
+        return state_matrix(self.accelerations(values)[0], self.massive)[: len(self.heave)]
+
+    @cached_property
+    def massive(self) -> int:
+        """Number of coordinates that move a mass, m; they are the first."""
+        return len(massive_coordinates(self.names))
+
+    @cached_property
+    def heave(self) -> Array:
+        """A unit of heave: everything moving up alike, in the coordinates; M times this is the weight over gravity, (n,)."""
+        return np.array(heave(self.names))
 
     @cached_property
     def _flat(self) -> Array:

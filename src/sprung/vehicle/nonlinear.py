@@ -19,9 +19,9 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.elements import Element, NonlinearElement
 from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
-from sprung.vehicle.kinematics import coordinates
+from sprung.vehicle.kinematics import state_variables
 from sprung.vehicle.load import EMPTY, Load
-from sprung.vehicle.model import LinearModel, Matrices, Rows
+from sprung.vehicle.model import LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -225,12 +225,12 @@ class NonlinearModel:
     @property
     def state_size(self) -> int:
         """Length of the state {X, Ẋ}."""
-        return 2 * len(coordinates(self.names))
+        return len(state_variables(self.names))
 
     def sag(self, values: Array) -> Array:
         """Return the static deflection by the load's weight, without the nonlinear elements: X, shape (coordinate,)."""
-        weight = self.load.matrices(values).weight * self.gravity
-        return -np.asarray(np.linalg.solve(self.linear.matrices(values).K, weight), dtype=np.float64)
+        weight = self.load.matrices(values).M @ self.linear.heave * self.gravity
+        return -self.linear.matrices(values).deflection(weight)
 
     def travel_offsets(self, values: Array) -> tuple[Array, Array]:
         """Return the travel of each row where the empty vehicle rests, m, and its derivatives.
@@ -245,34 +245,38 @@ class NonlinearModel:
         M, C, K = (
             loaded - load for loaded, load in zip(self.linear.matrices(values), self.load.matrices(values), strict=True)
         )
-        dM, dC, dK = (
+        dM, _, dK = (
             loaded - load for loaded, load in zip(self.linear.slopes(values), self.load.slopes(values), strict=True)
         )
-        empty, slopes = Matrices(M, C, K), Matrices(dM, dC, dK)
-        sag = -np.linalg.solve(empty.K, empty.weight * self.gravity)
-        sag_slopes = -np.linalg.solve(empty.K, (slopes.weight * self.gravity + slopes.K @ sag).T)
+        empty, gravity = Matrices(M, C, K), self.linear.heave * self.gravity
+        sag = -empty.deflection(M @ gravity)
+        sag_slopes = -empty.deflection((dM @ gravity + dK @ sag).T)
         G, row_slopes, weightless = self.forces.rows.at(values), self.forces.rows.slopes, self.forces.weightless
         return weightless * (G @ sag), weightless[:, None] * (row_slopes @ sag + G @ sag_slopes)
 
     def accelerations(self, values: Array) -> tuple[Array, Array]:
-        """Return the accelerations as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
+        """Return the highest derivatives as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
 
         Returns
         -------
         rows
-            Shape (n, 2n + row + 1) with n coordinates, the forces being those of the rows.
+            Accelerations of the m coordinates with mass, then velocities of the others, shape (n, n + m + row + 1) with n
+            coordinates.
         slopes
-            By each parameter, shape (parameter, n, 2n + row + 1).
+            By each parameter, shape (parameter, n, n + m + row + 1).
         """
         M, C, K = self.linear.matrices(values)
         dM, dC, dK = self.linear.slopes(values)
-        weight = self.load.matrices(values).weight * self.gravity
-        weight_slopes = self.load.slopes(values).weight * self.gravity
+        m, gravity = self.linear.massive, self.linear.heave * self.gravity
+        leading = np.hstack([M[:, :m], C[:, m:]])
+        by_leading = np.concatenate([dM[..., :m], dC[..., m:]], axis=2)
+        weight, weight_slopes = self.load.matrices(values).M @ gravity, self.load.slopes(values).M @ gravity
         G = self.forces.rows.at(values)
         G_slopes = np.moveaxis(self.forces.rows.slopes, 1, 0)
-        rows: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C, G.T, weight[:, None]])), dtype=float)
-        right = np.concatenate([dK, dC, np.swapaxes(G_slopes, 1, 2), weight_slopes[:, :, None]], axis=2)
-        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ rows + right), dtype=float)
+        inputs = np.hstack([K, C[:, :m], G.T, weight[:, None]])
+        rows: Array = -np.asarray(np.linalg.solve(leading, inputs), dtype=float)
+        right = np.concatenate([dK, dC[..., :m], np.swapaxes(G_slopes, 1, 2), weight_slopes[:, :, None]], axis=2)
+        slopes: Array = -np.asarray(np.linalg.solve(leading, by_leading @ rows + right), dtype=float)
         return rows, slopes
 
     def element_inputs(self, values: Array) -> tuple[Array, Array]:
@@ -281,18 +285,24 @@ class NonlinearModel:
         Returns
         -------
         rows
-            First the travels, then the rates; shape (2 row, 2n + row + 1) with n coordinates.
+            First the travels, then the rates; shape (2 row, state + row + 1).
         slopes
-            By each parameter, shape (parameter, 2 row, 2n + row + 1).
+            By each parameter, shape (parameter, 2 row, state + row + 1).
         """
         G, G_slopes = self.forces.rows.at(values), np.moveaxis(self.forces.rows.slopes, 1, 0)
         offsets, offset_slopes = self.travel_offsets(values)
-        number, n = G.shape
-        rows = np.zeros((2 * number, 2 * n + number + 1))
+        (number, n), m = G.shape, self.linear.massive
+        # The velocities of coordinates without mass follow from displacements and forces.
+        highest, highest_slopes = self.accelerations(values)
+        velocities, velocity_slopes = np.zeros_like(highest), np.zeros_like(highest_slopes)
+        velocities[:m, n : n + m] = np.eye(m)
+        velocities[m:], velocity_slopes[:, m:] = highest[m:], highest_slopes[:, m:]
+        rows = np.zeros((2 * number, highest.shape[1]))
         slopes = np.zeros((len(values), *rows.shape))
         for whole, part, offset in ((rows, G, offsets), (slopes, G_slopes, offset_slopes.T)):
-            whole[..., :number, :n] = whole[..., number:, n : 2 * n] = part
+            whole[..., :number, :n] = part
             whole[..., :number, -1] = offset
+        rows[number:], slopes[:, number:] = G @ velocities, G_slopes @ velocities + G @ velocity_slopes
         return rows, slopes
 
     def step(self, values: Array, length: float) -> tuple[Array, Array]:
@@ -309,27 +319,26 @@ class NonlinearModel:
         -------
         step
             [Φ, B, B', d]: the state at the end is Φ x + B u + B' u' + d, from the state x at the start and the forces u at the
-            start and u' at the end; shape (2n, 2n + 2 row + 1) with n coordinates.
+            start and u' at the end; shape (state, state + 2 row + 1).
         slopes
-            By each parameter, shape (parameter, 2n, 2n + 2 row + 1).
+            By each parameter, shape (parameter, state, state + 2 row + 1).
         """
         rows, slopes = self.accelerations(values)
-        n = len(rows)
-        inputs = rows.shape[1] - 2 * n
-        held, size = 2 * n + inputs, 2 * (n + inputs)
+        state = self.state_size
+        inputs = rows.shape[1] - state
+        held, size = state + inputs, state + 2 * inputs
         # The inputs run linearly over the step: their increments over it are states of their own.
         generator = np.zeros((size, size))
-        generator[:n, n : 2 * n] = length * np.eye(n)
-        generator[n : 2 * n, :held] = length * rows
-        generator[2 * n : held, held:] = np.eye(inputs)
+        generator[:state, :held] = length * state_matrix(rows, self.linear.massive)
+        generator[state:held, held:] = np.eye(inputs)
         change = np.zeros((len(slopes), size, size))
-        change[:, n : 2 * n, :held] = length * slopes
+        change[:, highest_derivatives(len(rows), self.linear.massive), :held] = length * slopes
         # The exponential of [[Z, dZ], [0, Z]] holds that of Z and its derivative (Van Loan, IEEE TAC 23, 1978).
         block = np.zeros((len(slopes), 2 * size, 2 * size))
         block[:, :size, :size] = block[:, size:, size:] = generator
         block[:, :size, size:] = change
         exponential = np.asarray(expm(block))
-        return _as_step(exponential[0, : 2 * n, :size]), _as_step(exponential[:, : 2 * n, size:])
+        return _as_step(exponential[0, :state, :size]), _as_step(exponential[:, :state, size:])
 
 
 def _as_step(rows: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import cache
 from typing import Literal, NamedTuple
@@ -22,6 +23,8 @@ class Parameter(NamedTuple):
     """Whether it must be positive; the others may be zero."""
     signed: bool = False
     """Whether it may be negative."""
+    in_series: bool = False
+    """Whether it is the rate of a spring in series with another element, which is without effect where it is infinite."""
 
 
 LOAD_MASS = "mass of "
@@ -135,6 +138,16 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "k_e": Parameter("N/m", "engine mounts, all together", True),
         "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
         "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
+        "k_df": Parameter(
+            "N/m", "rate of the rubber mount in series with the damper, each front wheel", True, in_series=True
+        ),
+        "k_dr": Parameter(
+            "N/m", "rate of the rubber mount in series with the damper, each rear wheel", True, in_series=True
+        ),
+        "k_zf": Parameter("N/m", "spring rate that relaxes, beside the spring of each front wheel", True, False),
+        "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
+        "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
+        "c_zr": Parameter("N s/m", "damping in series with the relaxing spring rate, each rear wheel", True),
         "F_f": Parameter("N", "dry friction, each front wheel", True, False),
         "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
         "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
@@ -160,6 +173,8 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "tyre-damping": ("c_tf", "c_tr"),
     "gravity": ("w_h",),
     "engine": ("m_e", "k_e", "c_e", "x_e"),
+    "damper-mount": ("k_df", "k_dr"),
+    "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
     "progressive": ("p_f", "p_r"),
@@ -169,13 +184,16 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 """The parameters that each extra may add; see `parameters_of_term`."""
 
-_INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e"})
+_INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"})
 """Parameters of extras without effect where the others of the extra are neutral."""
 
 _FACTORS = frozenset({"r_f", "r_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
 
 NEUTRAL: Mapping[str, float] = {
-    name: float(name in _FACTORS) for names in EXTRA_PARAMETERS.values() for name in names if name not in _INDIFFERENT
+    name: math.inf if PARAMETERS[name].in_series else float(name in _FACTORS)
+    for names in EXTRA_PARAMETERS.values()
+    for name in names
+    if name not in _INDIFFERENT
 }
 """Values with which an extra has no effect; the others of its parameters then have none either."""
 

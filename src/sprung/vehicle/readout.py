@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
-from sprung.vehicle.kinematics import pitch, roll
+from sprung.vehicle.kinematics import body_point
 from sprung.vehicle.model import Rows
 from sprung.vehicle.parameters import SENSOR_DELAY, SENSOR_GAIN, SENSOR_UNKNOWNS, SENSOR_X, SENSOR_Y
 from sprung.vehicle.sensor import Sensor
@@ -104,9 +104,10 @@ class Readout:
 
     @cached_property
     def _angles(self) -> Mapping[int, Array]:
-        """Rows of what a metre forward and a metre to the left change, for x and y where any sensor has them as unknowns."""
-        size = self.rows.affine.shape[1]
-        return {kind: row[:size] for kind, row in ((_X, -pitch().constant), (_Y, roll().constant)) if self._has[kind]}
+        """Changes of the rows by a metre forward and a metre to the left, for x and y where any sensor has them as unknowns."""
+        origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
+        changes = Rows.of([one - origin for one in moved], self.names[: self.shared]).affine[:, :, 0]
+        return {kind: change for kind, change in zip((_X, _Y), changes, strict=True) if self._has[kind]}
 
     def _placed(self, values: Array) -> Array:
         """Return the rows with their places, without gains."""

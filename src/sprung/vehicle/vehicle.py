@@ -65,6 +65,11 @@ class Vehicle:
     m_e, k_e, c_e, x_e
         Engine on mounts of its own, kg, a part of the sprung mass and of its inertias; its mounts' rate, N/m, and damping,
         N s/m; and its place, m forward of the front axle.
+    k_df, k_dr
+        Rates of the rubber mounts in series with the dampers, N/m; infinite without mounts.
+    k_zf, k_zr, c_zf, c_zr
+        :term:`Zener branch` beside each spring: a rate k_z, N/m, in series with a damping c_z, N s/m, so that k_s is the rate
+        at rest, k_s + k_z that of fast motion and c_z / k_z the relaxation time.
     cg_height, wheel_height, roll_axis_height
         Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
     name
@@ -139,6 +144,12 @@ class Vehicle:
     k_e: float = 1e6
     c_e: float = 0.0
     x_e: float = 0.0
+    k_df: float = math.inf
+    k_dr: float = math.inf
+    k_zf: float = 0.0
+    k_zr: float = 0.0
+    c_zf: float = 1e3
+    c_zr: float = 1e3
     cg_height: float | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
@@ -149,11 +160,13 @@ class Vehicle:
         for axle in "fr":
             self._resolve_places("t", axle, None, problems)
             self._resolve_places("n", axle, 1.0, problems)
+        has_mounts = "damper-mount" in self.extras
         for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
             value, parameter = getattr(self, name), PARAMETERS[name]
-            positive = parameter.positive and name not in ("c_sf", "c_sr")
+            positive = parameter.positive and (has_mounts or name not in ("c_sf", "c_sr"))
             possible = value is None or (
-                math.isfinite(value) and (value > 0 or parameter.signed or (value == 0 and not positive))
+                (math.isfinite(value) or (value == NEUTRAL.get(name) and not has_mounts))
+                and (value > 0 or parameter.signed or (value == 0 and not positive))
             )
             if not possible:
                 kind = "positive" if positive else "finite" if parameter.signed else "finite, not negative"
