@@ -18,6 +18,7 @@ from sprung.vehicle import (
     Heights,
     LinearModel,
     NonlinearModel,
+    Sensor,
     Tracks,
     ground_contact_elements,
     nonlinear_elements,
@@ -101,6 +102,12 @@ class ModelStructure:
     def wheelbase(self) -> float:
         """Wheelbase over which the body twists and bends, m: the known one, or that of the sensors."""
         return VehicleSize.of(self.known, self.campaign.sensors).wheelbase
+
+    @cached_property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Sensors of the campaign, with what their tilt adds to the uncertainty of their places where heights are known."""
+        height, sensors = self.heights.cg_height, self.campaign.sensors
+        return sensors if height is None else tuple(sensor.at_height_above(height) for sensor in sensors)
 
     @property
     def names(self) -> tuple[str, ...]:
