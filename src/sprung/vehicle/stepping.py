@@ -20,7 +20,7 @@ from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_MOST_EVALUATIONS = 8
+_MOST_EVALUATIONS = 12
 """Evaluations of the forces at the end of each step, at the most: mostly two are enough."""
 
 _SOLVED = 1e-6
@@ -208,19 +208,26 @@ class Stepper:
             What the forces add to travels and rates.
         """
         rows, memory_rows = force.shape[-1], self.forces.memory_rows
+        earlier: tuple[Array, Array] | None = None
         for left in reversed(range(_MOST_EVALUATIONS)):
             end = predicted + force @ feedback.by_force
             travel = end[..., :rows]
             given = ElementInput(travel, end[..., rows:], travel - before, memories)
             found = self.forces.evaluate(self.parameters, given)
             error = found.force - force
-            if not left or not np.abs(error).max() > _SOLVED * np.abs(found.force).max():
+            if not left or not np.abs(error).max(initial=0.0) > _SOLVED * np.abs(found.force).max(initial=0.0):
                 break
             # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
             slope = found.by_travel * feedback.own_travel + found.by_rate * feedback.own_rate
             if len(memory_rows):
                 slope[..., memory_rows] += found.by_memory * found.memory_by_travel * feedback.memory_travel
-            force = force + error / (1.0 - slope)
+            correction = error / (1.0 - slope)
+            if earlier is not None:
+                # Where a kink lies between, Newton's method may go back and forth: the secant does not.
+                passed = error * earlier[1] < 0
+                secant = error * (force - earlier[0]) / np.where(passed, earlier[1] - error, 1.0)
+                correction = np.where(passed, secant, correction)
+            earlier, force = (force, error), force + correction
         return found, travel
 
 
