@@ -15,6 +15,7 @@ from sprung.results import (
     Result,
     Setup,
     characteristics_tables,
+    damper_tables,
     meaning_of,
     other_quantities,
     ratios_table,
@@ -75,7 +76,8 @@ def curves(result: Result) -> Context | None:
         if friction
         else []
     )
-    return {"text": text, "pictures": pictures, "notes": notes} if pictures else None
+    tables = damper_tables(result.curves)
+    return {"text": text, "pictures": pictures, "tables": tables, "notes": notes} if pictures else None
 
 
 def _parameter(name: str, estimate: Estimate, half: float) -> Context:
