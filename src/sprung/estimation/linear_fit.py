@@ -116,8 +116,8 @@ def fit_linear(
         return _fit_from(problem, values, enough, most)
     size = VehicleSize.of(known, sensors)
     has_engine = "m_e" in next(iter(models.values())).names
-    usual = [vehicle | nuisance for vehicle in start_grid(size, known, has_engine)]
-    problem = problem_of(objective, known, usual[0])
+    vehicles = [vehicle | nuisance for vehicle in start_grid(size, known, has_engine)]
+    problem = problem_of(objective, known, vehicles[0])
     coordinates = problem.priors.coordinates
     nominal = {load: model.with_known(nuisance) if nuisance else model for load, model in models.items()}
     by_load = [nominal[load] for load in objective.loads]
@@ -131,9 +131,9 @@ def fit_linear(
         if len(ends) == starts or (fit.converged and _leaves_white_noise(fit)):
             return fit
     if guess:
-        usual.insert(0, _completed(guess, {**usual[0], **(direct or {})}))
-    progress(Step(f"rating {len(usual)} usual vehicles as starts"))
-    more = [coordinates.from_parameters(vehicle) for vehicle in usual]
+        vehicles.insert(0, _completed(guess, {**vehicles[0], **(direct or {})}))
+    progress(Step(f"rating {len(vehicles)} usual vehicles as starts"))
+    more = [coordinates.from_parameters(vehicle) for vehicle in vehicles]
     order = np.argsort(_costs_as_they_are(problem, objective, more), kind="stable")[: starts - len(ends)]
     for number, which in enumerate(order.tolist(), start=len(ends) + 1):
         progress(Step("fitting from a start", number, starts))

@@ -159,7 +159,7 @@ def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool 
         Values, SI, of every parameter of every linear model; the known ones hold.
     """
     for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
-        values = usual_vehicle(size, body, hop, damping) | NEUTRAL
+        values = {**usual_vehicle(size, body, hop, damping), **NEUTRAL}
         values |= usual_rubber(values)
         for mounting in mountings_of(size.wheelbase) if engine else [USUAL_MOUNTING]:
             values |= mounting.engine(USUAL_ENGINE * size.sprung_mass)

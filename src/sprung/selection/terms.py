@@ -46,8 +46,8 @@ _AIR_GROWTH = 2.3
 """Growth of an air spring's rate per compression by the height of its column: the polytropic exponent plus one."""
 
 _KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
-"""m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the width
-of its rounding as a part of the velocity."""
+"""m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the
+width of its rounding as a part of the velocity."""
 
 _REBOUND, _TYRE_DAMPING, _TYRE_GROWTH = 0.8, 0.06, 0.12
 """Usual excess of rebound over compression damping, damping of a tyre over that of the damper, and growth of its rate."""

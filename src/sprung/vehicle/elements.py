@@ -187,7 +187,7 @@ def nonlinear_elements(
             rebound, rounded = "rebound" in extras, "rounded-knee" in extras
             before = (f"c_s{axle}", *(f"r_{axle}",) * rebound, *(f"w_k{axle}",) * rounded)
             law = damper_curve(has_ratio=rebound, is_rounded=rounded)
-            damper = _damper_travel(station, tracks, extras)
+            damper = _damper_travel(station, tracks, extras, wheelbase)
             elements.append(NonlinearElement(law, (*before, f"v_k{axle}", f"q_{axle}"), damper))
         if "progressive" in extras:
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
