@@ -446,7 +446,7 @@ TERMS: Mapping[str, ModelTerm] = {
             _of_axles(lambda p, axle: p[f"w_k{axle}"] / p.get(f"v_k{axle}", _KNEE)),
             typical=0.3,
             spread=2.0,
-            negligible=0.1,
+            negligible=0.05,
             description=TermDescription(
                 "{axle} damper knees rounded over {0} on both sides",
                 ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
