@@ -112,13 +112,14 @@ def _corrected(
         fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
         decays = []
         for drop, decay in enumerate(recorded):
+            model = structure.linear_models[decay.load]
             readings = second_order_readings(
-                structure.linear_models[decay.load],
+                model,
                 structure.tracks,
                 structure.heights_of(decay.load),
                 loads[decay.load],
                 sensors,
-                fit.values,
+                fit.values[: len(model.names)],
                 fit.motion(drop, 0, decay.samples),
                 1 / decay.rate,
             )
