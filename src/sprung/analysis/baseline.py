@@ -90,7 +90,7 @@ def fit_baseline_model(
     return fit_linear(
         decays,
         structure.linear_models,
-        run.campaign.sensors,
+        structure.sensors,
         structure.known,
         start=None if run.clock_fit is None else run.clock_fit.parameters,
         guess=run.options.start,

@@ -18,7 +18,7 @@ from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
-from sprung.estimation.score_test import ScoreTest, score_added, wald_test
+from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
 from sprung.estimation.starts import (
     USUAL_ENGINE,
     USUAL_MOUNT,
@@ -75,6 +75,7 @@ __all__ = [
     "fit_nonlinear",
     "force_curves",
     "identifiable_subspace",
+    "lift_priors",
     "mode_estimates",
     "mountings_of",
     "parameters_from_matrices",

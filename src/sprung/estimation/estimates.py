@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity
+from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -127,7 +127,7 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimat
     -------
     Estimates
     """
-    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not name.startswith(LOAD_MASS)}
+    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not is_nuisance(name)}
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 

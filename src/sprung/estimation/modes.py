@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
-from sprung.vehicle import COORDINATES, LinearModel, Rows, Sensor, coordinates
+from sprung.vehicle import COORDINATES, LinearModel, Readout, Sensor, coordinates
 from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
 
 Real = NDArray[np.float64]
@@ -76,9 +76,9 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
     -------
     tuple of ModeEstimate
     """
-    rows = Rows.of([sensor.row for sensor in sensors], fit.names)
-    modes = solve_modes(model, rows, fit.values)
-    slopes = differentiate_modes(model, rows, fit.values, modes, 1.0)[0] * fit.slopes[:, None]
+    readout = Readout.of(sensors, fit.names)
+    modes = solve_modes(model, readout, fit.values)
+    slopes = differentiate_modes(model, readout, fit.values, modes, 1.0)[0] * fit.slopes[:, None]
     # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
     away = [
         np.linalg.eigvals(model.matrices(fit.moved(way * direction)).state).astype(np.complex128)

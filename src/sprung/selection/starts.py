@@ -13,7 +13,15 @@ from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import BENDING, ENGINE, OCCUPANTS, TERMS, TWIST
-from sprung.vehicle import NEUTRAL, LinearModel, Rows, nonlinear_elements, state_variables, with_separate_tracks
+from sprung.vehicle import (
+    NEUTRAL,
+    LinearModel,
+    Rows,
+    is_nuisance,
+    nonlinear_elements,
+    state_variables,
+    with_separate_tracks,
+)
 
 Real = NDArray[np.float64]
 
@@ -48,7 +56,9 @@ def neutral_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[
     values = {**NEUTRAL}
     for part in (*undefined, with_separate_tracks(own), shared, own):
         values |= part
-    return {name: values[name] for name in structure.names}
+    # What was found of the sensors, which belong to no structure, holds for any.
+    of_sensors = [name for name in own if is_nuisance(name) and name not in structure.names]
+    return {name: values[name] for name in (*structure.names, *of_sensors)}
 
 
 def start_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
@@ -113,7 +123,7 @@ def fit_structure(
     -------
     FitResult
     """
-    sensors, known = structure.campaign.sensors, structure.known
+    sensors, known = structure.sensors, structure.known
     start = start_values(structure, before.parameters)
     if not structure.is_time_stepped:
         fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough, most=most)
@@ -139,7 +149,7 @@ def fit_structure(
 def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Return compressions at which stops may be met, m, from how far a fitted vehicle moves."""
     elements = nonlinear_elements(structure.tracks, ("bump-stop",), structure.wheelbase)
-    G = Rows.of([element.row for element in elements], structure.names).at(fit.values)
+    G = Rows.of([element.row for element in elements], fit.names).at(fit.values)
     motions = (fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
     return [part * largest for part in _STOP_GAPS] if largest > 0 else []

@@ -18,6 +18,7 @@ from sprung.vehicle import (
     Heights,
     LinearModel,
     NonlinearModel,
+    Sensor,
     Tracks,
     ground_contact_elements,
     nonlinear_elements,
@@ -93,6 +94,12 @@ class ModelStructure:
     def heights_of(self, load: str) -> Heights:
         """Return the heights with the body as low as it rests under a load, by the load's name."""
         return self.heights._replace(sunk=self.sinking.get(load, 0.0))
+
+    @cached_property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Sensors of the campaign, with what their tilt adds to the uncertainty of their places where heights are known."""
+        height, sensors = self.heights.cg_height, self.campaign.sensors
+        return sensors if height is None else tuple(sensor.at_height_above(height) for sensor in sensors)
 
     @property
     def wheelbase(self) -> float:

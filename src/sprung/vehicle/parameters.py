@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cache
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
 
@@ -31,12 +31,43 @@ LOAD_MASS = "mass of "
 """First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
 
 
+class SensorUnknown(NamedTuple):
+    """What is uncertain of a sensor, and an unknown of a fit."""
+
+    quantity: Literal["gain", "x", "y", "delay"]
+    """In results."""
+    unit: str
+    """SI."""
+    meaning: str
+    """In words."""
+
+    @property
+    def prefix(self) -> str:
+        """First words of its name among the parameters of a fit, which the name of the channel follows."""
+        return f"{self.quantity} of "
+
+
+SENSOR_GAIN = SensorUnknown("gain", "1", "part by which a channel reads too much")
+"""The gain of a sensor."""
+SENSOR_X = SensorUnknown("x", "m", "how much further forward than stated a body sensor sits")
+"""The place of a sensor along the vehicle."""
+SENSOR_Y = SensorUnknown("y", "m", "how much further left than stated a body sensor sits")
+"""The place of a sensor across the vehicle."""
+SENSOR_DELAY = SensorUnknown("delay", "s", "how much later than the other channels a channel is")
+"""The delay of a sensor."""
+SENSOR_UNKNOWNS = (SENSOR_GAIN, SENSOR_X, SENSOR_Y, SENSOR_DELAY)
+"""What may be uncertain of a sensor."""
+
+
 class _Parameters(dict[str, Parameter]):
-    """The parameters by name; a name that begins with `LOAD_MASS` is the mass of a load, which each campaign names itself."""
+    """The parameters by name; masses of loads and unknowns of sensors have names of which only the first words are fixed."""
 
     def __missing__(self, name: str) -> Parameter:
         if name.startswith(LOAD_MASS):
             return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
+        for unknown in SENSOR_UNKNOWNS:
+            if name.startswith(unknown.prefix):
+                return Parameter(unknown.unit, unknown.meaning, False, False, True)
         raise KeyError(name)
 
 
@@ -249,6 +280,36 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
     other: Tracks = "shared" if tracks == "separate" else "separate"
     elsewhere = set(inboard_shares(other).values())
     return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
+
+
+def is_of_sensor(name: str) -> bool:
+    """Whether a parameter is an unknown of a sensor.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    bool
+    """
+    return name.startswith(tuple(unknown.prefix for unknown in SENSOR_UNKNOWNS))
+
+
+def is_nuisance(name: str) -> bool:
+    """Whether a parameter belongs to a load or to a sensor, not to the vehicle.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    bool
+    """
+    return name.startswith(LOAD_MASS) or is_of_sensor(name)
 
 
 @cache
