@@ -112,14 +112,13 @@ def _corrected(
         fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
         decays = []
         for drop, decay in enumerate(recorded):
-            model = structure.linear_models[decay.load]
             readings = second_order_readings(
-                model,
+                structure.linear_models[decay.load],
                 structure.tracks,
                 structure.heights_of(decay.load),
                 loads[decay.load],
                 sensors,
-                fit.values[: len(model.names)],
+                fit.values[: len(structure.names)],  # without what was found of the sensors
                 fit.motion(drop, 0, decay.samples),
                 1 / decay.rate,
             )
