@@ -11,8 +11,8 @@ import pytest
 
 import sprung
 from sprung.assessment import Verdict
-from sprung.report import report_html
-from sprung.results import Result, withhold_estimates
+from sprung.report import report_html, result_view, text_of
+from sprung.results import Result, damper_tables, withhold_estimates
 from sprung.simulation import BlockSupport, simulate_nonlinear_drops
 from sprung.vehicle import EMPTY, TABLE_1_CAR, WHEELS, Rows, Wheel
 from sprung.vehicle.kinematics import travel
@@ -83,6 +83,22 @@ def test_the_report_has_the_curves(result: Result) -> None:
     assert "Force curves" in html
     assert "front from " in html
     assert "Force curves" not in report_html(replace(result, curves={}))
+
+
+def test_damper_forces_are_tabulated_as_far_as_the_drops_reached(result: Result) -> None:
+    [table] = damper_tables(result.curves)
+    curve = result.curves["damper_front"]
+    for velocity, rebound, compression, *_ in table.rows:
+        for cell, signed in ((rebound, float(velocity)), (compression, -float(velocity))):
+            force, std = curve.at(signed)
+            if curve.reached[0] <= signed <= curve.reached[1]:
+                value, _, error = cell.partition(" ± ")
+                assert abs(float(value) - float(force)) < float(std)
+                assert float(error) == pytest.approx(float(std), rel=0.06)  # two figures
+            else:
+                assert not cell
+    assert "Damper forces" in text_of(result_view(result))
+    assert not damper_tables({})
 
 
 def test_a_rejected_result_has_no_curves(result: Result) -> None:

@@ -82,3 +82,13 @@ def test_a_law_of_the_travel_makes_no_curve_of_the_damper_on_the_same_row() -> N
     assert not damper.is_nonlinear(names, values, X)
     spring, names, values = elements("spring_front", "rebound")
     assert not spring.is_nonlinear(names, values, X)
+
+
+def test_behind_a_mount_the_curve_is_that_of_the_damper_alone() -> None:
+    found, names, values = elements("damper_front", "rebound", "damper-mount", "zener")
+    np.testing.assert_allclose(found.force(names, values, X)[0], written_out("damper_front"), rtol=1e-14)
+    assert found.is_nonlinear(names, values, X)
+    # The Zener branch relaxes: the spring's curve is that of slow motion.
+    spring, names, values = elements("spring_front", "progressive", "zener")
+    force = VALUES["k_sf"] * (X - 0.5 * VALUES["p_f"] * X**2)
+    np.testing.assert_allclose(spring.force(names, values, X)[0], force, rtol=1e-14)

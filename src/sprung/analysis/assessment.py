@@ -131,7 +131,7 @@ def _fit_report(
         model=structure.terms,
         tracks=structure.tracks,
         why=why,
-        axes=axes_of(structure.heights),
+        axes=axes_of(structure.heights, structure.assumed_heights is not None),
         since="release" if structure.unilateral_tyres else "landing",
         path=path,
         method=METHOD,

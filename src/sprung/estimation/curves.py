@@ -220,10 +220,12 @@ def _reached(
     lowest, highest = np.full((2, len(rows)), np.inf), np.full((2, len(rows)), -np.inf)
     for drop, decay in enumerate(optimum.decays):
         motion = optimum.motion(drop, 0, decay.samples)
-        model = models[decay.load]
-        velocities = model.linear.velocities(optimum.values)
-        X = motion[: compiled.shape[1]] + model.sag(optimum.values)[:, None]
-        both = np.stack([compiled @ X, compiled @ velocities @ motion[: velocities.shape[1]]])
+        model, n = models[decay.load], compiled.shape[1]
+        X = motion[:n] + model.sag(optimum.values)[:, None]
+        # A coordinate without mass has no velocity in the state, and with a nonlinear law none that is linear in it.
+        velocities = np.gradient(X, 1 / decay.rate, axis=1)
+        velocities[: model.state_size - n] = motion[n : model.state_size]
+        both = np.stack([compiled @ X, compiled @ velocities])
         lowest, highest = np.minimum(lowest, both.min(axis=2)), np.maximum(highest, both.max(axis=2))
     for limits in np.stack([lowest, highest]).transpose(2, 1, 0).tolist():
         yield tuple(limits[0]), tuple(limits[1])

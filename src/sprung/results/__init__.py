@@ -9,6 +9,7 @@ from sprung.results.setup import PriorComparison, Setup, setup_of
 from sprung.results.tables import (
     TRACE_TITLE,
     characteristics_tables,
+    damper_tables,
     derived_table,
     meaning_of,
     modes_table,
@@ -31,6 +32,7 @@ __all__ = [
     "amplitude_document",
     "characteristics_tables",
     "curve_document",
+    "damper_tables",
     "derived_table",
     "load",
     "meaning_of",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from sprung.estimation import ModeEstimate
+from sprung.estimation import ForceCurve, ModeEstimate
 from sprung.results.records import TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
@@ -39,6 +39,10 @@ _CHARACTERISTICS = (
     ("wheel hop damping ratio", "front_hop_damping", "rear_hop_damping", ""),
 )
 """Rows of the table of characteristics: what is shown, and the quantities of front axle, rear axle and whole vehicle."""
+
+
+_VELOCITIES = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2)
+"""Velocities of the table of damper forces, m/s."""
 
 
 def meaning_of(name: str) -> str:
@@ -142,6 +146,40 @@ def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tup
     headers = ("empty vehicle", "front", "rear", "whole")
     title = f"{vehicle}: masses, ride and wheel hop, ± one standard uncertainty"
     return (Table(title, headers, tuple(rows), frozenset(headers[1:])),)
+
+
+def damper_tables(curves: Mapping[str, ForceCurve]) -> tuple[Table, ...]:
+    """Return the table of damper forces at the velocities of a dynamometer, as far as the drops reached.
+
+    Parameters
+    ----------
+    curves
+        Force curves by name.
+
+    Returns
+    -------
+    tuple of Table
+        One, or none where no damper has a curve.
+    """
+    dampers = {name.removeprefix("damper_"): curve for name, curve in curves.items() if name.startswith("damper_")}
+    columns = [(axle, way, sign) for axle in dampers for way, sign in (("rebound", 1.0), ("compression", -1.0))]
+    rows = []
+    for velocity in _VELOCITIES:
+        cells = [_damper_force(dampers[axle], sign * velocity) for axle, _, sign in columns]
+        if any(cells):
+            rows.append((f"{velocity:g}", *cells))
+    if not rows:
+        return ()
+    headers = ("velocity, m/s", *(f"{axle}, {way}" for axle, way, _ in columns))
+    title = "Damper forces, N, ± one standard uncertainty, at velocities that the drops reached"
+    return (Table(title, headers, tuple(rows), frozenset(headers)),)
+
+
+def _damper_force(curve: ForceCurve, velocity: float) -> str:
+    if not curve.reached[0] <= velocity <= curve.reached[1]:
+        return ""
+    value, std = round_by_uncertainty(*map(float, curve.at(velocity)))
+    return f"{value} ± {std}" if std else value
 
 
 def _with_uncertainty(estimate: Estimate | None) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sprung.campaign import Campaign
@@ -14,6 +14,7 @@ from sprung.vehicle import (
     EXTRAS,
     LINEAR_EXTRAS,
     CarriedAt,
+    Element,
     Heights,
     LinearModel,
     NonlinearModel,
@@ -58,6 +59,10 @@ class ModelStructure:
         Mounting of an engine, where a fit begins.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
+    assumed_heights
+        Heights where the campaign does not state enough of them, as far as the recordings show them; None for no effect.
+    sinking
+        How much lower the body rests on its wheels under each load, m, by the load's name; empty where that is not considered.
     """
 
     campaign: Campaign
@@ -71,11 +76,17 @@ class ModelStructure:
     stop_gap: float = 1.0
     engine_mounting: Mounting = USUAL_MOUNTING
     carried_at: CarriedAt = "wheels"
+    assumed_heights: Heights | None = None
+    sinking: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def heights(self) -> Heights:
-        """Heights of the campaign, with the one at which the body is carried sideways."""
-        return self.campaign.heights._replace(carried_at=self.carried_at)
+        """Heights of the campaign, with the one at which the body is carried sideways, or those assumed."""
+        return self.assumed_heights or self.campaign.heights._replace(carried_at=self.carried_at)
+
+    def heights_of(self, load: str) -> Heights:
+        """Return the heights with the body as low as it rests under a load, by the load's name."""
+        return self.heights._replace(sunk=self.sinking.get(load, 0.0))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -87,23 +98,29 @@ class ModelStructure:
     @cached_property
     def linear_models(self) -> Mapping[str, LinearModel]:
         """Linear equations of motion by load name, without nonlinear forces."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         return {
-            load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
+            load.name: LinearModel.of(
+                self._elements(load.name) + load.elements(self.heights_of(load.name), self.names), self.names
+            )
             for load in self.campaign.loads
         }
 
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with nonlinear forces."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         forces = nonlinear_elements(self.tracks, self.terms) + (
             ground_contact_elements(self.terms) if self.unilateral_tyres else ()
         )
         return {
-            load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
+            load.name: NonlinearModel.of(
+                self._elements(load.name), forces, self.names, load, self.heights_of(load.name)
+            )
             for load in self.campaign.loads
         }
+
+    def _elements(self, load: str) -> tuple[Element, ...]:
+        """Return the linear elements of the vehicle, as it stands under a load."""
+        return seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load))
 
     @property
     def is_nonlinear(self) -> bool:

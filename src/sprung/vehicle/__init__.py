@@ -23,6 +23,7 @@ from sprung.vehicle.elements import (
     nonlinear_elements,
     seven_degrees_of_freedom,
 )
+from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
 from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, state_variables
@@ -99,6 +100,7 @@ __all__ = [
     "Vehicle",
     "Wheel",
     "affine_response",
+    "body_sinking",
     "checked_record",
     "coordinates",
     "differentiate_motions",
@@ -113,6 +115,7 @@ __all__ = [
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
+    "second_order_readings",
     "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",

@@ -146,7 +146,7 @@ def seven_degrees_of_freedom(
     -------
     tuple of Element
     """
-    return (*_basic_elements(tracks, extras), *_elements_of_heights(heights))
+    return (*_basic_elements(tracks, extras), *_elements_of_heights(heights, "gravity" in extras))
 
 
 def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
@@ -273,11 +273,29 @@ def _axle_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]
             yield Element("mass", f"m_x{axle}", kinematics.wheel(left) - kinematics.wheel(right), 0.5)
 
 
-def _elements_of_heights(heights: Heights) -> Iterator[Element]:
+def _elements_of_heights(heights: Heights, is_weighed: bool) -> Iterator[Element]:
+    """Yield what heights add to a vehicle; `is_weighed` says that the moment of its body's weight is a parameter, w_h."""
     if not heights.has_effect:
         return
+    rows, stiffness = (kinematics.roll(), kinematics.pitch()), heights.gravity_stiffness()
+    for row in rows:
+        yield Element("spring", "m_s", row, heights.sinking_stiffness if is_weighed else -stiffness)
+    if heights.is_free:
+        yield from _elements_of_lateral_motion(heights)
+        return
     yield Element("mass", "m_s", kinematics.roll(), heights.cg_arm**2)
-    for row, arm in zip((kinematics.roll(), kinematics.pitch()), heights.wheel_arms, strict=True):
-        yield Element("spring", "m_s", row, -heights.gravity_stiffness())
+    for row, arm in zip(rows, heights.wheel_arms, strict=True):
         for axle in "fr":
             yield Element("mass", f"m_u{axle}", row, 2.0 * arm**2)
+
+
+def _elements_of_lateral_motion(heights: Heights) -> Iterator[Element]:
+    """Yield the masses of a vehicle that nothing holds sideways, by their horizontal displacements."""
+    _, arm = heights.wheel_arms
+    yield Element("mass", "m_s", kinematics.forward())
+    yield Element("mass", "m_s", kinematics.sideways_at("", 0.0))
+    # The yaw inertia of a car is about that of pitch, and little follows from it: only unequal arms of the axles turn it.
+    yield Element("mass", "I_yy", kinematics.yaw())
+    for axle in "fr":
+        yield Element("mass", f"m_u{axle}", kinematics.forward(height=arm), 2.0)
+        yield Element("mass", f"m_u{axle}", kinematics.sideways_at(axle, arm), 2.0)

@@ -47,6 +47,10 @@ _WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
 _RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e"})
 """Coordinates that are vertical displacements over the ground."""
 
+UNCONSTRAINED = ("x", "y", "psi")
+"""Displacement of the body's centre of gravity forward and to the left, m, and yaw angle, rad, positive to the left: no force
+of the suspension acts on them, so that they follow from the others; see `LinearModel`."""
+
 Shape = Mapping[str, float]
 """A linear function of the coordinates: the coefficient of each, by its name."""
 
@@ -163,6 +167,47 @@ def pitch() -> Row:
 def roll() -> Row:
     """Roll angle of the body, rad."""
     return Row({"phi": 1.0})
+
+
+def forward(y: float = 0.0, height: float = 0.0) -> Row:
+    """Forward displacement of a point of the body.
+
+    Parameters
+    ----------
+    y, height
+        Position, m: left of the centreline, above the centre of gravity.
+    """
+    return Row({"x": 1.0, "psi": -y, "theta": height})
+
+
+def sideways(x: float, height: float) -> Row:
+    """Displacement of a point of the body to the left.
+
+    Parameters
+    ----------
+    x, height
+        Position, m: forward of the front axle, above the centre of gravity.
+    """
+    return Row({"y": 1.0, "psi": x, "phi": -height}, {"a": {"psi": 1.0}})
+
+
+def sideways_at(axle: str, height: float) -> Row:
+    """Displacement to the left of a point of the body over an axle, or over the centre of gravity.
+
+    Parameters
+    ----------
+    axle
+        ``f``, ``r``, or nothing for the centre of gravity.
+    height
+        Above the centre of gravity, m.
+    """
+    along: dict[str, Mapping[str, Shape]] = {"f": {"a": {"psi": 1.0}}, "r": {"b": {"psi": -1.0}}}
+    return Row({"y": 1.0, "psi": 0.0, "phi": -height}, along.get(axle, {}))
+
+
+def yaw() -> Row:
+    """Yaw angle of the body, rad."""
+    return Row({"psi": 1.0})
 
 
 def bounce(off_centre: bool = False) -> Row:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
 from sprung.vehicle.elements import Element, LinearLaw
-from sprung.vehicle.kinematics import Row, coordinates, heave, massive_coordinates
+from sprung.vehicle.kinematics import UNCONSTRAINED, Row, coordinates, heave, massive_coordinates
 
 Array = NDArray[np.float64]
 
@@ -112,8 +112,17 @@ class Rows:
     affine: Array
 
     @classmethod
-    def of(cls, rows: Sequence[Row], names: Sequence[str]) -> Rows:
+    def of(cls, rows: Sequence[Row], names: Sequence[str], further: Sequence[str] = ()) -> Rows:
         """Stack rows over the coordinates and parameters of a vehicle; a slope by a name not in the list is an error.
+
+        Parameters
+        ----------
+        rows
+            Displacements.
+        names
+            The parameters.
+        further
+            Coordinates beside those that these parameters imply.
 
         Raises
         ------
@@ -121,7 +130,7 @@ class Rows:
             If a row depends on a parameter that is not listed.
         """
         index = {name: i for i, name in enumerate(names, start=1)}
-        position = {coordinate: i for i, coordinate in enumerate(coordinates(names))}
+        position = {coordinate: i for i, coordinate in enumerate((*coordinates(names), *further))}
         affine = np.zeros((len(rows), len(position), 1 + len(names)))
         for row, block in zip(rows, affine, strict=True):
             for name, shape in (("", row.constant), *row.slopes.items()):
@@ -151,6 +160,11 @@ class LinearModel:
     An element adds κ g gᵀ with κ a parameter and g affine in the geometry, so every entry is a sum of products of at
     most three parameters: k_sf, k_sf a, k_sf a². Only these products, which are few, depend on the parameters; their
     coefficients are constant matrices.
+
+    Where masses also move along the coordinates `UNCONSTRAINED`, on which no force acts, their momentum along these stays zero,
+    as it is at rest before the release. With M = [[M₁₁, M₁₂], [M₂₁, M₂₂]], the second block for these, they are -M₂₂⁻¹ M₂₁ X,
+    and the mass matrix of X is the Schur complement M₁₁ - M₁₂ M₂₂⁻¹ M₂₁ (Routh's reduction of cyclic coordinates: Goldstein,
+    Classical Mechanics, section 8.3).
 
     Attributes
     ----------
@@ -196,7 +210,9 @@ class LinearModel:
         ]
         kappa, size = np.array(coefficients, dtype=float).reshape(-1, 2).T
         laws = np.array([LINEAR_LAWS.index(one.law) for one in elements], dtype=np.int64)
-        rows = Rows.of([one.row for one in elements], names).affine
+        used = {coordinate for one in elements for coordinate in one.row.constant}
+        further = UNCONSTRAINED if used.intersection(UNCONSTRAINED) else ()
+        rows = Rows.of([one.row for one in elements], names, further).affine
         n, base = rows.shape[1], 1 + len(names)
         # Every pair of an element's factors, the constant among them, is a part of κ g gᵀ.
         owner, factor = np.nonzero(rows.any(axis=1))
@@ -241,9 +257,11 @@ class LinearModel:
 
     def matrices(self, values: ArrayLike) -> Matrices:
         """Return M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
-        factors = _with_one(values)[..., self.products]
-        flat = factors.prod(axis=-1) @ self._flat
-        return Matrices(*np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0))
+        M, C, K = self._all_matrices(values)
+        if not self.is_reduced:
+            return Matrices(M, C, K)
+        T, n = self._reduction(M), self.size
+        return Matrices(np.swapaxes(T, -1, -2) @ M @ T, C[..., :n, :n], K[..., :n, :n])
 
     def slopes(self, values: ArrayLike) -> Matrices:
         """Return the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n)."""
@@ -251,7 +269,43 @@ class LinearModel:
         others = np.array([second * third, first * third, first * second])
         changes = np.einsum("ik,ikp->pk", others, self._factors)
         flat = changes @ self._flat
-        return Matrices(*np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0))
+        dM, dC, dK = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
+        if not self.is_reduced:
+            return Matrices(dM, dC, dK)
+        # The derivative of the Schur complement is Tᵀ dM T: that of T is multiplied by momenta, which are zero.
+        T, n = self._reduction(self._all_matrices(values)[0]), self.size
+        return Matrices(np.swapaxes(T, -1, -2) @ dM @ T, dC[..., :n, :n], dK[..., :n, :n])
+
+    @cached_property
+    def size(self) -> int:
+        """Number of coordinates, n, without those on which no force acts."""
+        return len(coordinates(self.names))
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether masses also move along coordinates on which no force acts."""
+        return int(self.terms.shape[-1]) > self.size
+
+    def unconstrained_motion(self, values: ArrayLike) -> Array:
+        """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); 0 where no mass moves along them."""
+        if not self.is_reduced:
+            return np.zeros((len(UNCONSTRAINED), self.size))
+        return self._reduction(self._all_matrices(values)[0])[self.size :]
+
+    def _all_matrices(self, values: ArrayLike) -> Array:
+        """Return M, C and K over all coordinates, also those on which no force acts; shape (3, ..., all, all)."""
+        factors = _with_one(values)[..., self.products]
+        flat = factors.prod(axis=-1) @ self._flat
+        return np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
+
+    def _reduction(self, M: Array) -> Array:
+        """Return all coordinates as functions of those on which forces act, T, shape (..., all, n)."""
+        T = np.zeros((*M.shape[:-1], self.size))
+        T[..., : self.size, :] = np.eye(self.size)
+        # A load alone may have no mass along one of them, hence the pseudoinverse.
+        inverse = np.linalg.pinv(M[..., self.size :, self.size :], hermitian=True)
+        T[..., self.size :, :] = -inverse @ M[..., self.size :, : self.size]
+        return T
 
     def accelerations(self, values: ArrayLike) -> tuple[Array, Array]:
         """Return the highest derivatives as functions of the state {X, Ẋ}, and their derivatives; see `Matrices`.

@@ -15,6 +15,7 @@ from sprung.results import (
     FitReport,
     Result,
     characteristics_tables,
+    damper_tables,
     derived_table,
     modes_table,
     other_quantities,
@@ -47,8 +48,9 @@ def result_view(result: Result) -> RenderableType:
         render_table(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
-    if characteristics_tables(result.name, result.derived):
-        parts += [render_table(derived_table(result.name, result.derived)), Text()]
+    masses = [derived_table(result.name, result.derived)] if characteristics_tables(result.name, result.derived) else []
+    for table in (*masses, *damper_tables(result.curves)):
+        parts += [render_table(table), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:

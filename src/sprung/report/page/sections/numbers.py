@@ -11,7 +11,15 @@ from sprung.report.page.sections.context import Context
 from sprung.report.page.summary import symbol_parts
 from sprung.report.pictures.curves import curve_pictures
 from sprung.report.pictures.parameters import half_width, limits_percent
-from sprung.results import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
+from sprung.results import (
+    Result,
+    Setup,
+    characteristics_tables,
+    damper_tables,
+    meaning_of,
+    other_quantities,
+    ratios_table,
+)
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
 
@@ -67,7 +75,8 @@ def curves(result: Result) -> Context | None:
         if friction
         else []
     )
-    return {"text": text, "pictures": pictures, "notes": notes} if pictures else None
+    tables = damper_tables(result.curves)
+    return {"text": text, "pictures": pictures, "tables": tables, "notes": notes} if pictures else None
 
 
 def _parameter(name: str, estimate: Estimate, half: float) -> Context:
