@@ -13,7 +13,7 @@ from sprung.estimation.matrix_exponential import MatrixExponentialAt
 from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Rows, Vehicle, affine_response, parse_record
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Readout, Vehicle, affine_response, parse_record
 
 Real = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[ClosedFormObjec
     decays = prepare(campaign).decays
     names = tuple(vehicle.parameters)
     models = {load.name: vehicle.model(load) for load in campaign.loads}
-    sensors = Rows.of([sensor.row for sensor in campaign.sensors], names)
+    sensors = Readout.of(campaign.sensors, names)
     likelihood = ClosedFormObjective(decays, models, sensors)
     values = np.array(list(vehicle.parameters.values()))
     return likelihood, values, [decay.values for decay in decays], [decay.load for decay in decays]
@@ -113,7 +113,7 @@ def test_poles_and_their_slopes(vehicle: Vehicle) -> None:
     names = tuple(vehicle.parameters)
     values = np.array(list(vehicle.parameters.values()))
     model = vehicle.model()
-    sensors = Rows.of([], names)
+    sensors = Readout.of([], names)
     found = solve_modes(model, sensors, values)
     poles_by_parameter, _ = differentiate_modes(model, sensors, values, found, 3.0)
     for i, value in enumerate(values):

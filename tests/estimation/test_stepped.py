@@ -21,7 +21,7 @@ from sprung.estimation import (
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Rows, Vehicle
+from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Readout, Vehicle
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
@@ -148,7 +148,7 @@ def test_a_friction_that_went_astray_begins_anew_without_a_jolt(
     values = np.array(
         [(optimum.parameters | {"F_f": 30.0, "F_r": 80.0, "s_f": 6e4, "s_r": 1.2e5})[n] for n in larger.names]
     )
-    rows = Rows.of([sensor.row for sensor in campaign.sensors], larger.names)
+    rows = Readout.of(campaign.sensors, larger.names)
     states = np.hstack([optimum.states, np.tile([1.0, 0.3, -1.4, 1.3], (len(decays), 1))])
     objective = TimeSteppingObjective(decays, larger.nonlinear_models, rows, states, False, 0.002)
     weights = np.ones(8)

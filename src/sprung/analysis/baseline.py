@@ -14,7 +14,7 @@ from sprung.estimation import CONVERGED, MOST_STEPS, NEAR, FitResult, fit_from_c
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection import (
-    ENGINE,
+    STARTED_LATER,
     ModelSearch,
     ModelStructure,
     choose_structure,
@@ -76,10 +76,10 @@ def converged(run: Analysis, progress: Progress) -> Analysis:
 def structures(run: Analysis) -> tuple[ModelStructure, ModelStructure]:
     """Return the model that is requested, and the one to begin with.
 
-    An engine that no sensor measures is put into a vehicle that is fitted already: nothing determines it before.
+    An engine, say, that no sensor measures is put into a vehicle that is fitted already: nothing determines it before.
     """
     requested = choose_structure(run.campaign, run.options.tracks, run.options.terms)
-    baseline = requested.with_terms(tuple(term for term in requested.linear_terms if term != ENGINE))
+    baseline = requested.with_terms(tuple(term for term in requested.linear_terms if term not in STARTED_LATER))
     return requested, baseline
 
 
@@ -90,7 +90,7 @@ def fit_baseline_model(
     return fit_linear(
         decays,
         structure.linear_models,
-        run.campaign.sensors,
+        structure.sensors,
         structure.known,
         start=None if run.clock_fit is None else run.clock_fit.parameters,
         guess=run.options.start,

@@ -13,7 +13,7 @@ from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import Rows, Sensor
+from sprung.vehicle import Readout, Sensor
 
 Real = NDArray[np.float64]
 
@@ -132,7 +132,7 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
 
 def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
     """Return the reading of each sensor per vertical, pitch and roll acceleration; zero on wheels, shape (channel, 3)."""
-    rows = Rows.of([sensor.row for sensor in sensors], fit.names).at(fit.values)[:, :3]
+    rows = Readout.of(sensors, fit.names).at(fit.values)[:, :3]
     on_body = np.array([sensor.on == "body" for sensor in sensors])
     return np.where(on_body[:, None], rows, 0.0)
 

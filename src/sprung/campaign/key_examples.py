@@ -66,6 +66,10 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "resolution": Key(0.000122, "unit of the sensor"),
         "high_pass": Key(0.3, "Hz"),
         "logger": Key("left"),
+        "gain_std": Key(0.005),
+        "tilt_std": Key(1.0, "degrees"),
+        "position_std": Key(0.005, "m"),
+        "delay_std": Key(0.0002, "s"),
     },
     "Load": {
         "name": Key("sandbags"),

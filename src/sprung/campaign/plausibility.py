@@ -106,6 +106,8 @@ _ANYTHING: Mapping[str, Limits] = {
     "N/m": Limits(-1e10, 1e10, "N/m"),
     "N s/m": Limits(-1e9, 1e9, "N s/m"),
     "N": Limits(-1e8, 1e8, "N"),
+    "N m s": Limits(-1e8, 1e8, "N m s"),
+    "kg m^2": Limits(-1e8, 1e8, "kg m^2"),
     "N m": Limits(-1e8, 1e8, "N m"),
     "m": _SYMMETRIC_LENGTH,
     "m/s": Limits(-1e3, 1e3, "m/s"),

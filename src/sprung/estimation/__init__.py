@@ -18,13 +18,14 @@ from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
-from sprung.estimation.score_test import ScoreTest, score_added, wald_test
+from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
 from sprung.estimation.starts import (
     USUAL_ENGINE,
     USUAL_MOUNT,
     USUAL_MOUNTING,
     USUAL_RELAXATION,
     Mounting,
+    VehicleSize,
     mountings_of,
     usual_rubber,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "Scale",
     "ScoreTest",
     "Unidentifiable",
+    "VehicleSize",
     "autocorrelation_inflation",
     "canonical_basis",
     "characteristics_of",
@@ -73,6 +75,7 @@ __all__ = [
     "fit_nonlinear",
     "force_curves",
     "identifiable_subspace",
+    "lift_priors",
     "mode_estimates",
     "mountings_of",
     "parameters_from_matrices",

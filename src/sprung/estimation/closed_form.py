@@ -18,7 +18,7 @@ from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
 from sprung.estimation.records import RecordBatch, batch_records, in_order
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import LinearModel, Rows
+from sprung.vehicle import LinearModel, Readout
 from sprung.vibration import exponentials, real_product
 
 Real = NDArray[np.float64]
@@ -45,12 +45,12 @@ class ClosedFormObjective:
     models
         Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters, in the order of the decays' channels.
+        The sensors over the fit's parameters, in the order of the decays' channels.
     """
 
     decays: Sequence[FreeDecay]
     models: Mapping[str, LinearModel]
-    sensors: Rows
+    sensors: Readout
 
     @cached_property
     def loads(self) -> tuple[str, ...]:
@@ -60,7 +60,7 @@ class ClosedFormObjective:
     @cached_property
     def batches(self) -> tuple[RecordBatch, ...]:
         """The decays, centred and cut into blocks."""
-        return batch_records(self.decays, next(iter(self.models.values())).names)
+        return batch_records(self.decays, self.sensors.names)
 
     @cached_property
     def observations(self) -> Real:
@@ -98,7 +98,7 @@ class ClosedFormObjective:
         if float(modes.poles.real.max()) * self.span > _UNBOUNDED:
             return ClosedFormAt(self, values, weights, modes, ())
         # Delays turn shapes: they need modal coordinates, and bear with what rounding leaves near a critical damping.
-        if not self._has_clocks and modes.condition > _DEFECTIVE:
+        if not (self._has_clocks or self.sensors.has_delays) and modes.condition > _DEFECTIVE:
             from sprung.estimation.matrix_exponential import MatrixExponentialAt  # noqa: PLC0415 (hardly ever needed)
 
             return MatrixExponentialAt(self, self.models, self.sensors, values, weights)

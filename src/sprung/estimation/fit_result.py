@@ -13,6 +13,7 @@ from sprung.estimation.objective import HasClockDelays, ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
 from sprung.estimation.problem import EstimationProblem, Iterate
 from sprung.preprocess import FreeDecay, Moments, pool_moments
+from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -87,6 +88,18 @@ class FitResult:
     def residuals(self) -> tuple[Real, ...]:
         """Measured minus modelled, m/s²: one array of shape (channel, time) per drop, NaN for channels that are left out."""
         return tuple(_centred(decay.values - record) for decay, record in zip(self.decays, self.fitted, strict=True))
+
+    @property
+    def sensor_penalty(self) -> float:
+        """How far the sensors are from what is stated of them, in standard uncertainties, squared and summed."""
+        statements, found = self.problem.priors.statements, self.parameters
+        return float(
+            sum(
+                ((found[name] - stated.value) / stated.std) ** 2
+                for name, stated in statements.items()
+                if is_of_sensor(name)
+            )
+        )
 
     @cached_property
     def residual_moments(self) -> Moments:

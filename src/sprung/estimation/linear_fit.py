@@ -30,7 +30,7 @@ from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
+from sprung.vehicle import LinearModel, Readout, Sensor, is_nuisance, separate_track_names, uncertainties_of
 
 Real = NDArray[np.float64]
 
@@ -104,24 +104,25 @@ def fit_linear(
         progress(Step("setting the loggers' clocks"))
         apart = fit_linear(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
-    masses = {name: known_value.value for name, known_value in known.items() if name.startswith(LOAD_MASS)}
     objective = objective_of(decays, models, sensors)
+    known = {**known, **uncertainties_of(sensors)}
+    nuisance = expected_nuisances(known)
     if start is not None:
-        values = masses | dict(start)
+        values = nuisance | dict(start)
         problem = problem_of(objective, known, values)
         return _fit_from(problem, values, enough, most)
     size = VehicleSize.of(known, sensors)
     has_engine = "m_e" in next(iter(models.values())).names
-    usual = [vehicle | masses for vehicle in start_grid(size, known, has_engine)]
+    usual = [vehicle | nuisance for vehicle in start_grid(size, known, has_engine)]
     problem = problem_of(objective, known, usual[0])
     coordinates = problem.priors.coordinates
-    nominal = {load: model.with_known(masses) if masses else model for load, model in models.items()}
+    nominal = {load: model.with_known(nuisance) if nuisance else model for load, model in models.items()}
     by_load = [nominal[load] for load in objective.loads]
     direct = modulating_function_estimate(objective.batches, by_load, sensors, size)
     ends: list[Maximum[Iterate]] = []
     if direct is not None:
         progress(Step("fitting from a direct start"))
-        u = problem.priors.project(coordinates.from_parameters(direct | masses))
+        u = problem.priors.project(coordinates.from_parameters(direct | nuisance))
         ends.append(problem.maximise(u, None, enough, NEARER, most))
         fit = _best(problem, ends, enough)
         if len(ends) == starts or (fit.converged and _leaves_white_noise(fit)):
@@ -138,20 +139,25 @@ def fit_linear(
     return _best(problem, ends, enough)
 
 
+def expected_nuisances(known: Mapping[str, KnownValue]) -> dict[str, float]:
+    """Return the values of masses of loads and of unknowns of sensors that are known beforehand, SI, by name."""
+    return {name: one.value for name, one in known.items() if is_nuisance(name)}
+
+
 def objective_of(
     decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Sequence[Sensor]
 ) -> ClosedFormObjective:
     """Return the likelihood of decays as a function of the parameters of linear models."""
     names = next(iter(models.values())).names
-    return ClosedFormObjective(tuple(decays), models, Rows.of([sensor.row for sensor in sensors], names))
+    return ClosedFormObjective(tuple(decays), models, Readout.with_unknowns(sensors, names))
 
 
 def problem_of(
     objective: ClosedFormObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
 ) -> EstimationProblem:
     """Return the problem of fitting them, its coordinates scaled by a typical vehicle's parameters, SI by name."""
-    names = next(iter(objective.models.values())).names
-    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+    coordinates = Coordinates.scaled_by(objective.sensors.names, typical)
+    return EstimationProblem(objective, PriorsAndConstraints(coordinates, known))
 
 
 def _fit_from(

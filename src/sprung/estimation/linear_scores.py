@@ -14,7 +14,7 @@ from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
 from sprung.estimation.score_test import score_added, score_test
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LinearModel, Sensor, separate_track_names
+from sprung.vehicle import LinearModel, Sensor, separate_track_names, uncertainties_of
 
 Real = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def score_linear_term(
         For each of the starts the gain in twice the log-likelihood, to second order, and the parameters of the larger model
         after one Newton step, SI, by name.
     """
-    objective = objective_of(fit.decays, models, sensors)
+    objective, known = objective_of(fit.decays, models, sensors), {**known, **uncertainties_of(sensors)}
     scores = []
     for values in starts:
         problem = problem_of(objective, known, values)

@@ -18,7 +18,7 @@ from sprung.estimation.objective import Objective, ObjectiveAt
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import LinearModel, Rows, affine_response, highest_derivatives, state_matrix
+from sprung.vehicle import LinearModel, Readout, affine_response, highest_derivatives, state_matrix
 
 Real = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class MatrixExponentialAt:
     models
         Equations of motion by load name.
     sensors
-        The sensors' rows.
+        The sensors.
     values
         Parameters, SI, shape (parameter,).
     weights
@@ -46,7 +46,7 @@ class MatrixExponentialAt:
 
     objective: Objective
     models: Mapping[str, LinearModel]
-    sensors: Rows
+    sensors: Readout
     values: Real
     weights: Real
 
@@ -116,7 +116,10 @@ class MatrixExponentialAt:
         A, (n, size) = state_matrix(highest, massive), highest.shape
         changes = []
         # Ẏ' = A Y' + dA Y, both propagated together.
-        for dS, change in zip(np.swapaxes(self.sensors.slopes, 0, 1), by_parameter, strict=True):
+        # The unknowns of the sensors, which are the last, do not change the motion.
+        still = np.zeros((len(self.values) - len(by_parameter), n, size))
+        by_sensor = np.swapaxes(self.sensors.slopes(self.values), 0, 1)
+        for dS, change in zip(by_sensor, np.concatenate([by_parameter, still]), strict=True):
             dA = np.zeros_like(A)
             dA[highest_derivatives(n, massive)] = change
             both = np.block([[A, np.zeros_like(A)], [dA, A]])

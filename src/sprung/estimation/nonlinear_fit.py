@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.linear_fit import NEAR
+from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
@@ -18,7 +18,7 @@ from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import NonlinearModel, Rows, Sensor
+from sprung.vehicle import NonlinearModel, Readout, Sensor, uncertainties_of
 
 Real = NDArray[np.float64]
 
@@ -88,7 +88,8 @@ def fit_nonlinear(
     """
     laws = ", ".join(own.law.name for own in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
-    steps, values = 0, dict(start)
+    known = {**known, **uncertainties_of(sensors)}
+    steps, values = 0, expected_nuisances(known) | dict(start)
     stages = (
         [([_beginning(decay) for decay in decays], max(enough, NEAR), _COARSE)] if beginning_only or not near else []
     )
@@ -142,6 +143,8 @@ def score_stepped_terms(
     dict
         In twice the log-likelihood, to second order.
     """
+    known = {**known, **uncertainties_of(sensors)}
+    values = expected_nuisances(known) | dict(values)
     objective = _objective(decays, models, sensors, states, tilting, _COARSE, _COARSE)
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
@@ -179,15 +182,15 @@ def _objective(
     longest_step: float,
     longest_derivative_step: float,
 ) -> TimeSteppingObjective:
-    rows = Rows.of([sensor.row for sensor in sensors], next(iter(models.values())).names)
-    return TimeSteppingObjective(tuple(decays), models, rows, states, tilting, longest_step, longest_derivative_step)
+    readout = Readout.with_unknowns(sensors, next(iter(models.values())).names)
+    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, longest_derivative_step)
 
 
 def _problem(
     objective: TimeSteppingObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
 ) -> EstimationProblem:
-    names = next(iter(objective.models.values())).names
-    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+    coordinates = Coordinates.scaled_by(objective.sensors.names, typical)
+    return EstimationProblem(objective, PriorsAndConstraints(coordinates, known))
 
 
 def _maximise(

@@ -57,8 +57,8 @@ class Coordinates:
         return np.array([PARAMETERS[name].positive for name in self.names])
 
     @cached_property
-    def _in_series(self) -> NDArray[np.bool_]:
-        return np.array([PARAMETERS[name].in_series for name in self.names])
+    def _vanishing(self) -> NDArray[np.bool_]:
+        return np.array([PARAMETERS[name].vanishes_at_infinity for name in self.names])
 
     def values(self, u: Real) -> Real:
         """Parameter values, SI, at coordinates."""
@@ -88,7 +88,7 @@ class Coordinates:
         """
         values = self.values(u + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP))
         softer = np.maximum(1.0 - step, _STIFFEST)
-        return np.where(self._in_series, self.values(u) / softer, values)
+        return np.where(self._vanishing, self.values(u) / softer, values)
 
     def distance(self, u: Real, name: str, value: float) -> float:
         """Return how far the coordinate of a parameter is from that of another value, SI.
@@ -96,7 +96,7 @@ class Coordinates:
         For the rate of a spring in series it is the distance of the reciprocals, to first order.
         """
         own = self.names.index(name)
-        if self._in_series[own]:
+        if self._vanishing[own]:
             return float(self.values(u)[own] / value - 1.0)
         values = self.values(u)
         values[own] = value

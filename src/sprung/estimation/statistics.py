@@ -18,7 +18,7 @@ from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay, Moments, pool_moments
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, LinearModel, Sensor
+from sprung.vehicle import PARAMETERS, LinearModel, Sensor, is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -134,6 +134,12 @@ class FitStatistics:
             covariance=self.covariance[square],
             undetermined=self.undetermined[chosen],
         )
+
+    @property
+    def of_vehicle(self) -> FitStatistics:
+        """Marginal statistics of vehicle and loads, without the unknowns of the sensors."""
+        own = [name for name in self.names if not is_of_sensor(name)]
+        return self if len(own) == len(self.names) else self.only(own)
 
     @property
     def scaling(self) -> Real:

@@ -22,7 +22,7 @@ from sprung.vehicle import (
     ElementInput,
     NonlinearModel,
     Prediction,
-    Rows,
+    Readout,
     Stepper,
     Trajectory,
     coordinates,
@@ -58,7 +58,7 @@ class TimeSteppingObjective:
     models
         Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters, in the order of the decays' channels.
+        The sensors over the fit's parameters, in the order of the decays' channels.
     states
         {X, Ẋ} of each drop at its first sample, from which an evaluation starts, and memories where they are known, from where
         the vehicle rests with its load; shape (drop, state) or (drop, state + memory).
@@ -72,7 +72,7 @@ class TimeSteppingObjective:
 
     decays: Sequence[FreeDecay]
     models: Mapping[str, NonlinearModel]
-    sensors: Rows
+    sensors: Readout
     states: Real
     sensors_tilt: bool
     longest_step: float
@@ -185,7 +185,7 @@ class TimeSteppingObjective:
 
         A prediction of the motions saves time.
         """
-        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values)
+        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
         states, memories = np.split(begin, [self.state_size], axis=1)
         steps = self.every * (self.records.shape[2] - 1)
         if near is None:
@@ -273,11 +273,12 @@ class TimeSteppingAt:
             "dzp,p->dz", information[:, parameters:, :parameters], values - self.values
         )
         step = np.linalg.solve(information[:, parameters:, parameters:], right[:, :, None])[:, :, 0]
-        change = np.hstack([np.tile(values - self.values, (len(step), 1)), step])
+        of_model = (values - self.values)[: self.objective.sensors.shared]
+        change = np.hstack([np.tile(of_model, (len(step), 1)), step])
         return self.objective.at_states(values, self.weights, self.begin + step, self._predict(change))
 
     def _predict(self, change: Real) -> Prediction:
-        """Predict the motions after a small change of parameters and initial states, shape (drop, unknown)."""
+        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
         _, by_unknown, transitions = self._linearised
         steps = len(self.trajectory.states) - 1
         number, length = segments_of(steps, self.objective.every)
@@ -332,14 +333,31 @@ class TimeSteppingAt:
         """What the sensors measure less of where they turn, m/s²."""
         return STANDARD_GRAVITY if self.objective.sensors_tilt else 0.0
 
+    @property
+    def _readings(self) -> Real:
+        """What the sensors read, shape (drop, channel, time)."""
+        sensors, angles = self.objective.sensors, self._inputs[:, :, 1:3]
+        readings: Real = sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
+        if self._gravity:
+            readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+        if sensors.has_delays:
+            # To the second order: a delay is a small part of a period.
+            samples = sensors.delays(self.values)[:, None] * self._rates
+            rising = np.gradient(readings, axis=-1, edge_order=2)
+            readings += 0.5 * samples**2 * np.gradient(rising, axis=-1, edge_order=2) - samples * rising
+        return readings
+
+    @property
+    def _rates(self) -> Real:
+        """Samples per second of every drop, shape (drop, 1, 1)."""
+        return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
+
     @cached_property
     def _residuals(self) -> Real:
         """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
         objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            residuals = objective.records - objective.sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
-            angles = self._inputs[:, :, 1:3]
-            residuals += 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+            residuals = objective.records - self._readings
             residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
             residuals *= objective.is_sample[:, None, :]
         counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
@@ -369,11 +387,13 @@ class TimeSteppingAt:
     def _linearised(self) -> tuple[Real, Real, Real]:
         """The products, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
         objective = self.objective
-        S, by_S = objective.sensors.at(self.values), objective.sensors.slopes
-        channels, parameters = len(S), len(self.values)
+        S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
+        channels, shared = len(S), objective.sensors.shared
         by_kind = [model.accelerations(self.values) for model in objective.models_by_kind]
         outputs = np.stack([S @ rows[:, :-1] for rows, _ in by_kind])
-        direct = [S @ slopes + np.swapaxes(by_S, 0, 1) @ rows for rows, slopes in by_kind]
+        direct = [np.swapaxes(by_S, 0, 1) @ rows for rows, _ in by_kind]
+        for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
+            by_row[:shared] += S @ slopes
         if self._gravity:
             # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
             angles = np.broadcast_to(np.eye(2, outputs.shape[2], k=1), (len(outputs), 2, outputs.shape[2]))
@@ -381,15 +401,21 @@ class TimeSteppingAt:
         stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
         if skipped > 1:
             longer = [skipped * time for time in objective.times]
-            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values)
+            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values[:shared])
             trajectory = Trajectory(*(part[::skipped] for part in trajectory))
         found = differentiate_motions(stepper, trajectory, outputs, objective.every // skipped)
         products = []
         for drop, (moved, samples) in enumerate(zip(found.outputs, objective.samples, strict=True)):
             inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
-            readings[..., :parameters] += np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
             if self._gravity:
                 readings -= self._gravity * (inputs[:, None, 1:3] @ moved[:samples, channels:])
+            # The unknowns of the sensors come between the parameters of the model and the initial states.
+            readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
+            by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
+            readings[..., : len(self.values)] += by_sensor
+            for channel, position in objective.sensors.delay_positions:
+                readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
+                readings[:, channel, position] *= objective.decays[drop].rate
             columns = np.empty((channels, samples, readings.shape[2] + 1))
             columns[..., :-1] = np.swapaxes(readings - readings.mean(axis=0), 0, 1)
             columns[..., -1] = self._residuals[drop, :, :samples]

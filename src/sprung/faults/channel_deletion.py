@@ -125,7 +125,13 @@ class ChannelDeletion:
                         self, hypothesis, hypothesis.correction, numbers, candidate=self.isolation.base
                     )
                     gain = sum(score.gain for score in own)
-                    yield replace(correction, table=self.isolation.base.table, score_gain=gain)
+                    yield replace(
+                        correction,
+                        table=self.isolation.base.table,
+                        score_gain=gain,
+                        is_beyond_prior=own[0].is_beyond_prior,
+                        required=own[0].required,
+                    )
 
     def _left_out(self, hypothesis: ChannelHypothesis) -> Hypothesis:
         fault = with_action(hypothesis.fault((), ()), "it is left out")
@@ -212,7 +218,8 @@ class ChannelCorrection(Hypothesis):
         numbers, scores = self.numbers, list[FaultScore]()
         candidate = isolation.fit(self.correction, self.candidate.fit)
         fits = 1
-        if self.score_gain > 0 and candidate.misfit > _HALF * isolation.base.misfit:
+        explains = self.is_beyond_prior or candidate.misfit <= _HALF * isolation.base.misfit
+        if self.score_gain > 0 and not explains:
             return None, fits  # the score test was made too far away
         while numbers:
             scores = self._own(candidate.scores)
@@ -227,7 +234,11 @@ class ChannelCorrection(Hypothesis):
         if not _is_relevant(hypothesis, numbers) or not hypothesis.allows(numbers):
             return None, fits
         stds = tuple(score.std for score in scores)
-        confirmed = ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate, is_fitted=True)
+        confirmed = replace(
+            ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate, is_fitted=True),
+            is_beyond_prior=self.is_beyond_prior,
+            required=self.required,
+        )
         if max((score.max_parameter_shift for score in scores), default=0.0) < _SHIFT:
             return confirmed, fits
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")

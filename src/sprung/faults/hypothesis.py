@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from sprung.errors import Fault
+from sprung.faults.consistency import SIGNIFICANT
 from sprung.faults.correction import Correction
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.isolation import CandidateFit, FaultIsolation
@@ -44,6 +45,10 @@ class Hypothesis:
         Whether the residuals are those of a fit, and not only predicted.
     score_gain
         What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
+    is_beyond_prior
+        Whether its numbers lie beyond what the campaign states of a sensor with an uncertainty.
+    required
+        Gain in twice the log-likelihood that it needs by the error budget.
     """
 
     fault: Fault
@@ -56,6 +61,8 @@ class Hypothesis:
     is_specific: bool = True
     is_fitted: bool = False
     score_gain: float = 0.0
+    is_beyond_prior: bool = False
+    required: float = SIGNIFICANT
 
     @property
     def is_explained(self) -> bool:
@@ -105,8 +112,11 @@ class Hypothesis:
         overdispersion
             Factor on every variance, dimensionless.
         """
-        cost = self.table.cost - self.score_gain
-        return cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
+        cost = self.table.inflated_cost(overdispersion)
+        gain = self.score_gain / (1.0 if self.is_beyond_prior else overdispersion)
+        # A number with a stated uncertainty is no free one: the samples do not determine it alone.
+        free = 0 if self.is_beyond_prior else self.free
+        return cost - gain + free * float(np.log(max(self.table.counts.sum(), 1.0)))
 
     def concerns_same(self, other: Hypothesis) -> bool:
         """Whether two hypotheses are about the same place, or one is among several of which the other says the same."""

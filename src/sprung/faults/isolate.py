@@ -180,7 +180,7 @@ def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
     hypotheses: list[Hypothesis] = []
     for channel, sensor in enumerate(isolation.campaign.sensors):
         own = [score for score in base.scores if score.where == sensor.channel]
-        if max((score.gain for score in own), default=0.0) > SIGNIFICANT:
+        if any(score.gain > score.required for score in own):
             hypotheses += ChannelDeletion(isolation, channel, base).scored(own)
     return hypotheses
 
@@ -256,15 +256,15 @@ def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
     """Whether a fit of a hypothesis may be convincing, by what it predicts."""
     base = isolation.base
     gain = base.table.cost - hypothesis.score()
-    explains = base.is_explained or gain > (1 - _FEW) * base.misfit
-    return hypothesis.is_specific and not hypothesis.is_fitted and explains and gain > SIGNIFICANT
+    explains = base.is_explained or hypothesis.is_beyond_prior or gain > (1 - _FEW) * base.misfit
+    return hypothesis.is_specific and not hypothesis.is_fitted and explains and gain > hypothesis.required
 
 
 def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Whether a hypothesis explains much of the misfit, and more than chance does."""
     base, overdispersion = isolation.base, hypothesis.candidate.fit.overdispersion
-    gain = base.table.cost / overdispersion - hypothesis.score(overdispersion)
-    required = max(SIGNIFICANT, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
+    gain = base.table.inflated_cost(overdispersion) - hypothesis.score(overdispersion)
+    required = max(hypothesis.required, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
     explains = base.is_explained or hypothesis.candidate.misfit < _FEW * base.misfit
     # What cannot be named may be much more likely than the best name there is.
     limit = hypothesis.score(overdispersion) - SIGNIFICANT
@@ -283,7 +283,7 @@ def _left_over(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> H
 def _with_rival(isolation: FaultIsolation, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Hypothesis:
     """Return the best hypothesis; only named, and together with another one that explains the recordings about as well."""
     overdispersion = best.candidate.fit.overdispersion
-    limit = best.score(overdispersion) + SIGNIFICANT
+    limit = best.score(overdispersion) + best.required
     largest = np.inf if isolation.base.is_explained else max(SHARE * isolation.base.misfit, best.candidate.misfit)
     rivals = [
         other

@@ -225,7 +225,7 @@ def _fitted(
     return fit_linear(
         decays,
         structure.linear_models,
-        structure.campaign.sensors,
+        structure.sensors,
         structure.known,
         start=None if start is None else start.parameters,
         starts=_STARTS if most > 1 else 1,

@@ -22,7 +22,7 @@ from sprung.estimation import Correlation, ForceCurve, ModeEstimate, Scale, Unid
 from sprung.results.amplitude import AmplitudeCurves
 from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import plain_document
-from sprung.results.records import EXACT_KEYS, FitReport, TestedVehicle, TraceStep
+from sprung.results.records import EXACT_KEYS, FitReport, SensorEstimate, TestedVehicle, TraceStep
 from sprung.results.series import Series, arrays_of, npz_bytes
 from sprung.results.setup import Setup
 from sprung.results.tables import (
@@ -80,6 +80,9 @@ class Result:
         By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         Summary of the fit, the part of each drop that was used, and the faults of recordings and campaign.
+    sensors
+        What was found of the gain, place and delay of each sensor that are stated with an uncertainty, channel by channel; none
+        of exact sensors, or where the verdict is reject.
     validation
         By drop name: how well the fitted vehicle explains the drop, and how well the other drops predict it.
     next_step
@@ -123,6 +126,7 @@ class Result:
     validation: dict[str, DropValidation]
     next_step: str | None
     setup: Setup
+    sensors: tuple[SensorEstimate, ...] = ()
     additional_terms: str = ""
     curves: dict[str, ForceCurve] = field(default_factory=dict)
     amplitude: AmplitudeCurves = ()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from sprung.estimation import ForceCurve, ModeEstimate
-from sprung.results.records import TraceStep
+from sprung.results.records import SensorEstimate, TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
 from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, MOTION_RATIOS, PARAMETERS, WHEEL_LOADS
@@ -37,6 +37,12 @@ _CHARACTERISTICS = (
     ("ride damping ratio", "front_ride_damping", "rear_ride_damping", ""),
     ("wheel hop frequency, Hz", "front_hop_frequency", "rear_hop_frequency", ""),
     ("wheel hop damping ratio", "front_hop_damping", "rear_hop_damping", ""),
+    ("twist of the body, Hz", "", "", "twist_frequency"),
+    ("damping ratio of twist", "", "", "twist_damping"),
+    ("bending of the body, Hz", "", "", "bending_frequency"),
+    ("damping ratio of bending", "", "", "bending_damping"),
+    ("people on seats, Hz", "", "", "seat_frequency"),
+    ("damping ratio of seats", "", "", "seat_damping"),
 )
 """Rows of the table of characteristics: what is shown, and the quantities of front axle, rear axle and whole vehicle."""
 
@@ -207,6 +213,34 @@ def ratios_table(ratios: Mapping[str, Ratio]) -> Table:
         rows.append((name, value, std, unit_text(ratio.unit)))
     title = "Divided by the empty vehicle's total mass"
     return Table(title, ("parameter", "value", "±", "unit"), tuple(rows), frozenset(("value", "±")))
+
+
+_OF_SENSORS = {"gain": ("gain, %", 100.0), "x": ("x, mm", 1e3), "y": ("y, mm", 1e3), "delay": ("delay, ms", 1e3)}
+"""Headers of the table of sensors, and the factor from SI to the unit there."""
+
+
+def sensors_table(sensors: Sequence[SensorEstimate]) -> Table:
+    """Return the table of what was found of each sensor, beside its stated uncertainty.
+
+    Parameters
+    ----------
+    sensors
+        Of a result.
+
+    Returns
+    -------
+    Table
+    """
+    found: dict[str, dict[str, str]] = {}
+    for one in sensors:
+        factor = _OF_SENSORS[one.quantity][1]
+        value, std = round_by_uncertainty(factor * one.value, factor * one.std)
+        found.setdefault(one.channel, {})[one.quantity] = f"{value} ± {std} ({factor * one.stated_std:.2g})"
+    present = [kind for kind in _OF_SENSORS if any(one.quantity == kind for one in sensors)]
+    rows = tuple((channel, *(cells.get(kind, "") for kind in present)) for channel, cells in found.items())
+    headers = tuple(_OF_SENSORS[kind][0] for kind in present)
+    title = "Sensors: difference from what is stated, ± one standard uncertainty (and the stated one)"
+    return Table(title, ("channel", *headers), rows, frozenset(headers))
 
 
 def modes_table(load: str, modes: Sequence[ModeEstimate]) -> Table:

@@ -17,12 +17,13 @@ from sprung.selection.stepwise import (
     select_roll_axis_height,
 )
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, TERMS, ModelTerm
+from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER, TERMS, ModelTerm
 
 __all__ = [
     "ENGINE",
     "FALSE_ALARM_SHARE",
     "SEPARATE_TRACKS",
+    "STARTED_LATER",
     "TERMS",
     "ModelSearch",
     "ModelStructure",

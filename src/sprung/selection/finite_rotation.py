@@ -118,7 +118,7 @@ def _corrected(
                 structure.heights_of(decay.load),
                 loads[decay.load],
                 sensors,
-                fit.values,
+                fit.values[: len(structure.names)],  # without what was found of the sensors
                 fit.motion(drop, 0, decay.samples),
                 1 / decay.rate,
             )

@@ -76,7 +76,7 @@ def _of_same_coordinates(search: ModelSearch, terms: Sequence[str]) -> Scores:
 
 
 def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, float]]:
-    own, sensors = search.fit.parameters, search.structure.campaign.sensors
+    own, sensors = search.fit.parameters, search.structure.sensors
     best, score, larger = search.structure, (0.0, 0.0), search.with_terms([term])
     variants = start_variants(term, larger, own)
     starts = [neutral_values(variant, own) for variant in variants]
@@ -84,7 +84,12 @@ def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple
     for variant, (gain, estimates) in zip(variants, tests, strict=True):
         if gain >= score[0]:
             score = gain, abs(TERMS[term].size(estimates))
-            best = replace(search.structure, engine_mounting=variant.engine_mounting)
+            best = replace(
+                search.structure,
+                engine_mounting=variant.engine_mounting,
+                body_frequency=variant.body_frequency,
+                seat_place=variant.seat_place,
+            )
     return replace(search, structure=best), score
 
 
@@ -115,7 +120,7 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     gains = score_stepped_terms(
         decays,
         largest.nonlinear_models,
-        search.structure.campaign.sensors,
+        search.structure.sensors,
         largest.known,
         values=neutral_values(largest, own),
         states=states_by_coordinates(search.fit.states, search.fit.names, largest.names),

@@ -356,7 +356,7 @@ def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
     begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
     ends = [search.refit(larger)] if begins else []
     if term == ENGINE and (search.has_model_error or not ends):
-        sensors, known = larger.campaign.sensors, larger.known
+        sensors, known = larger.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
     return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimation import USUAL_MOUNTING, Mounting
+from sprung.estimation import USUAL_MOUNTING, Mounting, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     EXTRAS,
@@ -18,6 +18,7 @@ from sprung.vehicle import (
     Heights,
     LinearModel,
     NonlinearModel,
+    Sensor,
     Tracks,
     ground_contact_elements,
     nonlinear_elements,
@@ -57,6 +58,10 @@ class ModelStructure:
         Compression at which bump stops are met, where a fit begins, m.
     engine_mounting
         Mounting of an engine, where a fit begins.
+    body_frequency
+        Frequency of the body's twist or bending, where a fit begins, Hz.
+    seat_place
+        Place of people on soft seats behind the front axle, where a fit begins, as a part of the wheelbase.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
     assumed_heights
@@ -75,6 +80,8 @@ class ModelStructure:
     unilateral_tyres: bool = False
     stop_gap: float = 1.0
     engine_mounting: Mounting = USUAL_MOUNTING
+    body_frequency: float = 12.0
+    seat_place: float = 0.45
     carried_at: CarriedAt = "wheels"
     assumed_heights: Heights | None = None
     sinking: Mapping[str, float] = field(default_factory=dict)
@@ -87,6 +94,17 @@ class ModelStructure:
     def heights_of(self, load: str) -> Heights:
         """Return the heights with the body as low as it rests under a load, by the load's name."""
         return self.heights._replace(sunk=self.sinking.get(load, 0.0))
+
+    @cached_property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Sensors of the campaign, with what their tilt adds to the uncertainty of their places where heights are known."""
+        height, sensors = self.heights.cg_height, self.campaign.sensors
+        return sensors if height is None else tuple(sensor.at_height_above(height) for sensor in sensors)
+
+    @property
+    def wheelbase(self) -> float:
+        """Wheelbase over which the body twists and bends, m: the known one, or that of the sensors."""
+        return VehicleSize.of(self.known, self.campaign.sensors).wheelbase
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -108,7 +126,7 @@ class ModelStructure:
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with nonlinear forces."""
-        forces = nonlinear_elements(self.tracks, self.terms) + (
+        forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase) + (
             ground_contact_elements(self.terms) if self.unilateral_tyres else ()
         )
         return {
@@ -120,7 +138,7 @@ class ModelStructure:
 
     def _elements(self, load: str) -> tuple[Element, ...]:
         """Return the linear elements of the vehicle, as it stands under a load."""
-        return seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load))
+        return seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load), self.wheelbase)
 
     @property
     def is_nonlinear(self) -> bool:

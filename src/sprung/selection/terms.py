@@ -27,6 +27,12 @@ SEPARATE_TRACKS = "tracks apart"
 ENGINE, BUMP_STOP, FRICTION = "engine", "bump-stop", "friction"
 """Terms with starts of their own."""
 
+OCCUPANTS, TWIST, BENDING = "occupants", "twist", "bending"
+"""Likewise, of a body that is not one rigid mass."""
+
+STARTED_LATER = frozenset({ENGINE, OCCUPANTS, TWIST, BENDING})
+"""Terms that are put into a vehicle which is fitted already: nothing determines them before."""
+
 _TRAVEL = 0.002
 """m of travel at which a spring's force is that of a usual friction."""
 
@@ -45,6 +51,16 @@ _KNEE, _ROUNDING = 0.12, 0.3
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
 
+
+_USUAL_OCCUPANTS, _SEAT_FREQUENCY, _SEAT_DAMPING = 0.06, 4.5, 0.3
+"""People on seats as a part of the sprung mass, the natural frequency of a seat, Hz, and its damping ratio (Griffin, Handbook
+of Human Vibration, 1990)."""
+
+_MODAL_INERTIA, _MODAL_MASS, _BODY_DAMPING = 0.08, 0.6, 0.03
+"""Modal inertia of a usual twist over I_xx, modal mass of a usual bending over m_s, and damping ratio of both."""
+
+_AT_REST = 1e4
+"""Factor on a usual modal mass that is an infinite one in practice."""
 
 _ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
 
@@ -171,8 +187,38 @@ def _inboard_share(values: Values, axle: str) -> float:
 
 def _gravity(values: Values) -> float:
     """Share of the roll stiffness of all springs."""
-    roll = 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
-    return values["w_h"] / roll
+    return values["w_h"] / _roll_rate(values)
+
+
+def _roll_rate(values: Values) -> float:
+    """Roll stiffness of the springs of both axles, N m."""
+    return 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
+
+
+def _own_frequency(stiffness: float, mass: float) -> float:
+    """Natural frequency of a modal mass, Hz."""
+    return float(np.sqrt(stiffness / mass) / (2 * np.pi))
+
+
+def _usual_twist(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
+    """Return a usual twist of the body, its modal mass multiplied by a factor."""
+    inertia, omega = factor * _MODAL_INERTIA * own["I_xx"], 2 * np.pi * structure.body_frequency
+    return {"I_w": inertia, "k_w": inertia * omega**2, "c_w": 2 * _BODY_DAMPING * inertia * omega, "a_w": 0.0}
+
+
+def _usual_bending(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
+    """Return a usual bending of the body, its modal mass multiplied by a factor."""
+    mass, omega = factor * _MODAL_MASS * own["m_s"], 2 * np.pi * structure.body_frequency
+    rates = {"m_v": mass, "k_v": mass * omega**2, "c_v": 2 * _BODY_DAMPING * mass * omega}
+    return {**rates, "b_v": 0.3, "p_v": 0.0}
+
+
+def _usual_occupants(own: Values, structure: ModelStructure, share: float = _USUAL_OCCUPANTS) -> Values:
+    """Return people who are a part of the sprung mass, on usual seats."""
+    mass, omega = share * own["m_s"], 2 * np.pi * _SEAT_FREQUENCY
+    place = -structure.seat_place * (own["a"] + own["b"])
+    rates = {"m_o": mass, "k_o": mass * omega**2, "c_o": 2 * _SEAT_DAMPING * mass * omega}
+    return {**rates, "x_o": place, "y_o": 0.0}
 
 
 TERMS: Mapping[str, ModelTerm] = {
@@ -295,6 +341,47 @@ TERMS: Mapping[str, ModelTerm] = {
             ),
             undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
             first=lambda own, _: usual_rubber(own),
+        ),
+        ModelTerm(
+            TWIST,
+            lambda p: _roll_rate(p) / p["k_w"],
+            typical=0.05,
+            spread=2.5,
+            negligible=0.004,
+            description=TermDescription(
+                "a body that twists at {0}",
+                ((lambda p, _: _own_frequency(p["k_w"], p["I_w"]), "Hz"),),
+                neutral=None,
+            ),
+            explains_all=True,
+            undefined=lambda own, structure: _usual_twist(own, structure, _AT_REST),
+            first=_usual_twist,
+        ),
+        ModelTerm(
+            BENDING,
+            lambda p: 2 * (p["k_sf"] + p["k_sr"]) / p["k_v"],
+            typical=0.015,
+            spread=2.5,
+            negligible=0.0015,
+            description=TermDescription(
+                "a body that bends at {0}",
+                ((lambda p, _: _own_frequency(p["k_v"], p["m_v"]), "Hz"),),
+                neutral=None,
+            ),
+            explains_all=True,
+            undefined=lambda own, structure: _usual_bending(own, structure, _AT_REST),
+            first=_usual_bending,
+        ),
+        ModelTerm(
+            OCCUPANTS,
+            lambda p: p["m_o"] / p["m_s"],
+            typical=_USUAL_OCCUPANTS,
+            spread=2.0,
+            negligible=0.005,
+            description=TermDescription("{0} of people on soft seats", ((lambda p, _: p["m_o"], "kg"),)),
+            explains_all=True,
+            undefined=lambda own, structure: _usual_occupants(own, structure, _ALMOST_NO_ENGINE),
+            first=_usual_occupants,
         ),
         ModelTerm(
             FRICTION,

@@ -132,8 +132,8 @@ def _models(
     vehicle: Vehicle, loads: Sequence[Load], contact: Sequence[NonlinearElement], gravity: float
 ) -> tuple[list[NonlinearModel], NDArray[np.int64]]:
     """Return a model for each different load, and which of them each of the loads has."""
-    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights)
-    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras), *contact]
+    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights, vehicle.wheelbase)
+    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase), *contact]
     names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
     models = [NonlinearModel.of(elements, nonlinear, names, load, vehicle.heights, gravity) for load in different]
     order = [load.name for load in different]

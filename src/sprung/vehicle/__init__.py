@@ -36,16 +36,25 @@ from sprung.vehicle.parameters import (
     LOAD_MASS,
     NEUTRAL,
     PARAMETERS,
+    SENSOR_DELAY,
+    SENSOR_GAIN,
+    SENSOR_UNKNOWNS,
+    SENSOR_X,
+    SENSOR_Y,
     Parameter,
+    SensorUnknown,
+    is_nuisance,
+    is_of_sensor,
     parameter_names,
     parameters_of_term,
     separate_track_names,
     with_separate_tracks,
 )
+from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
 from sprung.vehicle.segments import Prediction, integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
-from sprung.vehicle.sensor import Sensor
+from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
 
@@ -65,6 +74,11 @@ __all__ = [
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
+    "SENSOR_DELAY",
+    "SENSOR_GAIN",
+    "SENSOR_UNKNOWNS",
+    "SENSOR_X",
+    "SENSOR_Y",
     "TABLE_1_CAR",
     "UNKNOWN_KEY",
     "WHEELS",
@@ -91,9 +105,11 @@ __all__ = [
     "Parameter",
     "Positive",
     "Prediction",
+    "Readout",
     "Row",
     "Rows",
     "Sensor",
+    "SensorUnknown",
     "Stepper",
     "Tracks",
     "Trajectory",
@@ -110,6 +126,8 @@ __all__ = [
     "half_distances",
     "highest_derivatives",
     "integrate_near",
+    "is_nuisance",
+    "is_of_sensor",
     "nonlinear_elements",
     "parameter_names",
     "parameters_of_term",
@@ -121,6 +139,7 @@ __all__ = [
     "seven_degrees_of_freedom",
     "state_matrix",
     "state_variables",
+    "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",
 ]

@@ -94,6 +94,14 @@ def _cg_left(p: Values) -> Any:
     return p["m_s"] * p["y_s"] / _total_mass(p)
 
 
+def _attached_frequency(index: str, mass: str) -> Callable[[Values], Any]:
+    return lambda p: (p[f"k_{index}"] / p[mass]) ** 0.5 / (2 * np.pi)
+
+
+def _attached_damping(index: str, mass: str) -> Callable[[Values], Any]:
+    return lambda p: p[f"c_{index}"] / (2 * (p[f"k_{index}"] * p[mass]) ** 0.5)
+
+
 def _of_axle(function: Callable[[Values, str], Any], axle: str) -> Callable[[Values], Any]:
     return lambda p: function(p, axle)
 
@@ -128,6 +136,18 @@ CHARACTERISTICS: Mapping[str, Characteristic] = {
         f"{name}_{quantity}": Characteristic(unit, meaning.format(name), _of_axle(function, axle))
         for quantity, (unit, meaning, function) in _AXLE_QUANTITIES.items()
         for name, axle in _AXLES.items()
+    },
+    **{
+        f"{name}_{quantity}": Characteristic(unit, meaning.format(what), function(index, mass), frozenset({mass}))
+        for quantity, unit, meaning, function in (
+            ("frequency", "Hz", "natural frequency of {}", _attached_frequency),
+            ("damping", "1", "damping ratio of {}", _attached_damping),
+        )
+        for name, index, mass, what in (
+            ("twist", "w", "I_w", "the twist of the body as it floats"),
+            ("bending", "v", "m_v", "the bending of the body as it floats"),
+            ("seat", "o", "m_o", "people on their seats, the body held"),
+        )
     },
 }
 """By name, in the order in which tables show them. Static wheel loads, which follow from the matrices, are `wheel_loads`."""

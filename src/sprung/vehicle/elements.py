@@ -35,6 +35,7 @@ Tracks = Literal["shared", "separate"]
 
 LINEAR_EXTRAS = (
     "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount", "zener",
+    "twist", "bending", "occupants",
 )  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
@@ -129,7 +130,7 @@ def _by_place(letter: str, tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
 
 
 def seven_degrees_of_freedom(
-    tracks: Tracks = "shared", extras: Collection[str] = (), heights: Heights = LEVEL
+    tracks: Tracks = "shared", extras: Collection[str] = (), heights: Heights = LEVEL, wheelbase: float = 0.0
 ) -> tuple[Element, ...]:
     """Return the linear elements of the paper's seven-degree-of-freedom vehicle.
 
@@ -141,15 +142,23 @@ def seven_degrees_of_freedom(
         Any of `EXTRAS`; only those of `LINEAR_EXTRAS` add elements.
     heights
         Heights, as far as they are known; they add to the inertia and stiffness of roll and pitch.
+    wheelbase
+        m; for a body that twists or bends.
 
     Returns
     -------
     tuple of Element
     """
-    return (*_basic_elements(tracks, extras), *_elements_of_heights(heights, "gravity" in extras))
+    return (
+        *_basic_elements(tracks, extras, wheelbase),
+        *_elements_of_the_body(extras, wheelbase),
+        *_elements_of_heights(heights, "gravity" in extras),
+    )
 
 
-def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
+def nonlinear_elements(
+    tracks: Tracks = "shared", extras: Collection[str] = (), wheelbase: float = 0.0
+) -> tuple[NonlinearElement, ...]:
     """Return the nonlinear elements of a vehicle.
 
     Parameters
@@ -158,25 +167,27 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
         Whether springs and dampers of an axle share their half-distance; friction acts at the springs.
     extras
         Any of `EXTRAS`; those of `LINEAR_EXTRAS` add none.
+    wheelbase
+        m; for a body that twists.
 
     Returns
     -------
     tuple of Force
     """
-    travel = _travels(tracks, extras)
+    travel = _travels(tracks, extras, wheelbase)
     elements = []
     for station in kinematics.WHEELS:
         axle, spring = station[0], travel(station, "spring")
         if "friction" in extras:
             elements.append(NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), spring))
         if "rebound" in extras:
-            damper = _damper_travel(station, tracks, extras)
+            damper = _damper_travel(station, tracks, extras, wheelbase)
             elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
         if "damper-curve" in extras:
             rebound, rounded = "rebound" in extras, "rounded-knee" in extras
             before = (f"c_s{axle}", *(f"r_{axle}",) * rebound, *(f"w_k{axle}",) * rounded)
             law = damper_curve(has_ratio=rebound, is_rounded=rounded)
-            damper = _damper_travel(station, tracks, extras)
+            damper = _damper_travel(station, tracks, extras, wheelbase)
             elements.append(NonlinearElement(law, (*before, f"v_k{axle}", f"q_{axle}"), damper))
         if "progressive" in extras:
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
@@ -211,30 +222,32 @@ def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElem
     )
 
 
-def _travels(tracks: Tracks, extras: Collection[str]) -> Callable[[Wheel, LinearLaw], Row]:
+def _travels(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Callable[[Wheel, LinearLaw], Row]:
     """Return the function that gives the travel of the spring or damper at a wheel station."""
     distances = half_distances(tracks)
     shares = inboard_shares(tracks) if "rigid-axle" in extras else {}
-    return lambda station, law: kinematics.travel(station, distances[station[0], law], shares.get((station[0], law)))
+    return lambda station, law: kinematics.travel(
+        station, distances[station[0], law], shares.get((station[0], law)), wheelbase
+    )
 
 
-def _damper_travel(station: Wheel, tracks: Tracks, extras: Collection[str]) -> Row:
+def _damper_travel(station: Wheel, tracks: Tracks, extras: Collection[str], wheelbase: float) -> Row:
     """Return the travel of the damper itself at a wheel station: behind a mount it is a coordinate of its own."""
     if "damper-mount" in extras:
         return kinematics.behind_mount(station)
-    return _travels(tracks, extras)(station, "damper")
+    return _travels(tracks, extras, wheelbase)(station, "damper")
 
 
-def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
-    asymmetric, travel = "asymmetry" in extras, _travels(tracks, extras)
-    yield Element("mass", "m_s", kinematics.bounce(asymmetric))
-    yield Element("mass", "I_yy", kinematics.pitch())
+def _basic_elements(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Iterator[Element]:
+    asymmetric, travel = "asymmetry" in extras, _travels(tracks, extras, wheelbase)
+    yield Element("mass", "m_s", kinematics.bounce(asymmetric, wheelbase))
+    yield Element("mass", "I_yy", kinematics.pitch(wheelbase))
     yield Element("mass", "I_xx", kinematics.roll())
     for station in kinematics.WHEELS:
         axle, side = station[0], kinematics.side(station)
         rates: list[tuple[LinearLaw, str, Row]] = [
             ("spring", f"k_s{axle}", travel(station, "spring")),
-            ("damper", f"c_s{axle}", _damper_travel(station, tracks, extras)),
+            ("damper", f"c_s{axle}", _damper_travel(station, tracks, extras, wheelbase)),
             ("spring", f"k_t{axle}", kinematics.wheel(station)),
         ]
         yield Element("mass", f"m_u{axle}", kinematics.wheel(station))
@@ -253,18 +266,40 @@ def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element
     if "gravity" in extras:
         yield Element("spring", "w_h", kinematics.roll(), -1.0)
         yield Element("spring", "w_h", kinematics.pitch(), -1.0)
+    yield from _axle_elements(tracks, extras, wheelbase)
+
+
+def _elements_of_the_body(extras: Collection[str], wheelbase: float) -> Iterator[Element]:
+    """Yield the elements of a body that is not one rigid mass."""
     if "engine" in extras:
-        # The sprung mass and its inertias include the engine, which is taken off the body and moves by itself.
-        yield Element("mass", "m_e", kinematics.engine_bay(), -1.0)
-        yield Element("mass", "m_e", kinematics.engine())
-        yield Element("spring", "k_e", kinematics.engine_bay() - kinematics.engine())
-        yield Element("damper", "c_e", kinematics.engine_bay() - kinematics.engine())
-    yield from _axle_elements(tracks, extras)
+        yield from _attached_mass("e", kinematics.engine_bay(), kinematics.engine())
+    if "occupants" in extras:
+        yield from _attached_mass("o", kinematics.seats(), kinematics.occupants())
+    # Modal masses and rates are those for the angle between the axles and for the rise of the middle.
+    for term, mass, index, row, size in (
+        ("twist", "I_w", "w", kinematics.twist(), wheelbase**2),
+        ("bending", "m_v", "v", kinematics.bending(), kinematics.sag(wheelbase) ** 2),
+    ):
+        if term in extras:
+            yield Element("mass", mass, row, size)
+            yield Element("spring", f"k_{index}", row, size)
+            yield Element("damper", f"c_{index}", row, size)
 
 
-def _axle_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
+def _attached_mass(index: str, below: Row, own: Row) -> Iterator[Element]:
+    """Yield the elements of a mass on a spring and a damper of its own.
+
+    The sprung mass and its inertias include it: it is taken off the body, where it is attached, and moves by itself.
+    """
+    yield Element("mass", f"m_{index}", below, -1.0)
+    yield Element("mass", f"m_{index}", own)
+    yield Element("spring", f"k_{index}", below - own)
+    yield Element("damper", f"c_{index}", below - own)
+
+
+def _axle_elements(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Iterator[Element]:
     """Yield the elements between the two wheels of an axle."""
-    travel = _travels(tracks, extras)
+    travel = _travels(tracks, extras, wheelbase)
     for left, right in kinematics.AXLES:
         axle = left[0]
         if "anti-roll" in extras:

@@ -3,9 +3,12 @@
 Coordinates are the paper's, X = [z_s, θ, φ, z_uA, z_uB, z_uC, z_uD]: sprung-mass bounce, pitch (positive nose down),
 roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right. A vehicle that has
 more than the paper's has further ones: first those that move a mass, as z_e of an engine on its mounts, then those without
-mass, as the travel of a damper behind a rubber mount. A row g has the displacement g·X. Every row is affine in the
-geometric parameters (a, b and the half-distances), so a row is its constant part and one slope per parameter; derivatives
-with respect to geometry need nothing else.
+mass, as the travel of a damper behind a rubber mount. A body that is not rigid has its twist q_w, rad/m, and its bending
+q_v, 1/m: at x forward of the front axle and y left of the centreline it rises by y (x + L/2) q_w - x (x + L)/2 q_v with the
+wheelbase L = a + b. So θ and z_s are those of the line through both axles, and φ is the roll in the middle between them.
+
+A row g has the displacement g·X. Every row is affine in the geometric parameters (a, b and the half-distances), so a row is its
+constant part and one slope per parameter; derivatives with respect to geometry need nothing else.
 """
 
 from __future__ import annotations
@@ -35,7 +38,7 @@ WHEELS_AT = slice(3, 7)
 _LETTERS = "ABCD"
 """Letters of the wheel stations in the paper."""
 
-_WITH_MASS: Mapping[str, tuple[str, ...]] = {"m_e": ("z_e",)}
+_WITH_MASS: Mapping[str, tuple[str, ...]] = {"m_e": ("z_e",), "m_o": ("z_o",), "I_w": ("q_w",), "m_v": ("q_v",)}
 """By parameter: the coordinates with mass that a vehicle with it has beside the paper's."""
 
 _WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
@@ -44,7 +47,7 @@ _WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
 }
 """By parameter: the coordinates without mass, likewise: travels of dampers that a spring connects, at each wheel."""
 
-_RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e"})
+_RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e", "z_o"})
 """Coordinates that are vertical displacements over the ground."""
 
 UNCONSTRAINED = ("x", "y", "psi")
@@ -156,17 +159,44 @@ def body_point(x: float, y: float) -> Row:
     x, y
         Position, m: forward of the front axle, left of the centreline. The centre of gravity is at x = -a.
     """
-    return Row({"z_s": 1.0, "theta": -x, "phi": y}, {"a": {"theta": -1.0}})
+    bent = {"q_w": y / 2, "q_v": -x / 2}
+    constant = {"z_s": 1.0, "theta": -x, "phi": y, "q_w": x * y, "q_v": -x * x / 2}
+    return Row(constant, {"a": {"theta": -1.0, **bent}, "b": bent})
 
 
-def pitch() -> Row:
-    """Pitch angle of the body, rad."""
-    return Row({"theta": 1.0})
+def pitch(wheelbase: float = 0.0) -> Row:
+    """Mean pitch angle of the body, rad; of one that bends with the wheelbase, m."""
+    return Row({"theta": 1.0}, {"p_v": {"q_v": sag(wheelbase)}})
 
 
 def roll() -> Row:
-    """Roll angle of the body, rad."""
-    return Row({"phi": 1.0})
+    """Mean roll angle of the body, rad."""
+    return Row({"phi": 1.0}, {"a_w": {"q_w": 1.0}})
+
+
+def pitch_at(x: float) -> Row:
+    """Pitch angle of the body at x forward of the front axle, rad."""
+    return Row({"theta": 1.0, "q_v": x}, {"a": {"q_v": 0.5}, "b": {"q_v": 0.5}})
+
+
+def roll_at(x: float) -> Row:
+    """Roll angle of the body at x forward of the front axle, rad."""
+    return Row({"phi": 1.0, "q_w": x}, {"a": {"q_w": 0.5}, "b": {"q_w": 0.5}})
+
+
+def twist() -> Row:
+    """Twist of the body, rad/m."""
+    return Row({"q_w": 1.0})
+
+
+def bending() -> Row:
+    """Curvature of the bent body, 1/m: positive where its middle is up."""
+    return Row({"q_v": 1.0})
+
+
+def sag(wheelbase: float) -> float:
+    """Return the rise of the body's middle above the line through its axles by a unit of curvature, m²; wheelbase in m."""
+    return wheelbase**2 / 8
 
 
 def forward(y: float = 0.0, height: float = 0.0) -> Row:
@@ -210,15 +240,18 @@ def yaw() -> Row:
     return Row({"psi": 1.0})
 
 
-def bounce(off_centre: bool = False) -> Row:
+def bounce(off_centre: bool = False, wheelbase: float = 0.0) -> Row:
     """Vertical displacement of the sprung mass's centre of gravity.
 
     Parameters
     ----------
     off_centre
         Whether it may be y_s left of the centreline; z_s is then the displacement beside it, on the centreline.
+    wheelbase
+        Of a body that bends, m.
     """
-    return Row({"z_s": 1.0}, {"y_s": {"phi": 1.0}} if off_centre else {})
+    own = {"y_s": {"phi": 1.0}} if off_centre else {}
+    return Row({"z_s": 1.0}, {**own, "b_v": {"q_v": sag(wheelbase)}})
 
 
 def side(station: Wheel) -> float:
@@ -231,7 +264,7 @@ def wheel(station: Wheel) -> Row:
     return Row({COORDINATES[WHEELS_AT][WHEELS.index(station)]: 1.0})
 
 
-def corner(station: Wheel, half_distance: str) -> Row:
+def corner(station: Wheel, half_distance: str, wheelbase: float = 0.0) -> Row:
     """Vertical displacement of the body above one wheel, at a half-distance from the centreline which is a parameter.
 
     Parameters
@@ -240,9 +273,13 @@ def corner(station: Wheel, half_distance: str) -> Row:
         The wheel station.
     half_distance
         Name of the parameter: ``t_f2`` for the front springs.
+    wheelbase
+        Of a body that twists, m.
     """
+    own = side(station)
+    half_angle = 0.5 * wheelbase if station[0] == "f" else -0.5 * wheelbase
     along = {"a": {"theta": -1.0}} if station[0] == "f" else {"b": {"theta": 1.0}}
-    return Row({"z_s": 1.0}, {**along, half_distance: {"phi": side(station)}})
+    return Row({"z_s": 1.0}, {**along, half_distance: {"phi": own, "q_w": own * half_angle}})
 
 
 def engine() -> Row:
@@ -253,6 +290,16 @@ def engine() -> Row:
 def engine_bay() -> Row:
     """Vertical displacement of the body at its engine mounts, on the centreline, x_e forward of the front axle."""
     return Row({"z_s": 1.0}, {"a": {"theta": -1.0}, "x_e": {"theta": -1.0}})
+
+
+def occupants() -> Row:
+    """Vertical displacement of people on soft seats."""
+    return Row({"z_o": 1.0})
+
+
+def seats() -> Row:
+    """Vertical displacement of the body under the seats, x_o forward of the front axle and y_o left of the centreline."""
+    return Row({"z_s": 1.0}, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, "y_o": {"phi": 1.0}})
 
 
 def on_axle(station: Wheel, share: str) -> Row:
@@ -285,15 +332,15 @@ def behind_branch(station: Wheel) -> Row:
     return Row({f"x_z{_LETTERS[WHEELS.index(station)]}": 1.0})
 
 
-def travel(station: Wheel, half_distance: str, share: str | None = None) -> Row:
+def travel(station: Wheel, half_distance: str, share: str | None = None, wheelbase: float = 0.0) -> Row:
     """Suspension travel at one wheel: body minus what is below it, positive in rebound.
 
     Parameters
     ----------
-    station, half_distance
+    station, half_distance, wheelbase
         As for `corner`.
     share
         As for `on_axle` where the axle is rigid; None for a wheel of its own.
     """
     below = wheel(station) if share is None else on_axle(station, share)
-    return corner(station, half_distance) - below
+    return corner(station, half_distance, wheelbase) - below

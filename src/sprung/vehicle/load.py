@@ -84,8 +84,8 @@ class Item:
         elif self.position is not None:
             x, y, z = self.position
             yield Element("mass", mass, kinematics.body_point(x, y))
-            arms = heights.item_arms(z)
-            for row, own, arm in zip((kinematics.roll(), kinematics.pitch()), self.inertia, arms, strict=True):
+            arms, rows = heights.item_arms(z), (kinematics.roll_at(x), kinematics.pitch_at(x))
+            for row, own, arm in zip(rows, self.inertia, arms, strict=True):
                 yield Element("mass", own, row)
                 if not heights.is_free:
                     yield Element("mass", mass, row, arm**2)

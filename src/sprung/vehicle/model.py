@@ -141,8 +141,8 @@ class Rows:
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
-        """Return the rows at parameter values of shape (..., parameter); shape (..., row, coordinate)."""
-        factors = _with_one(values)
+        """Return the rows at parameter values of shape (..., parameter), further ones ignored; shape (..., row, coordinate)."""
+        factors = _with_one(values)[..., : self.affine.shape[2]]
         rows: Array = factors @ self.affine.reshape(-1, factors.shape[-1]).T
         return rows.reshape(*factors.shape[:-1], *self.affine.shape[:2])
 

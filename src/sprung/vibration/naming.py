@@ -29,7 +29,7 @@ _TRAMP = {
     ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
 }
 
-_ALONE = {"z_e": "engine bounce"}
+_ALONE = {"z_e": "engine bounce", "z_o": "seat bounce", "q_w": "body twist", "q_v": "body bending"}
 """By coordinate: the name of the mode in which it moves by itself."""
 
 _TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)
@@ -116,7 +116,9 @@ def name_modes(
     # The body counts at its four corners, and as much what is a large part of it, as an engine; what has no mass does not.
     further = [name for name in coordinates if name in _ALONE]
     chosen = [*range(len(COORDINATES)), *(list(coordinates).index(name) for name in further)]
-    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, *[2] * len(further)])
+    # Twist and bending count by how far the corners, or the middle, of the body move.
+    sizes_of = {"q_w": 2 * half_wheelbase * half_track, "q_v": half_wheelbase**2}
+    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, *(sizes_of.get(one, 2.0) for one in further)])
     together = scale[:, None] * np.stack([mode.shape[chosen] for group in groups for mode in group], axis=1)
     # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
     of_shapes = np.hstack(

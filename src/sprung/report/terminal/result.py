@@ -21,6 +21,7 @@ from sprung.results import (
     other_quantities,
     parameters_table,
     ratios_table,
+    sensors_table,
 )
 from sprung.tables import unit_text
 from sprung.uncertainty import Estimate, round_by_uncertainty
@@ -60,6 +61,7 @@ def result_view(result: Result) -> RenderableType:
         parts += [render_table(ratios_table(result.scale.per_total_mass)), Text()]
     for load, modes in result.modes.items():
         parts += [render_table(modes_table(load, modes)), Text()]
+    parts += _sensors(result)
     if result.additional_terms:
         parts += [hanging_text("", result.additional_terms), Text()]
     parts += [fit_line(result), Text()]
@@ -69,6 +71,11 @@ def result_view(result: Result) -> RenderableType:
     if result.next_step is not None:
         parts += [Text(), next_line(result.next_step)]
     return Group(*parts)
+
+
+def _sensors(result: Result) -> list[RenderableType]:
+    """Return the table of what was found of the sensors, as far as they are uncertain."""
+    return [render_table(sensors_table(result.sensors)), Text()] if result.sensors else []
 
 
 def _rejected_view(result: Result) -> RenderableType:

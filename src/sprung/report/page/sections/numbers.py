@@ -19,6 +19,7 @@ from sprung.results import (
     meaning_of,
     other_quantities,
     ratios_table,
+    sensors_table,
 )
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
@@ -122,7 +123,13 @@ def known(result: Result) -> Context:
         rows.append((name, value, std or "exact", estimate, estimate_std, unit_text(prior.unit), difference))
     table = Table("Known beforehand", headers, tuple(rows), frozenset(headers[1:5]))
     heights = ", ".join(f"{key.replace('_', ' ')} {value:g} m" for key, value in result.setup.heights.items())
-    return {"known": table, "heights": heights, "loads": list(_loads(result.setup)), "sensors": _sensors(result.setup)}
+    return {
+        "known": table,
+        "heights": heights,
+        "loads": list(_loads(result.setup)),
+        "sensors": _sensors(result.setup),
+        "of_sensors": sensors_table(result.sensors) if result.sensors else None,
+    }
 
 
 def _loads(setup: Setup) -> Iterator[str]:
