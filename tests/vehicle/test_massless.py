@@ -17,7 +17,7 @@ from sprung.vibration import compute_modes
 
 Array = NDArray[np.float64]
 
-MOUNTS = {"k_df": 2.0e5, "k_dr": 2.4e5}
+MOUNTS = {"k_df": 2.0e5, "k_dr": 2.4e5, "c_df": 90.0, "c_dr": 120.0}
 BRANCHES = {"k_zf": 3000.0, "k_zr": 4500.0, "c_zf": 150.0, "c_zr": 290.0}
 WITH_MOUNTS = Vehicle.from_parameters(TABLE_1_CAR.parameters | MOUNTS)
 WITH_BRANCHES = Vehicle.from_parameters(TABLE_1_CAR.parameters | BRANCHES)
@@ -36,13 +36,17 @@ def rates_of_change(car: Vehicle, state: Array) -> Array:
     accelerations, relaxations = np.zeros(7), np.zeros(8)
     masses = (car.m_s, car.I_yy, car.I_xx, car.m_uf, car.m_uf, car.m_ur, car.m_ur)
     for i, (axle, side) in enumerate((("f", 1), ("f", -1), ("r", 1), ("r", -1))):
-        k_s, k_t, c_s, k_d, k_z, c_z, half = (
-            getattr(car, f"{name}{axle}") for name in ("k_s", "k_t", "c_s", "k_d", "k_z", "c_z", "t_")
+        k_s, k_t, c_s, k_d, c_d, k_z, c_z, half = (
+            getattr(car, f"{name}{axle}") for name in ("k_s", "k_t", "c_s", "k_d", "c_d", "k_z", "c_z", "t_")
         )
         lever = -car.a if axle == "f" else car.b
         travel = z + lever * theta + side * half * phi - wheels[i]
-        mount, branch = k_d * (travel - dampers[i]), k_z * (travel - branches[i])
-        relaxations[i], relaxations[4 + i] = mount / c_s, branch / c_z
+        rate = velocities[0] + lever * velocities[1] + side * half * velocities[2] - velocities[3 + i]
+        # The damper carries what its mount carries: c_s v = k_d (x - x_d) + c_d (rate - v).
+        relaxations[i] = (k_d * (travel - dampers[i]) + c_d * rate) / (c_s + c_d)
+        branch = k_z * (travel - branches[i])
+        relaxations[4 + i] = branch / c_z
+        mount = c_s * relaxations[i]
         force = k_s * travel + mount + branch
         accelerations[:3] -= force * np.array([1.0, lever, side * half])
         accelerations[3 + i] += force - k_t * wheels[i]

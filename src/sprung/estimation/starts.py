@@ -126,7 +126,19 @@ class VehicleSize(NamedTuple):
 
     @classmethod
     def of(cls, known: Mapping[str, KnownValue], sensors: Sequence[Sensor]) -> VehicleSize:
-        """Return the size from what is known beforehand, the rest from the sensors' positions."""
+        """Return the size from what is known beforehand, the rest from the sensors' positions.
+
+        Parameters
+        ----------
+        known
+            Quantities measured beforehand, by name.
+        sensors
+            The sensors.
+
+        Returns
+        -------
+        VehicleSize
+        """
         value = {name: one.value for name, one in known.items()}
         places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
         wheelbase, front_share = _length(value, places)

@@ -126,7 +126,7 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
     at_start = fit_linear(
         search.decays, rich.linear_models, rich.campaign.sensors, rich.known, start=values, usual=usual, most=0
     )
-    begun = fit_structure(
+    first = fit_structure(
         replace(rich, usual=usual),
         search.decays,
         at_start,
@@ -136,7 +136,7 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
         most=_ITERATIONS,
     )
     rich = replace(rich, usual=usual_sizes(rich, values))
-    fit = fit_structure(rich, search.decays, begun, _ENOUGH_OF_ALL, search.progress, most=_ITERATIONS_OF_ALL)
+    fit = fit_structure(rich, search.decays, first, _ENOUGH_OF_ALL, search.progress, most=_ITERATIONS_OF_ALL)
     return replace(search, structure=rich, fit=fit)
 
 

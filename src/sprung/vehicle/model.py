@@ -94,7 +94,20 @@ def state_matrix(highest: ArrayLike, massive: int) -> Array:
 
 
 def highest_derivatives(n: int, massive: int) -> NDArray[np.int64]:
-    """Return the positions in the state of what the highest derivatives of n coordinates are the rates of, shape (n,)."""
+    """Return the positions in the state of what the highest derivatives of the coordinates are the rates of.
+
+    Parameters
+    ----------
+    n
+        Number of coordinates.
+    massive
+        How many of them, the first, move a mass.
+
+    Returns
+    -------
+    ndarray of int
+        Shape (n,).
+    """
     return np.concatenate([np.arange(n, n + massive), np.arange(massive, n)])
 
 
