@@ -21,7 +21,16 @@ LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (
 
 
 WITH_RUBBER = replace(
-    TABLE_1_CAR, k_df=2.1e5, k_dr=2.6e5, c_df=80.0, c_dr=110.0, k_zf=3500.0, k_zr=3000.0, c_zf=190.0, c_zr=140.0, name="car with rubber"
+    TABLE_1_CAR,
+    k_df=2.1e5,
+    k_dr=2.6e5,
+    c_df=80.0,
+    c_dr=110.0,
+    k_zf=3500.0,
+    k_zr=3000.0,
+    c_zf=190.0,
+    c_zr=140.0,
+    name="car with rubber",
 )
 """Damper mounts and Zener branches: eight coordinates without mass."""
 

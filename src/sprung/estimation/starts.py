@@ -109,7 +109,7 @@ class VehicleSize(NamedTuple):
     wheelbase
         m.
     front_share
-        The front axle's share of the weight.
+        The front axle's share of the weight, dimensionless.
     mass
         Of the whole vehicle, kg.
     weighed
