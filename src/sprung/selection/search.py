@@ -13,7 +13,7 @@ from sprung.display import shown
 from sprung.estimation import NEAR, FitResult, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
-from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, required_gain
+from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import SEPARATE_TRACKS, TERMS
@@ -173,6 +173,12 @@ class ModelSearch:
         known = self._noise_at_rest > 0
         ratio = self.fit.noise[known] ** 2 / self._noise_at_rest[known]
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
+
+    @property
+    def is_misfit_large(self) -> bool:
+        """Whether what is left is no noise, and enough of some channel's signal that the parameters cannot be trusted."""
+        excess = np.maximum(self.fit.noise**2 - self._noise_at_rest, 0.0) * self.fit.problem.signal_weights
+        return self.overdispersion > OVERDISPERSED and float(excess.max()) > UNEXPLAINED**2
 
     @property
     def is_misfit_small(self) -> bool:
