@@ -27,8 +27,8 @@ MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.3
 leaves more is not the missing one, and its estimates are of no use."""
 
 UNEXPLAINED = 0.02
-"""Model error, as a part of a channel's signal, from which a vehicle with every usual term is fitted: what is slow is tried only
-where the model so far is of no use."""
+"""Model error, as a part of a channel's signal, from which a vehicle with every usual term is fitted: what is slow is tried
+only where the model so far is of no use."""
 
 OVERDISPERSED = 2.0
 """Overdispersion from which what is left is model error and not noise."""
