@@ -115,5 +115,6 @@ def studies(session: nox.Session) -> None:
         "fall",
         "differences",
         "modal",
+        "real_cars",
     ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

@@ -35,7 +35,8 @@ def test_the_sedan_comes_out_with_true_error_bars(sedan: sprung.Result, name: st
     assert found.std is not None
     assert abs(found.value / truth - 1) < 0.025
     assert abs(found.value - truth) < 4 * found.std
-    assert found.std < 0.01 * truth
+    # Places of four sensors, known to 1 cm at 0.7 m from the centreline, determine half-distances to 0.7 % and I_xx to 1.4 %.
+    assert found.std < (0.015 if name == "I_xx" else 0.01) * truth
 
 
 def test_the_sedan_is_accepted(sedan: sprung.Result) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from sprung.estimation import FitStatistics, characteristics_of
+from sprung.estimation import FitStatistics, characteristics_of, rates_at_motion_ratios
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, evaluate_quantity, wheel_loads
 
@@ -99,3 +99,16 @@ def test_a_lateral_centre_of_gravity_near_the_middle_has_a_number() -> None:
     assert found.interval95 is not None
     assert found.interval95[0] is not None
     assert found.interval95[0] < 0
+
+
+def test_rates_at_the_spring_and_at_the_damper_have_the_uncertainty_of_rate_and_ratio() -> None:
+    fit = fit_of(TABLE_1_CAR, np.diag(np.full(len(TABLE_1_CAR.parameters), 0.02**2)))
+    ratios = {"spring_front": KnownValue(0.7), "spring_rear": KnownValue(0.7, 0.014), "damper_front": KnownValue(0.5)}
+    found = rates_at_motion_ratios(fit, ratios)
+    assert list(found) == ["k_sf_at_spring", "k_sr_at_spring", "c_sf_at_damper"]
+    front, rear, damper = found.values()
+    # k / i²: 2 % of the rate alone; with twice the 2 % of the ratio, 4.47 %.
+    assert (front.value, front.std) == pytest.approx((17000 / 0.49, 0.02 * 17000 / 0.49))
+    assert (rear.value, rear.std) == pytest.approx((22000 / 0.49, 0.02 * 5**0.5 * 22000 / 0.49))
+    assert (damper.value, damper.std) == pytest.approx((6000.0, 120.0))
+    assert (front.unit, damper.unit) == ("N/m", "N s/m")

@@ -15,7 +15,7 @@ from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.objective import HasClockDelays
 from sprung.preprocess import FlightLikelihood, FreeDecay, prepare
 from sprung.simulation import free_decays
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, parse_record
+from sprung.vehicle import TABLE_1_CAR, Load, Readout, parse_record
 
 Real = NDArray[np.float64]
 
@@ -27,7 +27,7 @@ CAMPAIGN, QUIET = (
 NAMES = tuple(TABLE_1_CAR.parameters)
 TRUTH = np.array(list(TABLE_1_CAR.parameters.values()))
 MODELS = {load.name: TABLE_1_CAR.model(load) for load in CAMPAIGN.loads}
-ROWS = Rows.of([sensor.row for sensor in CAMPAIGN.sensors], NAMES)
+ROWS = Readout.of(CAMPAIGN.sensors, NAMES)
 WEIGHTS = np.full(8, 0.02**-2)
 
 

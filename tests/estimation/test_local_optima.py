@@ -55,7 +55,7 @@ def test_the_gain_of_a_larger_model_is_known_before_it_is_fitted(apart: float) -
     large = {load.name: car.model(load) for load in campaign.loads}
     fitted = fit_linear(decays, small, campaign.sensors, known)
     start = fitted.parameters | {f"t_{axle}{which}": fitted.parameters[f"t_{axle}"] for axle in "fr" for which in "12"}
-    expected, _ = score_linear_term(decays, large, campaign.sensors, known, start)
+    ((expected, _),) = score_linear_term(fitted, large, campaign.sensors, known, [start])
     gained = 2 * (fit_linear(decays, large, campaign.sensors, known, start=start).loglikelihood - fitted.loglikelihood)
     np.testing.assert_allclose(expected, gained, rtol=0.1)
 

@@ -11,7 +11,7 @@ from sprung.campaign import Campaign
 from sprung.estimation import ClosedFormObjective, FitResult, Prediction, fit_linear, predictions
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import choose_structure
-from sprung.vehicle import TABLE_1_CAR, Rows
+from sprung.vehicle import TABLE_1_CAR, Readout
 
 LOAD = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
 
@@ -38,7 +38,7 @@ def odd_one_out(**changed: float) -> Campaign:
 def predicted_by_a_fit(made: Campaign, position: int, weights: NDArray[np.float64]) -> float:
     """The sum of squares of one drop at the end of a fit to all others."""
     others, decays = fitted(made, without=position)
-    rows = Rows.of([sensor.row for sensor in made.sensors], others.names)
+    rows = Readout.of(made.sensors, others.names)
     alone = ClosedFormObjective([decays[position]], choose_structure(made).linear_models, rows)
     return float(alone.at(others.values, weights).residual_sums[0] @ weights)
 

@@ -15,7 +15,7 @@ from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays
 from sprung.uncertainty import Estimate, KnownValue
-from sprung.vehicle import TABLE_1_CAR, Rows
+from sprung.vehicle import TABLE_1_CAR, Readout
 
 Real = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ class LongWay:
     def __init__(self, campaign: Campaign) -> None:
         decays = prepare(campaign).decays
         models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
-        rows = Rows.of([sensor.row for sensor in campaign.sensors], NAMES)
+        rows = Readout.of(campaign.sensors, NAMES)
         self.objective = ClosedFormObjective(decays, models, rows)
         self.free = [name for name in NAMES if name not in ("m_s", "b", "t_f")]
         self.samples = len(decays) * decays[0].samples

@@ -18,6 +18,7 @@ from sprung import plot
 from sprung.assessment import Verdict
 from sprung.campaign import Campaign
 from sprung.errors import InputError
+from sprung.estimation import ForceCurve
 from sprung.results import Result
 from sprung.vehicle import TABLE_1_CAR
 
@@ -134,6 +135,32 @@ def test_amplitude(result: Result) -> None:
         plot.amplitude(replace(result, amplitude=()))
     with pytest.raises(InputError, match="Did you mean 'body bounce'"):
         plot.amplitude(result, "body bounse")
+
+
+def test_curves_of_dampers_as_from_a_dynamometer_and_of_springs_in_compression(result: Result) -> None:
+    x, force = np.array([-1.0, 0.0, 1.0]), np.array([-1000.0, 0.0, 3000.0])
+    front = ForceCurve(x=x, force=force, std=np.abs(force) / 10, x_unit="m/s", force_unit="N", reached=(-0.8, 0.5))
+    rear = replace(front, force=2 * force)
+    spring = replace(front, x=0.05 * x, x_unit="m", reached=(-0.04, 0.02))
+    curved = replace(result, curves={"damper_front": front, "damper_rear": rear, "spring_front": spring})
+    axes = plot.curve(curved)
+    assert axes.get_xlabel() == "velocity (rebound positive), m/s"
+    solid = [line for line in axes.lines if line.get_linestyle() == "-" and line.get_label() in ("front", "rear")]
+    for line, factor in zip(solid, (1, 2), strict=True):
+        velocity, drawn = (np.asarray(data, dtype=float) for data in line.get_data())
+        assert (velocity.min(), velocity.max()) == (-0.8, 0.5)
+        np.testing.assert_allclose(drawn, factor * np.interp(velocity, x, force))
+    bands = [np.asarray(band.get_paths()[0].vertices) for band in axes.collections if band.get_paths()]
+    # 95 % of 10 % of -800 N, beside the curve at the end of the range.
+    assert bands[0][:, 1].min() == pytest.approx(-800 - 1.96 * 80, rel=1e-4)
+    (compressed,) = [line for line in plot.curve(curved, "spring").lines if line.get_label() == "front"]
+    travel, load = (np.asarray(data, dtype=float) for data in compressed.get_data())
+    assert (travel.min(), travel.max()) == pytest.approx((-20, 40))
+    assert load[travel.argmax()] == pytest.approx(800)
+    with pytest.raises(InputError, match="Did you mean 'spring'"):
+        plot.curve(curved, "sprung")
+    with pytest.raises(InputError, match="no force curves"):
+        plot.curve(result)
 
 
 def test_what_is_not_there_is_named(result: Result) -> None:

@@ -44,7 +44,7 @@ def everything() -> Picture:
     )
     below = Panel(
         Axis("", 0.1, 100, log=True),
-        (Curve(x, x, "simulated", "", dashed=True),),
+        (Curve(x, x, "simulated", "", dashed=True, band=0.3 * x),),
         0.5,
         name="a channel's name that is long",
     )

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import sprung
 from sprung.errors import ResultFileError
-from sprung.results.checksums import arrays_checksum
+from sprung.results.checksums import arrays_checksum, document_checksum
 from sprung.vehicle import TABLE_1_CAR
 
 Document = dict[str, Any]
@@ -53,6 +53,20 @@ def test_the_series_can_be_left_out(copy: Path) -> None:
     assert not sprung.load(copy, series=False).series
     with pytest.raises(ResultFileError, match=r"series\.npz: found no such file"):
         sprung.load(copy)
+
+
+def test_a_result_that_was_written_before_these_keys_existed_is_read(copy: Path, folder: Path) -> None:
+    def by(document: Document) -> None:
+        for key in ("curves", "additional_terms"):
+            del document[key]
+        del document["setup"]["motion_ratio"]
+        checksums = document.pop("checksums")
+        document["checksums"] = {**checksums, "document": document_checksum(document)}
+
+    change(copy, by)
+    read = sprung.load(copy)
+    assert (read.curves, read.additional_terms, read.setup.motion_ratio) == ({}, "", {})
+    assert read.parameters == sprung.load(folder).parameters
 
 
 def put(*path: str, value: object) -> Callable[[Document], None]:

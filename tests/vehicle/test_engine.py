@@ -60,7 +60,7 @@ def test_in_the_air_only_gravity_moves_the_whole_vehicle() -> None:
 
 
 def test_its_mode_has_its_name() -> None:
-    named = {mode.name: mode for mode in compute_modes(WITH_ENGINE.matrices())}
+    named = {mode.name: mode for mode in compute_modes(WITH_ENGINE.matrices(), coordinates(WITH_ENGINE.parameters))}
     assert len(coordinates(WITH_ENGINE.parameters)) == 8
     # On a body that gives way it swings faster than on one that is held.
     assert named["engine bounce"].frequency == pytest.approx(10.87, abs=0.01)

@@ -9,7 +9,14 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 
-from sprung.vehicle import LINEAR_EXTRAS, PARAMETERS, LinearModel, parameter_names, seven_degrees_of_freedom
+from sprung.vehicle import (
+    LINEAR_EXTRAS,
+    PARAMETERS,
+    LinearModel,
+    coordinates,
+    parameter_names,
+    seven_degrees_of_freedom,
+)
 
 Array = NDArray[np.float64]
 
@@ -20,12 +27,16 @@ TYPICAL = {
     "N s/m": (500.0, 6000.0),
     "m": (0.3, 2.5),
     "N m": (10.0, 1000.0),
+    "N m s": (10.0, 1000.0),
+    "1": (-0.5, 0.5),
+    "1/m": (-0.2, 0.2),
 }
 
 UNEVEN = {name: 0.5 * TYPICAL[PARAMETERS[name].unit][0] for name in PARAMETERS if name[:2] == "d_"}
 NARROW = {name: (-most, most) for name, most in UNEVEN.items()}
 NARROW |= {"y_s": (-0.2, 0.2), "m_xf": (-10.0, 40.0), "m_xr": (-10.0, 40.0)}
 NARROW |= {"m_e": (0.5, 5.0), "x_e": (-2.5, 0.5)}  # no more than the lightest of these bodies is left with
+NARROW |= {"m_o": (0.5, 5.0), "x_o": (-2.5, 0.5), "y_o": (-0.5, 0.5), "a_w": (-0.5, 0.5)}  # likewise
 NARROW |= {name: (0.4, 1.1) for name in PARAMETERS if name[:2] == "n_"}
 
 
@@ -59,7 +70,7 @@ def equation_2(p: Mapping[str, float], f: float, r: float, t_f: float, t_r: floa
 
 
 def model_of(names: tuple[str, ...], extras: tuple[str, ...] = ()) -> LinearModel:
-    return LinearModel.of(seven_degrees_of_freedom("separate", extras), names)
+    return LinearModel.of(seven_degrees_of_freedom("separate", extras, wheelbase=2.7), names)
 
 
 @given(values_of(NAMES))
@@ -100,8 +111,10 @@ def test_anti_roll_bar_feels_roll_and_wheels_but_not_bounce_or_pitch() -> None:
     with_bar = model_of(ALL_NAMES, LINEAR_EXTRAS).matrices(list(p.values())).K
     p["k_af"] = 0.0
     bar = with_bar - model_of(ALL_NAMES, LINEAR_EXTRAS).matrices(list(p.values())).K
-    # Left minus right travel is 2 t_f2 φ - (z_uA - z_uB), here with t_f2 = 1.
-    g = np.array([0.0, 0.0, 2.0, -1.0, 1.0, 0.0, 0.0, 0.0])
+    # Left minus right travel is 2 t_f2 (φ + L q_w/2) - (z_uA - z_uB), here with t_f2 = 1 and the wheelbase L = 2.7.
+    g = np.zeros(len(bar))
+    g[2:5] = 2.0, -1.0, 1.0
+    g[coordinates(ALL_NAMES).index("q_w")] = 2.7
     assert_allclose(bar, np.outer(g, g), atol=1e-14)
 
 

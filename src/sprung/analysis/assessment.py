@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib.metadata import version
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +21,30 @@ from sprung.assessment import (
     estimate_model_error,
 )
 from sprung.checking import check_prepared
-from sprung.estimation import FitResult, FitStatistics, characteristics_of, estimate_of, mode_estimates, to_estimates
+from sprung.estimation import (
+    FitResult,
+    FitStatistics,
+    ForceCurve,
+    characteristics_of,
+    estimate_of,
+    force_curves,
+    mode_estimates,
+    rates_at_motion_ratios,
+    to_estimates,
+)
 from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
-from sprung.results import FitReport, Result, Series, TestedVehicle, setup_of, withhold_estimates
-from sprung.selection import ModelStructure, SelectionStep
-from sprung.vehicle import EMPTY, LOAD_MASS
+from sprung.results import FitReport, Result, SensorEstimate, Series, TestedVehicle, setup_of, withhold_estimates
+from sprung.selection import SEPARATE_TRACKS, TERMS, ModelStructure, SelectionStep, describe_terms
+from sprung.vehicle import (
+    EMPTY,
+    LOAD_MASS,
+    SENSOR_UNKNOWNS,
+    Sensor,
+    nonlinear_elements,
+    seven_degrees_of_freedom,
+)
 
 METHOD = "joint maximum likelihood"
 
@@ -36,7 +52,8 @@ METHOD = "joint maximum likelihood"
 def assess(run: Analysis, progress: Progress) -> Analysis:
     """Validate the fit, decide on the verdict, and put the result together."""
     run = _with_drifts(run)
-    campaign, structure, fit, optimum = run.campaign, run.model.structure, run.uncertainty, run.fit
+    campaign, structure, optimum = run.campaign, run.model.structure, run.fit
+    statistics, fit = run.uncertainty, run.uncertainty.of_vehicle
     decays, suspected = run.decays, run.suspected
     progress(Step("judging the fit: each drop predicted by the others"))
     channels = tuple(sensor.channel for sensor in campaign.sensors)
@@ -44,22 +61,24 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, structure.known)
     misfit = estimate_model_error(fit, decays)
-    motions = body_motions(fit, decays, campaign.sensors)
+    motions = body_motions(statistics, decays, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     verdict = decide_verdict(
         fit, misfit, estimates.parameters, channels, [fault.what for fault in suspected], validated
     )
     rejected = verdict.state == "reject"
-    profiles = {} if rejected else profiles_of(run.options.profile, optimum, fit, structure.known, progress)
+    profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
+    setup = setup_of(campaign, fit, structure.known, run.options.texts)
     result = Result(
-        version=version("sprung"),
+        version=setup.software["sprung"],
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else recommend_next_step(run),
         parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
         derived={
             **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
+            **({} if rejected else rates_at_motion_ratios(fit, campaign.motion_ratio)),
             **about_roll_axis(fit, structure.heights),
             **{name: estimate_of(fit, structure.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
             **{name: found for name, found in profiles.items() if name not in estimates.parameters},
@@ -71,11 +90,14 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
             load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
             for load in loads
         },
+        sensors=_sensor_estimates(statistics, structure.sensors),
+        additional_terms="" if rejected else _additional_terms(structure, fit),
+        curves={} if rejected else _curves_of(structure, fit, optimum),
         fit=_fit_report(structure, _reason(run), run.model.steps, fit, decays, channels, misfit, optimum),
         drops=tuple(replace(drop, clocks=clocks.get(drop.label, ())) for drop in looked_at.drops),
         faults=tuple(dict.fromkeys((*looked_at.faults, *suspected))),
         validation=validated,
-        setup=setup_of(campaign, fit, structure.known, run.options.texts),
+        setup=setup,
         series={
             decay.name: _series(decay, fitted, motion, channels)
             for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)
@@ -84,6 +106,43 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     )
     run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _sensor_estimates(fit: FitStatistics, sensors: Sequence[Sensor]) -> tuple[SensorEstimate, ...]:
+    """Return what was found of the sensors, channel by channel."""
+    std = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
+    found = []
+    for sensor in sensors:
+        for kind in SENSOR_UNKNOWNS:
+            name = f"{kind.prefix}{sensor.channel}"
+            if name in fit.names:
+                at = fit.names.index(name)
+                found.append(
+                    SensorEstimate(
+                        channel=sensor.channel,
+                        quantity=kind.quantity,
+                        value=float(fit.values[at]),
+                        std=float(std[at]),
+                        stated_std=sensor.uncertainties[name].std,
+                        unit=kind.unit,
+                    )
+                )
+    return tuple(found)
+
+
+def _additional_terms(structure: ModelStructure, fit: FitStatistics) -> str:
+    """Return one sentence that states what the vehicle has besides springs and dampers."""
+    terms = [SEPARATE_TRACKS] * (structure.tracks == "separate") + list(structure.terms)
+    return describe_terms([TERMS[name].description for name in terms], fit)
+
+
+def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult) -> dict[str, ForceCurve]:
+    """Return the force curves of the dampers, springs and tyres that are not linear."""
+    if not structure.is_nonlinear:
+        return {}
+    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights, structure.wheelbase)
+    nonlinear = nonlinear_elements(structure.tracks, structure.terms, structure.wheelbase)
+    return force_curves(fit, optimum, structure.nonlinear_models, linear, nonlinear)
 
 
 def _fit_report(
@@ -103,7 +162,7 @@ def _fit_report(
         model=structure.terms,
         tracks=structure.tracks,
         why=why,
-        axes=axes_of(structure.heights),
+        axes=axes_of(structure.heights, structure.assumed_heights is not None),
         since="release" if structure.unilateral_tyres else "landing",
         path=path,
         method=METHOD,

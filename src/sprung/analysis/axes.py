@@ -12,15 +12,24 @@ ABOUT_ROLL_AXIS = "I_xx_roll_axis"
 """Name of the sprung mass's roll inertia about the axis of roll, among the derived quantities."""
 
 
-def axes_of(heights: Heights) -> str:
+def axes_of(heights: Heights, assumed: bool = False) -> str:
     """Return the axes to which I_xx and I_yy refer, as text.
 
     Parameters
     ----------
     heights
         How high things are, as far as it was measured.
+    assumed
+        Whether they were not measured, but follow from the recordings.
     """
-    if not heights.has_effect:
+    arm = -heights.wheel_arms[1]
+    if assumed and arm != 0:
+        where = "above" if arm > 0 else "below"
+        return (
+            "no heights are given; I_xx and I_yy are about the centre of gravity of the sprung mass, which according to the "
+            f"recordings is {abs(arm):.2f} m {where} the wheel centres, where the body is carried"
+        )
+    if assumed or not heights.has_effect:
         return (
             "no heights are given; I_xx and I_yy refer to the actual roll and pitch axes and include the lateral motion of "
             "the wheels"

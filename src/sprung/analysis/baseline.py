@@ -5,52 +5,92 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sprung.analysis.analysis import Analysis
-from sprung.estimation import CONVERGED, NEAR, FitResult, fit_from_contact, fit_linear
+from sprung.analysis.settling import settle_corrections
+from sprung.estimation import CONVERGED, MOST_STEPS, NEAR, FitResult, fit_from_contact, fit_linear
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection import (
-    ENGINE,
+    STARTED_LATER,
     ModelSearch,
     ModelStructure,
     choose_structure,
     fit_requested_terms,
     fit_structure,
+    needed_terms,
     select_roll_axis_height,
 )
+
+Real = NDArray[np.float64]
 
 
 def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
     """Fit the requested model as far as it is linear, and let it tell from where on all tyres are on the ground."""
     requested, structure = structures(run)
-    fit = fit_baseline_model(run, run.prepared.decays, progress)
-    search = select_roll_axis_height(ModelSearch(structure, fit, run.prepared.decays, (), progress))
-    search = fit_requested_terms(search, [term for term in requested.linear_terms if term not in structure.terms])
-    converged = from_contact(search)
-    is_moved = any(decay.start != before.start for decay, before in zip(converged.decays, search.decays, strict=True))
-    run = replace(run, requested=requested, search=converged, fits=run.fits + 1 + is_moved)
+    run = replace(run, requested=requested)
+    if run.clock_fit is None and run.corrected and run.corrected[-1].candidate.is_explained:
+        run = _fit_corrected(run, structure, progress)
+    else:
+        fit = fit_baseline_model(run, structure, run.prepared.decays, progress)
+        search = select_roll_axis_height(ModelSearch(structure, fit, run.prepared.decays, (), progress))
+        search = fit_requested_terms(search, [term for term in requested.linear_terms if term not in structure.terms])
+        last = from_contact(search)
+        is_moved = any(decay.start != before.start for decay, before in zip(last.decays, search.decays, strict=True))
+        run = replace(run, search=last, fits=run.fits + 1 + is_moved)
     return run.noted(
         "fit_baseline", described(run.model), f"{run.fit.starts_agreeing} of {run.fit.starts} starts agree"
     )
 
 
+def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress) -> Analysis:
+    """Fit the corrected campaign with the model and from the fit by which its correction was confirmed.
+
+    Terms that were in that model stay if its fit needs them. One Gauss-Newton step tells from where on the tyres are on the
+    ground, and which numbers the corrections then have.
+    """
+    candidate = run.corrected[-1].candidate
+    structure = replace(structure, carried_at=candidate.structure.carried_at)
+    terms, tracks = candidate.structure.terms, candidate.structure.tracks
+    larger = ModelSearch(structure.with_terms(terms, tracks), candidate.fit, candidate.decays)
+    needed = needed_terms(larger)
+    smaller = larger
+    for term in larger.selected:
+        smaller = smaller if term in needed else replace(smaller, structure=smaller.without(term))
+    decays = run.prepared.decays
+    fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
+    near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
+    run = settle_corrections(replace(run, search=near.recorded(needed, fitted=True, taken=True)))
+    return converged(run, progress)
+
+
+def converged(run: Analysis, progress: Progress) -> Analysis:
+    """Fit the present model to the present decays until it has converged."""
+    search = run.model
+    fit = fit_structure(search.structure, search.decays, search.fit, CONVERGED, progress)
+    return replace(run, search=replace(search, fit=fit), fits=run.fits + 1)
+
+
 def structures(run: Analysis) -> tuple[ModelStructure, ModelStructure]:
     """Return the model that is requested, and the one to begin with.
 
-    An engine that no sensor measures is put into a vehicle that is fitted already: nothing determines it before.
+    An engine, say, that no sensor measures is put into a vehicle that is fitted already: nothing determines it before.
     """
     requested = choose_structure(run.campaign, run.options.tracks, run.options.terms)
-    baseline = requested.with_terms(tuple(term for term in requested.linear_terms if term != ENGINE))
+    baseline = requested.with_terms(tuple(term for term in requested.linear_terms if term not in STARTED_LATER))
     return requested, baseline
 
 
-def fit_baseline_model(run: Analysis, decays: Sequence[FreeDecay], progress: Progress) -> FitResult:
+def fit_baseline_model(
+    run: Analysis, structure: ModelStructure, decays: Sequence[FreeDecay], progress: Progress
+) -> FitResult:
     """Fit the model to begin with, from the fit that set the clocks where there is one."""
-    _, structure = structures(run)
     return fit_linear(
         decays,
         structure.linear_models,
-        run.campaign.sensors,
+        structure.sensors,
         structure.known,
         start=None if run.clock_fit is None else run.clock_fit.parameters,
         guess=run.options.start,
@@ -59,14 +99,13 @@ def fit_baseline_model(run: Analysis, decays: Sequence[FreeDecay], progress: Pro
     )
 
 
-def from_contact(search: ModelSearch) -> ModelSearch:
-    """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit to convergence."""
-    decays, fit = fit_from_contact(
-        search.decays,
-        search.structure.linear_models,
-        search.fit,
-        lambda decays, fit, states: fit_structure(search.structure, decays, fit, CONVERGED, search.progress, states),
-    )
+def from_contact(search: ModelSearch, most: int = MOST_STEPS) -> ModelSearch:
+    """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again."""
+
+    def refitted(decays: Sequence[FreeDecay], fit: FitResult, states: Real) -> FitResult:
+        return fit_structure(search.structure, decays, fit, CONVERGED, search.progress, states, most=most)
+
+    decays, fit = fit_from_contact(search.decays, search.structure.linear_models, search.fit, refitted)
     return replace(search, decays=decays, fit=fit)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.analysis.analysis import Analysis
-from sprung.analysis.baseline import fit_baseline_model
+from sprung.analysis.baseline import fit_baseline_model, structures
 from sprung.analysis.synchronisation import mask_unsynchronised, synchronise_at_release, synchronise_by_decay
 from sprung.campaign import Campaign, LoggerClock
 from sprung.checking import ClockReport
@@ -63,12 +63,12 @@ def synchronise(run: Analysis, progress: Progress) -> Analysis:
     prepared = run.prepared
     if not any(decay.clocks for decay in prepared.decays):
         return run
-    campaign = run.campaign
+    campaign, (_, structure) = run.campaign, structures(run)
     # As far as the first motion that each logger shows determines it, all clocks are one: near enough for a first vehicle.
-    fit = fit_baseline_model(run, [replace(decay, clocks=()) for decay in prepared.decays], progress)
+    fit = fit_baseline_model(run, structure, [replace(decay, clocks=()) for decay in prepared.decays], progress)
     for _ in range(_PASSES):
         released = _synchronised_at_release(campaign, prepared, prepared.decays, fit)
-        fit = fit_baseline_model(run, [mask_unsynchronised(decay) for decay in released], progress)
+        fit = fit_baseline_model(run, structure, [mask_unsynchronised(decay) for decay in released], progress)
         timed = synchronise_by_decay(released, fit)
         known = {
             decay.file: [

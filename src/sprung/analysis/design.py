@@ -8,7 +8,7 @@ import numpy as np
 
 from sprung.analysis.analysis import Analysis
 from sprung.campaign import DEFAULT_HEIGHT
-from sprung.vehicle import LOAD_MASS, parameter_names
+from sprung.vehicle import LOAD_MASS, is_of_sensor, parameter_names
 
 if TYPE_CHECKING:
     from sprung.planning import PlannedTest
@@ -37,13 +37,14 @@ def to_design(run: Analysis) -> PlannedTest:
 
     campaign, decays, fitted = run.campaign, run.decays, run.model.structure
     structure = fitted.with_terms(fitted.linear_terms)
-    fit = run.uncertainty.only(parameter_names(structure.tracks, structure.terms))
+    own = parameter_names(structure.tracks, structure.terms)
+    fit = run.uncertainty.only((*own, *filter(is_of_sensor, run.uncertainty.names)))
     setup = setup_from_fit(
         fit,
         structure.tracks,
         structure.terms,
         {name: one for name, one in structure.known.items() if not name.startswith(LOAD_MASS)},
-        campaign.sensors,
+        structure.sensors,
         rate=float(np.median([decay.rate for decay in decays])),
         duration=_BEFORE_DECAY + float(np.median([decay.samples / decay.rate for decay in decays])),
         heights=structure.heights,

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
+from sprung.analysis.baseline import converged
+from sprung.analysis.settling import settle_corrections
 from sprung.campaign import Campaign
-from sprung.estimation import CONVERGED, NEAR
+from sprung.estimation import NEAR
 from sprung.faults import (
     Consistency,
     FaultIsolation,
@@ -18,11 +20,9 @@ from sprung.faults import (
     isolate,
     reference_noise,
     residual_table,
-    score_faults_of,
 )
 from sprung.progress import Progress, Step, silent
-from sprung.selection import TERMS, fit_structure, score_terms
-from sprung.vehicle import Tracks
+from sprung.selection import SEPARATE_TRACKS, TERMS, ModelSearch, fit_structure, needed_terms, score_terms
 
 _MOST = 0.5
 """Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
@@ -98,7 +98,8 @@ def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Pro
     if consistency is None:
         return run
     if consistency == "consistent":
-        run = _with_settled_numbers(run, progress)
+        settled = settle_corrections(run)
+        run = run if settled is run else converged(settled, progress)
         checked = replace(run, isolated=(run.fit, None))
         return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
     progress(Step("isolating faults"))
@@ -112,51 +113,30 @@ def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Pro
     return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{found.fits} fits of hypotheses")
 
 
-def _with_settled_numbers(run: Analysis, progress: Progress) -> Analysis:
-    """Correct the numbers of earlier corrections, a gain or a place, to where the scores of the present fit have them.
-
-    They were estimated with a larger model and shorter decays. The decays are corrected as they are, and fitted once more.
-    """
-    scores = score_faults_of(run.campaign, run.decays, run.fit) if run.corrected else ()
-    settled = {index: found for index, one in enumerate(run.corrected) if (found := one.settled(scores)) is not None}
-    if not settled:
-        return run
-    campaign, decays = run.campaign, run.decays
-    corrected = list(run.corrected)
-    for index, (better, change) in settled.items():
-        campaign = change.of_campaign(campaign)
-        decays = change.of_decays(campaign, decays)
-        faults = (better.fault if fault == corrected[index].fault else fault for fault in campaign.faults)
-        campaign, corrected[index] = replace(campaign, faults=tuple(faults)), better
-    structure = replace(run.model.structure, campaign=campaign)
-    fit = fit_structure(structure, decays, run.fit, CONVERGED, progress)
-    search = replace(run.model, structure=structure, decays=decays, fit=fit)
-    run = replace(run, campaign=campaign, corrected=tuple(corrected), search=search, fits=run.fits + 1)
-    what = "; ".join(f"{better.fault.where}: {better.fault.what}" for better, _ in settled.values())
-    return run.noted("isolate_faults", "the numbers of corrections are settled in the fit of all drops", what)
-
-
 def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, FaultIsolation]:
     """Return the fit against which hypotheses are held, with the larger of the models that are open.
 
     A wheel sensor at fault may have shown a wrong landing: where the fit does not describe the recordings, the decays begin
-    where they would without any, unless too little of the motion is left then to show what is wrong.
+    where they would without any, unless too little of the motion is left then to show what is wrong. What is left shows
+    whether the larger model is needed.
     """
     structure = run.model.structure
-    is_larger = structure.tracks_open and consistency == "misfit"
-    tracks: Tracks = "separate" if is_larger else structure.tracks
+    linear = structure.with_terms(structure.linear_terms)
+    is_open = structure.tracks_open and consistency == "misfit"
+    larger = linear.with_terms(linear.terms, "separate" if is_open else None)
     if consistency == "misfit":
         run = replace(run, preparations=run.preparations + 1)
         decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
         if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
             run = replace(run, fits=run.fits + 1)
-            isolation = FaultIsolation.of(run.campaign, decays, None, tracks, structure.linear_terms)
+            isolation = FaultIsolation.of(larger, decays)
             if not isolation.base.is_explained:
                 return run, isolation
-    is_same = tracks == structure.tracks and not structure.is_time_stepped
-    run = replace(run, fits=run.fits + (not is_same))
-    fit = run.fit if is_same else None
-    return run, FaultIsolation.of(run.campaign, run.decays, fit, tracks, structure.linear_terms)
+            if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, isolation.base.fit, decays)):
+                larger = linear
+    if larger.names == structure.names:
+        return run, FaultIsolation.of(structure, run.decays, run.fit)
+    return replace(run, fits=run.fits + 1), FaultIsolation.of(larger, run.decays)
 
 
 def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:

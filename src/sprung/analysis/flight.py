@@ -20,7 +20,7 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, Rows, Vehicle, coordinates, evaluate_quantity
+from sprung.vehicle import WHEELS, Readout, Vehicle, coordinates, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -109,7 +109,7 @@ def _initial_states(
     """Return {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
     states = optimum.states[:, : 2 * len(coordinates(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **choice.heights.by_key)
-    rows = Rows.of([sensor.row for sensor in campaign.sensors], optimum.names).at(optimum.values)
+    rows = Readout.of(campaign.sensors, optimum.names).at(optimum.values)
     for state, flight in zip(states, found, strict=True):
         if flight is not None:
             state[:] = _start(flight, vehicle, campaign, rows)

@@ -9,7 +9,7 @@ from sprung.analysis.clocks import synchronise
 from sprung.analysis.faults import isolate_evident_faults, isolate_faults
 from sprung.analysis.flight import use_flight
 from sprung.analysis.preparation import preprocess
-from sprung.analysis.terms import select_linear_terms, select_nonlinear_terms
+from sprung.analysis.terms import select_finite_rotation, select_linear_terms, select_nonlinear_terms
 from sprung.analysis.uncertainty import estimate_uncertainty
 from sprung.campaign import Campaign
 from sprung.progress import Progress, silent
@@ -21,6 +21,7 @@ STAGES: tuple[Stage, ...] = (
     isolate_evident_faults,
     select_linear_terms,
     isolate_evident_faults,
+    select_finite_rotation,
     select_nonlinear_terms,
     isolate_faults,
     estimate_uncertainty,

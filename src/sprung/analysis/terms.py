@@ -7,7 +7,8 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms
+from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms, select_from_ordinary_vehicle
+from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
 
@@ -21,6 +22,19 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     return _with_search(run, before, search, "select_linear_terms")
 
 
+def select_finite_rotation(run: Analysis, progress: Progress) -> Analysis:
+    """Take the effects of the second order in the angles into account, if the recordings show them."""
+    before = replace(run.model, progress=progress)
+    _, plain = structures(run)
+    search = select_rotation(before, plain)
+    if search is before:
+        return run
+    gain = search.gain_over(before)
+    run = _with_search(replace(run, fits=run.fits + 1), run.model, search, "select_finite_rotation")
+    what = "finite rotation and the sinking of the body under its loads: included"
+    return run.noted("select_finite_rotation", what, f"Δ2lnL = {gain:.0f}, required {search.required_of_switch:.0f}")
+
+
 def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     """Fit the nonlinear terms that are requested, or select those that the recordings support."""
     before, requested = replace(run.model, progress=progress), run.requested
@@ -28,7 +42,14 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         search = fit_forced_terms(before, requested)
     else:
         _, plain = structures(run)
-        search = select_nonlinear(before, replace(plain, carried_at=before.structure.carried_at))
+        found = before.structure
+        plain = replace(
+            plain, carried_at=found.carried_at, assumed_heights=found.assumed_heights, sinking=found.sinking
+        )
+        search = select_nonlinear(before, plain)
+        rich = select_from_ordinary_vehicle(search, plain)
+        is_better = rich.delta_bic(search) > 0
+        search = rich if is_better else replace(search, steps=rich.steps)
     if search.structure.is_nonlinear:
         search = from_contact(search)
     return _with_search(run, run.model, search, "select_nonlinear_terms")

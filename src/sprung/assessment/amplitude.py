@@ -17,7 +17,7 @@ from sprung.assessment.mode_tracking import AmplitudeCurve, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.progress import Progress, counted, silent
-from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, free_decay
+from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, coordinates, free_decay
 from sprung.vibration import Mode, compute_modes
 
 Real = NDArray[np.float64]
@@ -97,7 +97,7 @@ def follow_modes(
     """
     linear = model.linear if isinstance(model, NonlinearModel) else model
     matrices = linear.matrices(fit.values)
-    modes = [mode for mode in compute_modes(matrices) if mode.pole.imag != 0]
+    modes = [mode for mode in compute_modes(matrices, coordinates(linear.names)) if mode.pole.imag != 0]
     rows = body_rows(fit, sensors)
     determined = [motion for motion in motions if np.isfinite(motion.measured).all()]
     found = []
@@ -145,11 +145,12 @@ def _share(motion: BodyMotion, modes: Sequence[Mode], which: int, rows: Real) ->
 def _decay(model: LinearModel | NonlinearModel, values: Real, mode: Mode, amplitude: float) -> Real:
     """Simulate free vibration from the shape of a mode: accelerations of the body, shape (3, time)."""
     samples = int(_WAVES / mode.frequency / _STEP)
-    begin = amplitude * np.concatenate([mode.shape, mode.pole * mode.shape]).real
+    linear = model if isinstance(model, LinearModel) else model.linear
+    begin = amplitude * np.concatenate([mode.shape, mode.pole * mode.shape[: linear.massive]]).real
     if isinstance(model, LinearModel):
         return free_decay(model.matrices(values), begin, _STEP, samples).acceleration[:3]
     stepper = Stepper.of([model], [_STEP], np.zeros(1, dtype=np.int64), values)
-    path = stepper.integrate(begin[None], np.zeros((1, len(model.forces.with_memory))), samples - 1)
+    path = stepper.integrate(begin[None], np.zeros((1, model.forces.memories)), samples - 1)
     inputs = np.concatenate([path.states[:, 0], path.forces[:, 0], np.ones((samples, 1))], axis=1)
     accelerations: Real = (inputs @ model.accelerations(values)[0].T).T[:3]
     return accelerations

@@ -13,7 +13,7 @@ from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import Rows, Sensor
+from sprung.vehicle import Readout, Sensor
 
 Real = NDArray[np.float64]
 
@@ -107,11 +107,15 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
     rows, noise = body_rows(fit, sensors), estimate_noise_level(fit, decays)
     at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
     known_from = float(at_rest or sum(decay.samples for decay in decays))
+    # Drops usually have all their channels, and then one inverse.
+    inverses = {
+        used: motion_from_channels(rows, np.where(used, noise, np.inf))
+        for used in {tuple(decay.usable.tolist()) for decay in decays}
+    }
     motions = []
     for decay, fitted in zip(decays, fit.fitted, strict=True):
-        inverse = motion_from_channels(rows, np.where(decay.usable, noise, np.inf))
-        values = np.nan_to_num(decay.values)
-        centred = values - values.mean(axis=1, keepdims=True)
+        inverse = inverses[tuple(decay.usable.tolist())]
+        centred = np.where(decay.usable[:, None], decay.values - decay.values.mean(axis=1, keepdims=True), 0.0)
         determined = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
         motions.append(
             BodyMotion(
@@ -128,7 +132,7 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
 
 def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
     """Return the reading of each sensor per vertical, pitch and roll acceleration; zero on wheels, shape (channel, 3)."""
-    rows = Rows.of([sensor.row for sensor in sensors], fit.names).at(fit.values)[:, :3]
+    rows = Readout.of(sensors, fit.names).at(fit.values)[:, :3]
     on_body = np.array([sensor.on == "body" for sensor in sensors])
     return np.where(on_body[:, None], rows, 0.0)
 

@@ -13,7 +13,7 @@ from sprung.assessment.residuals import ResidualStatistics, describe_residuals, 
 from sprung.display import shown
 from sprung.estimation import FitResult, FitStatistics, Prediction, predictions
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import coordinates
+from sprung.vehicle import state_variables
 
 Real = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def cross_validate_drops(
     # Coloured noise is less informative; a disagreement of the drops is what is to be detected here, so that it does not count.
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
     noise = estimate_noise_level(fit, decays)
-    free = 2 * len(coordinates(fit.names))  # a drop's initial state takes up as many samples of noise
+    free = len(state_variables(fit.names))  # a drop's initial state takes up as many samples of noise
     of_drops = zip(decays, motions, predicted, fit.residual, describe_residuals(fit, decays, noise), strict=True)
     for decay, motion, prediction, residual, statistics in of_drops:
         values = np.nan_to_num(decay.values)

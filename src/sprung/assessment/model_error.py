@@ -40,7 +40,7 @@ def estimate_model_error(fit: FitStatistics, decays: Sequence[FreeDecay]) -> tup
     So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
-    variance, neighbour, samples = pool_moments(fit.residuals)
+    variance, neighbour, samples = fit.residual_moments
     signal, _, _ = pool_moments(decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays)
     noise = estimate_sensor_noise(decays, (variance, neighbour, samples))
     known = noise.samples > 0

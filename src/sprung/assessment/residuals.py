@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import fftconvolve
+from scipy.fft import irfft, next_fast_len, rfft
 
 from sprung.display import shown
 from sprung.estimation import FitStatistics
-from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
+from sprung.preprocess import FreeDecay, estimate_sensor_noise
 
 Real = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Rea
     ndarray
         m/s² root-mean-square, shape (channel,).
     """
-    noise = estimate_sensor_noise(decays, pool_moments(fit.residuals))
+    noise = estimate_sensor_noise(decays, fit.residual_moments)
     at_rest = np.where((noise.samples > 0) & (noise.variance > 0), np.sqrt(noise.variance + noise.added), np.inf)
     return np.minimum(at_rest, fit.noise)
 
@@ -84,24 +84,35 @@ def describe_residuals(
         `ResidualStatistics` for each drop, by the position of the channel; without channels that are left out.
     """
     return tuple(
-        {
-            int(channel): _residual_statistics(record[channel], decay.rate, float(noise[channel]))
-            for channel in np.flatnonzero(decay.usable)
-        }
+        dict(
+            zip(
+                np.flatnonzero(decay.usable).tolist(),
+                _residual_statistics(record[decay.usable], decay.rate, noise[decay.usable]),
+                strict=True,
+            )
+        )
         for decay, record in zip(decays, fit.residuals, strict=True)
     )
 
 
-def _residual_statistics(values: Real, rate: float, noise: float) -> ResidualStatistics:
-    count, size = len(values), float(np.sqrt(np.mean(values**2)))
+def _residual_statistics(values: Real, rate: float, noise: Real) -> Iterator[ResidualStatistics]:
+    """Yield the statistics of each channel of a record, shape (channel, time)."""
+    count, squares = values.shape[1], np.einsum("ct,ct->c", values, values)
     lags = np.arange(1, min(max(int(_SPAN * rate), 1), count // 4) + 1)
-    correlations = fftconvolve(values, values[::-1])[count - 1 + lags] / max(count * size**2, np.finfo(float).tiny)
-    portmanteau = count * (count + 2) * float(np.sum(correlations**2 / (count - lags)))
-    largest = int(np.abs(correlations).argmax())
-    return ResidualStatistics(
-        residual=size,
-        over_noise=size / noise,
-        correlation=float(correlations[largest]),
-        lag=float(lags[largest] / rate),
-        colour=float((portmanteau - len(lags)) / np.sqrt(2 * len(lags))),
+    # Padded with zeros by the longest lag, a record meets itself once at each lag.
+    padded = next_fast_len(count + len(lags), real=True)
+    spectra = rfft(values, padded)
+    products = irfft(spectra.real**2 + spectra.imag**2, padded)[:, lags]
+    correlations = products / np.maximum(squares, np.finfo(float).tiny)[:, None]
+    portmanteau = count * (count + 2) * np.sum(correlations**2 / (count - lags), axis=1)
+    largest = np.abs(correlations).argmax(axis=1)
+    size = np.sqrt(squares / count)
+    columns = (
+        size,
+        size / noise,
+        np.take_along_axis(correlations, largest[:, None], axis=1)[:, 0],
+        lags[largest] / rate,
+        (portmanteau - len(lags)) / np.sqrt(2 * len(lags)),
     )
+    for statistics in zip(*(column.tolist() for column in columns), strict=True):
+        yield ResidualStatistics(*statistics)

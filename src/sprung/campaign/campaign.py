@@ -12,7 +12,7 @@ from pydantic import Field
 
 from sprung.campaign.completeness import MissingEntry
 from sprung.campaign.drop import Drop, DropTest
-from sprung.campaign.known_values import KnownValueLike, parse_known_values
+from sprung.campaign.known_values import KnownValueLike, parse_known_values, parse_motion_ratios
 from sprung.campaign.recording import Recording
 from sprung.campaign.source_file import SourceFile
 from sprung.display import shown
@@ -65,6 +65,9 @@ class Campaign:
     known
         Quantities measured beforehand: parameters, ``total_mass``, ``front_axle_mass``, ``rear_axle_mass``. Numbers, which are
         exact, and mappings {value, std} become records.
+    motion_ratio
+        Travel of springs and dampers per travel of their wheels, dimensionless, by the names of `sprung.vehicle.MOTION_RATIOS`;
+        numbers and mappings {value, std} become records.
     model
         What the user says about the model.
     sensors, loads
@@ -111,6 +114,7 @@ class Campaign:
     unread: tuple[Drop, ...] = ()
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
+    motion_ratio: Mapping[str, KnownValue] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         problems = Problems()
@@ -124,6 +128,7 @@ class Campaign:
         if self.wheelbase is not None:
             stated["wheelbase"] = self.wheelbase
         known = parse_known_values(stated, f"campaign {self.name}: known", problems)
+        ratios = parse_motion_ratios(self.motion_ratio, f"campaign {self.name}: motion_ratio", problems)
         for drop in self.drops:
             if not isinstance(drop, DropTest):
                 do = "Give Drop(...).with_recording(recording), or DropTest(..., recording=recording)."
@@ -133,6 +138,7 @@ class Campaign:
         problems.raise_if_any()
         object.__setattr__(self, "wheelbase", known.pop("wheelbase", None))
         object.__setattr__(self, "known", known)
+        object.__setattr__(self, "motion_ratio", ratios)
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

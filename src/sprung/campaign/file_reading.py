@@ -74,6 +74,7 @@ def read_campaign(
         ),
         identification=vehicle.identification,
         test=parsed.file.test,
+        motion_ratio=vehicle.motion_ratio.known,
     )
 
 

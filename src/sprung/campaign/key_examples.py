@@ -35,6 +35,13 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "cg_height": Key(0.9, "m"),
         "wheel_height": Key(0.34, "m"),
         "roll_axis_height": Key(0.4, "m"),
+        "motion_ratio": Key({"spring_front": 0.7, "damper_front": {"value": 0.68, "std": 0.01}}),
+    },
+    "MotionRatioSection": {
+        "spring_front": Key(0.7),
+        "spring_rear": Key(0.95),
+        "damper_front": Key({"value": 0.68, "std": 0.01}),
+        "damper_rear": Key(0.9),
     },
     "TestRecord": {
         "date": Key("2026-11-22"),
@@ -59,6 +66,10 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "resolution": Key(0.000122, "unit of the sensor"),
         "high_pass": Key(0.3, "Hz"),
         "logger": Key("left"),
+        "gain_std": Key(0.005),
+        "tilt_std": Key(1.0, "degrees"),
+        "position_std": Key(0.005, "m"),
+        "delay_std": Key(0.0002, "s"),
     },
     "Load": {
         "name": Key("sandbags"),

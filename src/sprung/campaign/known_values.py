@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from sprung.errors import Problems, did_you_mean
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import DERIVED, PARAMETERS
+from sprung.vehicle import DERIVED, MOTION_RATIOS, PARAMETERS
 
 KnownValueLike: TypeAlias = KnownValue | float | Mapping[str, float]
 """A known quantity: a record, a number (exact), or {value, std} as in a campaign file."""
@@ -82,3 +82,32 @@ def parse_known_values(given: Mapping[str, KnownValueLike], where: str, problems
         else:
             known[name] = value
     return known
+
+
+def parse_motion_ratios(given: Mapping[str, KnownValueLike], where: str, problems: Problems) -> dict[str, KnownValue]:
+    """Return motion ratios as records, as far as they are possible.
+
+    Parameters
+    ----------
+    given
+        Travel of a spring or damper per travel of its wheel, dimensionless, by the names of `MOTION_RATIOS`.
+    where
+        What to call them in a problem.
+    problems
+        Takes what is wrong.
+
+    Returns
+    -------
+    dict
+        By name.
+    """
+    ratios: dict[str, KnownValue] = {}
+    for name, quantity in given.items():
+        place = f"{where}['{name}']"
+        if name not in MOTION_RATIOS:
+            problems.add(place, f"'{name}'", f"one of {', '.join(MOTION_RATIOS)}", did_you_mean(name, MOTION_RATIOS))
+            continue
+        ratio = parse_known_value(quantity, place, problems)
+        if ratio is not None:
+            ratios[name] = ratio
+    return ratios

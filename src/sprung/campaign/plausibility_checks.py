@@ -103,6 +103,8 @@ def _of_the_vehicle(parsed: ParsedFile[CampaignFile]) -> Iterator[Sized]:
     for key, value in parsed.file.vehicle.heights.by_key.items():
         if value is not None:
             yield ("vehicle", key), key, value
+    for name, ratio in parsed.file.vehicle.motion_ratio.known.items():
+        yield ("vehicle", "motion_ratio", name), "motion ratio", ratio.value
 
 
 def _of_sensor(sensor: object) -> dict[str, tuple[tuple[str, float], ...]]:

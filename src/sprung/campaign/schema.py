@@ -10,7 +10,7 @@ from sprung.campaign.campaign import ModelChoice, TestRecord
 from sprung.campaign.drop import Drop
 from sprung.campaign.schema_file import SCHEMA
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import DERIVED, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
+from sprung.vehicle import DERIVED, MOTION_RATIOS, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
 
 KNOWABLE = (*PARAMETERS, *(name for name in DERIVED if name != "wheelbase"))
 """What ``[known]`` may hold; the wheelbase has its place in ``[vehicle]``."""
@@ -37,6 +37,26 @@ class Measured(BaseModel):
         return KnownValue(self.value, self.std)
 
 
+class MotionRatioSection(BaseModel):
+    """``motion_ratio``: travel of a spring or damper per travel of its wheel; below 1 for most of them."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    spring_front: Measured | None = None
+    """Travel of the front springs per wheel travel."""
+    spring_rear: Measured | None = None
+    """Travel of the rear springs per wheel travel."""
+    damper_front: Measured | None = None
+    """Travel of the front dampers per wheel travel."""
+    damper_rear: Measured | None = None
+    """Travel of the rear dampers per wheel travel."""
+
+    @property
+    def known(self) -> dict[str, KnownValue]:
+        """The ratios that are stated, by name."""
+        return {name: ratio.known for name in MOTION_RATIOS if (ratio := getattr(self, name)) is not None}
+
+
 class VehicleSection(BaseModel):
     """``[vehicle]``: what is measured on the vehicle with a tape."""
 
@@ -54,6 +74,9 @@ class VehicleSection(BaseModel):
     """Wheel centres above the ground, m."""
     roll_axis_height: Finite | None = None
     """Roll axis above the ground, m."""
+
+    motion_ratio: MotionRatioSection = MotionRatioSection()
+    """Travel of springs and dampers per wheel travel; the result then has their rates at the spring and at the damper too."""
 
     @property
     def heights(self) -> Heights:

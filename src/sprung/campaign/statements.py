@@ -39,6 +39,7 @@ def require_plausible(campaign: Campaign) -> None:
         known=campaign.known,
         wheelbase=campaign.wheelbase,
         heights=campaign.heights,
+        motion_ratio=campaign.motion_ratio,
         whole=not campaign.missing,
         problems=problems,
     )
@@ -54,6 +55,7 @@ def check_statements(
     known: Mapping[str, KnownValue],
     wheelbase: KnownValue | None,
     heights: Heights,
+    motion_ratio: Mapping[str, KnownValue] | None = None,
     whole: bool = True,
     problems: Problems,
 ) -> None:
@@ -67,6 +69,8 @@ def check_statements(
         As in a `Campaign`.
     heights
         Above the ground, m.
+    motion_ratio
+        As in a `Campaign`.
     whole
         Whether all sensors are there: only then too few of them is a mistake.
     problems
@@ -75,7 +79,7 @@ def check_statements(
     # The models of the files are not needed to hold a campaign, only to check it.
     from sprung.campaign.checks import check_body_sensors, check_quantities  # noqa: PLC0415
     from sprung.campaign.parsing import ParsedFile  # noqa: PLC0415
-    from sprung.campaign.schema import CampaignFile, Measured, VehicleSection  # noqa: PLC0415
+    from sprung.campaign.schema import CampaignFile, Measured, MotionRatioSection, VehicleSection  # noqa: PLC0415
 
     def measured(known: KnownValue) -> Measured:
         return Measured.model_construct(value=known.value, std=known.std)
@@ -87,6 +91,9 @@ def check_statements(
             cg_height=heights.cg_height,
             wheel_height=heights.wheel_height,
             roll_axis_height=heights.roll_axis_height,
+            motion_ratio=MotionRatioSection.model_construct(
+                None, **{name: measured(ratio) for name, ratio in (motion_ratio or {}).items()}
+            ),
         ),
         known={quantity: measured(value) for quantity, value in known.items()},
         sensor=tuple(sensors),

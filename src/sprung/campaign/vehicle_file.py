@@ -35,7 +35,7 @@ class VehicleFile:
         Its parameters.
     sensors, loads, drops
         As in a `Campaign`; the drops have no recordings.
-    wheelbase, wheel_height, roll_axis_height, known, model, identification, test
+    wheelbase, wheel_height, roll_axis_height, known, model, identification, test, motion_ratio
         As in a `Campaign`: what the simulated campaign may say about itself.
     path
         Where the file is.
@@ -53,6 +53,7 @@ class VehicleFile:
     path: Path | None = None
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
+    motion_ratio: Mapping[str, KnownValue] = field(default_factory=dict)
 
     @property
     def all_known(self) -> dict[str, KnownValue]:
@@ -86,6 +87,7 @@ def read_vehicle_file(path: Path) -> VehicleFile:
         path=path,
         identification=section.identification,
         test=parsed.file.test,
+        motion_ratio=section.motion_ratio.known,
     )
 
 

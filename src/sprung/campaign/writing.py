@@ -13,7 +13,6 @@ from pydantic import TypeAdapter
 
 from sprung.campaign.reading import CAMPAIGN_FILE
 from sprung.campaign.schema_file import SCHEMA, SCHEMA_FILE, SCHEMA_LINE, schema_text
-from sprung.files import atomic_write
 from sprung.units import acceleration_factor, split_unit
 from sprung.vehicle import EMPTY, Load, Sensor
 
@@ -53,6 +52,8 @@ def write(campaign: Campaign, folder: str | os.PathLike[str], *, overwrite: bool
     InputError
         If such files would be overwritten, with their list, or the folder cannot be made or written to.
     """
+    from sprung.files import atomic_write  # noqa: PLC0415 (only writing needs it)
+
     atomic_write(folder, campaign_files(campaign), overwrite=overwrite)
     return Path(folder) / CAMPAIGN_FILE
 
@@ -111,6 +112,8 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}
+    if campaign.motion_ratio:
+        vehicle["motion_ratio"] = {name: _measured(ratio) for name, ratio in campaign.motion_ratio.items()}
     sections = {
         "vehicle": vehicle,
         "test": document_of_record(campaign.test),

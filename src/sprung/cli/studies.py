@@ -51,12 +51,18 @@ def simulate(
     rate: Annotated[float, typer.Option(max=1e5, help="Sampling rate, Hz.")] = 500.0,
     noise: Annotated[float, typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square.")] = 0.02,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the noise.")] = 1,
+    sensor_errors: Annotated[
+        bool,
+        typer.Option("--sensor-errors", help="Draw gain, tilt, place and delay of each sensor from its uncertainties."),
+    ] = False,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Simulate a campaign from a vehicle file: drops off blocks, as the sensors record them."""
     with working("reading the vehicle") as progress:
-        campaign = sprung.simulate(vehicle, rate=rate, noise=noise, seed=seed, progress=progress)
+        campaign = sprung.simulate(
+            vehicle, rate=rate, noise=noise, seed=seed, sensor_errors=sensor_errors, progress=progress
+        )
         progress(Step("writing the campaign"))
         written = sprung.write(campaign, output, overwrite=force)
     if as_json:

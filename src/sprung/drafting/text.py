@@ -105,6 +105,7 @@ name      = {_quoted(name)}
 wheelbase = {_quoted(_WHEELBASE)}
 # cg_height = 0.9                    # optional, of the sprung mass, from the ground; left out, loads count as level with it
 # wheel_height, roll_axis_height     # optional, for the geometry of roll
+# motion_ratio = {{ spring_front = 0.7, damper_front = 0.68 }}   # optional, spring travel per wheel travel; rear likewise
 # identification = "..."             # optional, which specimen it is: registration, chassis number
 
 # [test]                             # optional, for the record: the report shows it, nothing is computed from it

@@ -1,11 +1,13 @@
 """Maximum likelihood estimation of a vehicle's parameters from free decays: problem, fit, tests, covariance."""
 
-from sprung.estimation.characteristics import characteristics_of
+from sprung.estimation.characteristics import characteristics_of, estimate_quantity, rates_at_motion_ratios
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
+from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, score_linear_term
+from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear
+from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
 from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
@@ -13,11 +15,21 @@ from sprung.estimation.nonlinear_scores import score_nonlinear_terms
 from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
-from sprung.estimation.score_test import ScoreTest, score_added, wald_test
-from sprung.estimation.starts import USUAL_ENGINE, USUAL_MOUNTING, Mounting, mountings_of
+from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
+from sprung.estimation.starts import (
+    USUAL_ENGINE,
+    USUAL_MOUNT,
+    USUAL_MOUNTING,
+    USUAL_RELAXATION,
+    Mounting,
+    VehicleSize,
+    mountings_of,
+    usual_rubber,
+    usual_vehicle,
+)
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
@@ -30,13 +42,17 @@ __all__ = [
     "STARTS",
     "UNNAMED",
     "USUAL_ENGINE",
+    "USUAL_MOUNT",
     "USUAL_MOUNTING",
+    "USUAL_RELAXATION",
     "ClosedFormObjective",
     "Coordinates",
     "Correlation",
+    "CurvePoint",
     "Estimates",
     "FitResult",
     "FitStatistics",
+    "ForceCurve",
     "HasModalResponse",
     "Inflater",
     "ModeEstimate",
@@ -46,28 +62,37 @@ __all__ = [
     "Scale",
     "ScoreTest",
     "Unidentifiable",
+    "UsualValue",
+    "VehicleSize",
     "autocorrelation_inflation",
     "canonical_basis",
     "characteristics_of",
     "clear_of_splines",
     "escape_local_optimum",
     "estimate_of",
+    "estimate_quantity",
     "fit_from_contact",
     "fit_jointly",
     "fit_linear",
     "fit_nonlinear",
+    "force_curves",
     "identifiable_subspace",
+    "lift_priors",
     "mode_estimates",
     "mountings_of",
     "parameters_from_matrices",
     "predictions",
     "profiled",
+    "rates_at_motion_ratios",
     "score_added",
     "score_linear_term",
+    "score_linear_terms",
     "score_nonlinear_terms",
     "score_stepped_terms",
     "shape_of",
     "to_estimates",
     "uncertainty_of",
+    "usual_rubber",
+    "usual_vehicle",
     "wald_test",
 ]

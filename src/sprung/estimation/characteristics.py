@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -10,7 +11,16 @@ from numpy.typing import NDArray
 from sprung.estimation.estimates import estimate_of
 from sprung.estimation.statistics import FitStatistics
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue
-from sprung.vehicle import CHARACTERISTICS, DERIVED, WHEELS, LinearModel, evaluate_quantity, wheel_loads
+from sprung.vehicle import (
+    CHARACTERISTICS,
+    DERIVED,
+    MOTION_RATIOS,
+    PARAMETERS,
+    WHEELS,
+    LinearModel,
+    evaluate_quantity,
+    wheel_loads,
+)
 
 Real = NDArray[np.float64]
 
@@ -46,8 +56,34 @@ def characteristics_of(fit: FitStatistics, known: Mapping[str, KnownValue], empt
             found[name] = estimate_of(fit, known, name)
         elif one.needs <= set(fit.names):
             value, gradient = evaluate_quantity(name, fit.names, fit.values)
-            found[name] = _estimate(fit, value, gradient, one.unit, one.signed)
+            found[name] = estimate_quantity(fit, value, gradient, one.unit, one.signed)
     return found | _wheel_loads(fit, empty)
+
+
+def rates_at_motion_ratios(fit: FitStatistics, ratios: Mapping[str, KnownValue]) -> dict[str, Estimate]:
+    """Estimate the rates of springs and dampers at themselves, not at the wheel.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    ratios
+        Travel of the spring or damper per travel of its wheel, dimensionless, by the names of `MOTION_RATIOS`.
+
+    Returns
+    -------
+    dict
+        By name; the standard uncertainty includes that of the ratio.
+    """
+    found = {}
+    for name, ratio in ratios.items():
+        parameter, quantity, _ = MOTION_RATIOS[name]
+        rate, gradient = evaluate_quantity(parameter, fit.names, fit.values)
+        value, square = rate / ratio.value**2, ratio.value**2
+        # The ratio was measured apart from everything else: d ln(k / i²) = d ln k - 2 d ln i.
+        of_ratio = 2 * value * ratio.std / ratio.value
+        found[quantity] = estimate_quantity(fit, value, gradient / square, PARAMETERS[parameter].unit, False, of_ratio)
+    return found
 
 
 def _wheel_loads(fit: FitStatistics, empty: LinearModel) -> dict[str, Estimate]:
@@ -58,19 +94,43 @@ def _wheel_loads(fit: FitStatistics, empty: LinearModel) -> dict[str, Estimate]:
     else:
         names = {"fl": "front_wheel_load", "rl": "rear_wheel_load"}
     return {
-        name: _estimate(fit, load, gradient, "N", signed=False)
+        name: estimate_quantity(fit, load, gradient, "N", signed=False)
         for station, name in names.items()
         for load, gradient in [each[station]]
     }
 
 
-def _estimate(fit: FitStatistics, value: float, gradient: Real, unit: str, signed: bool) -> Estimate:
-    """Estimate a quantity of which value and gradient by the parameters are given, SI."""
+def estimate_quantity(
+    fit: FitStatistics, value: float, gradient: Real, unit: str, signed: bool, other_std: float = 0.0
+) -> Estimate:
+    """Estimate a quantity that follows from the parameters.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    value
+        Of the quantity, in the unit.
+    gradient
+        By each parameter, SI, shape (parameter,).
+    unit
+        SI.
+    signed
+        Whether it may be zero or negative.
+    other_std
+        Standard uncertainty from what is not a parameter of the fit, in the unit.
+
+    Returns
+    -------
+    Estimate
+        Its standard uncertainty is that of the gradient under the joint covariance; without a value where it is not determined.
+    """
     # What may be zero counts as determined beside what its parameters would have to be to matter.
     size = max(abs(value), *(abs(slope) * fit.size(name) for name, slope in zip(fit.names, gradient, strict=True)))
     std = fit.spread(gradient * fit.slopes, size if signed else value)
     if std is None:
         return Estimate(None, None, None, unit, "unidentifiable")
+    std = math.hypot(std, other_std)
     if std <= _ROUNDING * abs(value):
         return Estimate(value, 0.0, (value, value), unit, "known")
     if signed:

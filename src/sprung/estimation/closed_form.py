@@ -18,8 +18,8 @@ from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
 from sprung.estimation.records import RecordBatch, batch_records, in_order
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import LinearModel, Rows
-from sprung.vibration import exponentials
+from sprung.vehicle import LinearModel, Readout
+from sprung.vibration import exponentials, real_product
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -45,12 +45,12 @@ class ClosedFormObjective:
     models
         Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters, in the order of the decays' channels.
+        The sensors over the fit's parameters, in the order of the decays' channels.
     """
 
     decays: Sequence[FreeDecay]
     models: Mapping[str, LinearModel]
-    sensors: Rows
+    sensors: Readout
 
     @cached_property
     def loads(self) -> tuple[str, ...]:
@@ -60,7 +60,7 @@ class ClosedFormObjective:
     @cached_property
     def batches(self) -> tuple[RecordBatch, ...]:
         """The decays, centred and cut into blocks."""
-        return batch_records(self.decays, next(iter(self.models.values())).names)
+        return batch_records(self.decays, self.sensors.names)
 
     @cached_property
     def observations(self) -> Real:
@@ -98,13 +98,11 @@ class ClosedFormObjective:
         if float(modes.poles.real.max()) * self.span > _UNBOUNDED:
             return ClosedFormAt(self, values, weights, modes, ())
         # Delays turn shapes: they need modal coordinates, and bear with what rounding leaves near a critical damping.
-        if not self._has_clocks and modes.condition > _DEFECTIVE:
+        if not (self._has_clocks or self.sensors.has_delays) and modes.condition > _DEFECTIVE:
             from sprung.estimation.matrix_exponential import MatrixExponentialAt  # noqa: PLC0415 (hardly ever needed)
 
             return MatrixExponentialAt(self, self.models, self.sensors, values, weights)
-        sums = tuple(
-            ExponentialSums.of(batch, values, modes.poles, modes.right, modes.shapes) for batch in self.batches
-        )
+        sums = tuple(ExponentialSums.of(batch, values, modes) for batch in self.batches)
         return ClosedFormAt(self, values, weights, modes, sums)
 
 
@@ -221,9 +219,8 @@ class ClosedFormAt:
         gradients = self._in_order([projected.gradient(own) for projected, own in pairs])
         return gradients, self._in_order([projected.information(own, by_record=True) for projected, own in pairs])
 
-    @property
     def noise_bias_of_information(self) -> Real:
-        """Information that noise alone adds: a motion that no drop excites has amplitudes too, those that noise fits."""
+        """Return the information that noise alone adds: a motion that no drop excites has amplitudes too, those of noise."""
         pairs = zip(self._projected, self._derivatives, strict=True)
         bias: Real = np.sum([projected.noise_bias_of_information(own) for projected, own in pairs], axis=0)
         return bias
@@ -256,10 +253,10 @@ class ClosedFormAt:
         upper = poles.imag >= 0
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
-        motion[:, before:] = _real_part(coefficients, exponentials(poles[upper] * step, after))
-        exponent = np.outer(np.arange(-before, 0) * step, poles[upper])
-        powers = np.exp(np.minimum(exponent.real, _BACKWARD) + 1j * exponent.imag)
-        motion[:, :before] = _real_part(coefficients, powers)
+        motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
+        growth = np.exp(np.minimum(np.outer(np.arange(-before, 0) * step, poles[upper].real), _BACKWARD))
+        powers = growth * exponentials(-1j * poles[upper].imag * step, before + 1)[:0:-1]
+        motion[:, :before] = real_product(coefficients, powers)
         return motion
 
     def _load(self, drop: int) -> tuple[int, float]:
@@ -321,9 +318,3 @@ class ClosedFormAt:
         )
         modes = self.modes
         return modes.poles[load], modes.left[load], modes.shapes[load], self._derivatives[batch][group]
-
-
-def _real_part(coefficients: Complex, waves: Complex) -> Real:
-    """Return the real part of coefficients (row, mode) times waves (time, mode), as a product of pairs of real numbers."""
-    product: Real = np.ascontiguousarray(coefficients.conj()).view(float) @ np.ascontiguousarray(waves).view(float).T
-    return product

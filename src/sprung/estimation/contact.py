@@ -84,10 +84,9 @@ def fit_from_contact(
 def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit: FitResult) -> tuple[list[int], Real]:
     """Return the samples by which the start of each decay is to be moved, and {X, Ẋ} there, shape (drop, state)."""
     shifts, states = [], fit.states.copy()
+    compressions = {load: _static_compression(models[load], fit.values) for load in {decay.load for decay in decays}}
     for drop, decay in enumerate(decays):
-        matrices = models[decay.load].matrices(fit.values)
-        sag = np.linalg.solve(matrices.K, matrices.weight * STANDARD_GRAVITY)
-        static = sag[WHEELS_AT, None]  # how far the standing vehicle compresses its tyres
+        static = compressions[decay.load][:, None]
         earlier, samples = decay.earlier.shape[1] if fit.is_reversible else 0, decay.samples
         motion = fit.motion(drop, earlier, min(samples, int(_LONGEST * decay.rate)))
         loose = np.flatnonzero((static - motion[WHEELS_AT] < _COMPRESSED * static).any(axis=0))
@@ -98,6 +97,12 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
         shifts.append(shift)
         states[drop] = motion[:, min(earlier + shift, motion.shape[1] - 1)]
     return shifts, states
+
+
+def _static_compression(model: LinearModel, values: Real) -> Real:
+    """Return how far the standing vehicle compresses its tyres, m, shape (wheel,)."""
+    matrices = model.matrices(values)
+    return matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)[WHEELS_AT]
 
 
 def _landing(decay: FreeDecay, fit: FitResult, drop: int) -> int:

@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity
+from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -28,7 +28,15 @@ _HARDLY = (
     "would determine it"
 )
 
-_PER_MASS = {"kg": "1", "kg m^2": "m^2", "N/m": "1/s^2", "N s/m": "1/s", "N": "m/s^2", "N m": "m^2/s^2"}
+_PER_MASS = {
+    "kg": "1",
+    "kg m^2": "m^2",
+    "N/m": "1/s^2",
+    "N s/m": "1/s",
+    "N": "m/s^2",
+    "N m": "m^2/s^2",
+    "N m s": "m^2/s",
+}
 
 
 @shown
@@ -119,7 +127,7 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimat
     -------
     Estimates
     """
-    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not name.startswith(LOAD_MASS)}
+    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not is_nuisance(name)}
     return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
 
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from sprung.estimation.objective import HasClockDelays, ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
 from sprung.estimation.problem import EstimationProblem, Iterate
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, Moments, pool_moments
+from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -88,10 +89,32 @@ class FitResult:
         """Measured minus modelled, m/s²: one array of shape (channel, time) per drop, NaN for channels that are left out."""
         return tuple(_centred(decay.values - record) for decay, record in zip(self.decays, self.fitted, strict=True))
 
+    @property
+    def sensor_penalty(self) -> float:
+        """How far the sensors are from what is stated of them, in standard uncertainties, squared and summed."""
+        statements, found = self.problem.priors.statements, self.parameters
+        return float(
+            sum(
+                ((found[name] - stated.value) / stated.std) ** 2
+                for name, stated in statements.items()
+                if is_of_sensor(name)
+            )
+        )
+
+    @cached_property
+    def residual_moments(self) -> Moments:
+        """Variance and covariance of neighbours of the residuals of each channel; see `pool_moments`."""
+        return pool_moments(self.residuals)
+
     @cached_property
     def loglikelihood(self) -> float:
         """Up to a constant."""
         return -0.5 * self.problem.cost(self.iterate)
+
+    @property
+    def remaining_gain(self) -> float:
+        """What one more Newton step is expected to gain in twice the log-likelihood; nearly 0 at an optimum."""
+        return self.problem.normal_equations(self.iterate).step()[1]
 
     @property
     def absolute_loglikelihood(self) -> float:

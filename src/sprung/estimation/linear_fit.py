@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import (
     CLOSE_BY,
     CONVERGED,
@@ -24,22 +24,18 @@ from sprung.estimation.problem import (
     Iterate,
     least_information,
 )
-from sprung.estimation.score_test import score_test
 from sprung.estimation.start_ranking import rank_starts
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.optimisation import Maximum
-from sprung.preprocess import FreeDecay, pool_moments
+from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LOAD_MASS, LinearModel, Rows, Sensor, separate_track_names
+from sprung.vehicle import LinearModel, Readout, Sensor, is_nuisance, separate_track_names, uncertainties_of
 
 Real = NDArray[np.float64]
 
 NEAR = 0.01
 """Expected gain in log-likelihood that is near enough while the decays may still change: a tenth of a standard error."""
-
-_LARGEST_STEP = 1.0
-"""Largest Newton step of a coordinate, dimensionless, that an estimate without a fit takes."""
 
 STARTS = 3
 """How many starts are refined at the most, where the first one does not end at an optimum that leaves white noise."""
@@ -65,6 +61,7 @@ def fit_linear(
     *,
     start: Mapping[str, float] | None = None,
     guess: Mapping[str, float] = MappingProxyType({}),
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
     starts: int = STARTS,
     enough: float = CONVERGED,
     most: int = MOST_STEPS,
@@ -86,6 +83,8 @@ def fit_linear(
         Parameter values, SI, to start from; where it is left out, a direct start and a grid of usual vehicles.
     guess
         Values of some parameters, SI, where `start` is left out: the vehicle with them competes with those of the grid.
+    usual
+        Usual values of parameters, as weak priors beside a `start`.
     starts
         How many are refined at the most: the direct one, by modulating functions, and those of the grid that explain the
         records best as they are. The best end wins. Where the direct one ends at an optimum whose residuals are white noise, no
@@ -108,32 +107,33 @@ def fit_linear(
         progress(Step("setting the loggers' clocks"))
         apart = fit_linear(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
-    masses = {name: known_value.value for name, known_value in known.items() if name.startswith(LOAD_MASS)}
-    objective = _objective(decays, models, sensors)
+    objective = objective_of(decays, models, sensors)
+    known = {**known, **uncertainties_of(sensors)}
+    nuisance = expected_nuisances(known)
     if start is not None:
-        values = masses | dict(start)
-        problem = _problem(objective, known, values)
+        values = nuisance | dict(start)
+        problem = problem_of(objective, known, values, usual)
         return _fit_from(problem, values, enough, most)
     size = VehicleSize.of(known, sensors)
     has_engine = "m_e" in next(iter(models.values())).names
-    usual = [vehicle | masses for vehicle in start_grid(size, known, has_engine)]
-    problem = _problem(objective, known, usual[0])
+    vehicles = [vehicle | nuisance for vehicle in start_grid(size, known, has_engine)]
+    problem = problem_of(objective, known, vehicles[0])
     coordinates = problem.priors.coordinates
-    nominal = {load: model.with_known(masses) if masses else model for load, model in models.items()}
+    nominal = {load: model.with_known(nuisance) if nuisance else model for load, model in models.items()}
     by_load = [nominal[load] for load in objective.loads]
     direct = modulating_function_estimate(objective.batches, by_load, sensors, size)
     ends: list[Maximum[Iterate]] = []
     if direct is not None:
         progress(Step("fitting from a direct start"))
-        u = problem.priors.project(coordinates.from_parameters(direct | masses))
+        u = problem.priors.project(coordinates.from_parameters(direct | nuisance))
         ends.append(problem.maximise(u, None, enough, NEARER, most))
         fit = _best(problem, ends, enough)
         if len(ends) == starts or (fit.converged and _leaves_white_noise(fit)):
             return fit
     if guess:
-        usual.insert(0, _completed(guess, {**usual[0], **(direct or {})}))
-    progress(Step(f"rating {len(usual)} usual vehicles as starts"))
-    more = [coordinates.from_parameters(vehicle) for vehicle in usual]
+        vehicles.insert(0, _completed(guess, {**vehicles[0], **(direct or {})}))
+    progress(Step(f"rating {len(vehicles)} usual vehicles as starts"))
+    more = [coordinates.from_parameters(vehicle) for vehicle in vehicles]
     order = np.argsort(_costs_as_they_are(problem, objective, more), kind="stable")[: starts - len(ends)]
     for number, which in enumerate(order.tolist(), start=len(ends) + 1):
         progress(Step("fitting from a start", number, starts))
@@ -142,18 +142,28 @@ def fit_linear(
     return _best(problem, ends, enough)
 
 
-def _objective(
+def expected_nuisances(known: Mapping[str, KnownValue]) -> dict[str, float]:
+    """Return the values of masses of loads and of unknowns of sensors that are known beforehand, SI, by name."""
+    return {name: one.value for name, one in known.items() if is_nuisance(name)}
+
+
+def objective_of(
     decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Sequence[Sensor]
 ) -> ClosedFormObjective:
+    """Return the likelihood of decays as a function of the parameters of linear models."""
     names = next(iter(models.values())).names
-    return ClosedFormObjective(tuple(decays), models, Rows.of([sensor.row for sensor in sensors], names))
+    return ClosedFormObjective(tuple(decays), models, Readout.with_unknowns(sensors, names))
 
 
-def _problem(
-    objective: ClosedFormObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
+def problem_of(
+    objective: ClosedFormObjective,
+    known: Mapping[str, KnownValue],
+    typical: Mapping[str, float],
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
 ) -> EstimationProblem:
-    names = next(iter(objective.models.values())).names
-    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+    """Return the problem of fitting them, its coordinates scaled by a typical vehicle's parameters, SI by name."""
+    coordinates = Coordinates.scaled_by(objective.sensors.names, typical)
+    return EstimationProblem(objective, PriorsAndConstraints(coordinates, known, usual))
 
 
 def _fit_from(
@@ -174,7 +184,7 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     """Whether the residuals of every channel are white noise, or rounding."""
     variance = fit.noise**2
     rounding = variance < 2 * fit.problem.least_variance
-    total, neighbours, _ = pool_moments(fit.residuals)
+    total, neighbours, _ = fit.residual_moments
     return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 
@@ -229,35 +239,3 @@ def escape_local_optimum(fit: FitResult) -> FitResult:
     if best is None or problem.cost(best.point) >= problem.cost(optimum):
         return fit
     return replace(fit, iterate=best.point, steps=fit.steps + best.steps, converged=best.converged)
-
-
-def score_linear_term(
-    decays: Sequence[FreeDecay],
-    models: Mapping[str, LinearModel],
-    sensors: Sequence[Sensor],
-    known: Mapping[str, KnownValue],
-    values: Mapping[str, float],
-) -> tuple[float, dict[str, float]]:
-    """Return what a model with more parameters would gain over one that is fitted already, by the :term:`score test`.
-
-    Parameters
-    ----------
-    decays, models, sensors, known
-        As for `fit_linear`, of the larger model.
-    values
-        Its parameters, SI, where it equals the fitted smaller one.
-
-    Returns
-    -------
-    float
-        In twice the log-likelihood, to second order.
-    dict
-        Parameters of the larger model after one Newton step, SI, by name.
-    """
-    problem = _problem(_objective(decays, models, sensors), known, values)
-    u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    information, gradient, null_space = problem.system(problem.start(u))
-    test = score_test(information, gradient, 0)
-    step = np.clip(null_space @ test.joint_values(), -_LARGEST_STEP, _LARGEST_STEP)
-    estimates = problem.priors.coordinates.values(u + step)
-    return test.gain(), dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))

@@ -18,7 +18,7 @@ from sprung.estimation.objective import Objective, ObjectiveAt
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import LinearModel, Rows, affine_response
+from sprung.vehicle import LinearModel, Readout, affine_response, highest_derivatives, state_matrix
 
 Real = NDArray[np.float64]
 
@@ -37,7 +37,7 @@ class MatrixExponentialAt:
     models
         Equations of motion by load name.
     sensors
-        The sensors' rows.
+        The sensors.
     values
         Parameters, SI, shape (parameter,).
     weights
@@ -46,7 +46,7 @@ class MatrixExponentialAt:
 
     objective: Objective
     models: Mapping[str, LinearModel]
-    sensors: Rows
+    sensors: Readout
     values: Real
     weights: Real
 
@@ -80,15 +80,17 @@ class MatrixExponentialAt:
         return [self._solve(decay, weights) for decay, weights in drops]
 
     def _solve(self, decay: FreeDecay, weights: Real) -> tuple[Real, Real, Real, Real]:
-        A = _state_matrix(self.models[decay.load], self.values)
-        n = len(A) // 2
-        readings = (self.sensors.at(self.values) @ A[n:])[None]
+        highest, _ = self.models[decay.load].accelerations(self.values)
+        A = state_matrix(highest, self.models[decay.load].massive)
+        readings = (self.sensors.at(self.values) @ highest)[None]
         propagator = expm(A / decay.rate)
         while len(readings) < decay.samples:
             readings = np.concatenate([readings, readings @ propagator])
             propagator = propagator @ propagator
         readings = readings[: decay.samples].transpose(2, 1, 0)
-        bounded = np.vstack([_weighted(readings, weights).T, np.diag(1 / initial_state_prior_std(len(A)))])
+        bounded = np.vstack(
+            [_weighted(readings, weights).T, np.diag(1 / initial_state_prior_std(len(highest), len(A)))]
+        )
         sizes = np.linalg.norm(bounded, axis=0)
         basis, triangle = np.linalg.qr(bounded / sizes)
         target = np.append(_weighted(np.nan_to_num(decay.values), weights), np.zeros(len(A)))
@@ -109,17 +111,21 @@ class MatrixExponentialAt:
 
     def _jacobian(self, decay: FreeDecay, weights: Real, state: Real) -> Real:
         """Weighted derivatives of a drop's readings from an initial state, those of its prior below; (row, parameter)."""
-        lower, by_parameter = self.models[decay.load].accelerations(self.values)
-        A, S = _state_matrix(self.models[decay.load], self.values), self.sensors.at(self.values)
-        n, size = lower.shape
+        highest, by_parameter = self.models[decay.load].accelerations(self.values)
+        massive, S = self.models[decay.load].massive, self.sensors.at(self.values)
+        A, (n, size) = state_matrix(highest, massive), highest.shape
         changes = []
         # Ẏ' = A Y' + dA Y, both propagated together.
-        for dS, dlower in zip(np.swapaxes(self.sensors.slopes, 0, 1), by_parameter, strict=True):
-            dA = np.vstack([np.zeros((n, size)), dlower])
+        # The unknowns of the sensors, which are the last, do not change the motion.
+        still = np.zeros((len(self.values) - len(by_parameter), n, size))
+        by_sensor = np.swapaxes(self.sensors.slopes(self.values), 0, 1)
+        for dS, change in zip(by_sensor, np.concatenate([by_parameter, still]), strict=True):
+            dA = np.zeros_like(A)
+            dA[highest_derivatives(n, massive)] = change
             both = np.block([[A, np.zeros_like(A)], [dA, A]])
             start = np.append(state, np.zeros(size))
             motion = affine_response(both, np.zeros(2 * size), start, 1 / decay.rate, decay.samples)
-            changes.append((dS @ lower + S @ dlower) @ motion[:size] + S @ lower @ motion[size:])
+            changes.append((dS @ highest + S @ change) @ motion[:size] + S @ highest @ motion[size:])
         return np.vstack([_weighted(np.array(changes), weights).T, np.zeros((size, len(changes)))])
 
     @property
@@ -179,9 +185,7 @@ class MatrixExponentialAt:
 
 
 def _state_matrix(model: LinearModel, values: Real) -> Real:
-    lower, _ = model.accelerations(values)
-    n, size = lower.shape
-    return np.vstack([np.eye(n, size, n), lower])
+    return state_matrix(model.accelerations(values)[0], model.massive)
 
 
 def _centred(readings: Real) -> Real:

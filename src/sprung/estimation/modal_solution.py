@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle import LinearModel, Rows
+from sprung.vehicle import LinearModel, Readout, highest_derivatives
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -28,16 +28,19 @@ class ModalSolution:
     Attributes
     ----------
     poles
-        λ, 1/s, shape (..., mode): two for every coordinate.
+        λ, 1/s, shape (..., mode): two for every coordinate with mass, one for every other.
     right
         Eigenvectors of the state matrix as columns, shape (..., mode, mode).
     shapes
         s: reading of each channel per unit of modal amplitude, shape (..., channel, mode).
+    coordinates
+        Number of coordinates.
     """
 
     poles: Complex
     right: Complex
     shapes: Complex
+    coordinates: int
 
     @cached_property
     def left(self) -> Complex:
@@ -47,12 +50,12 @@ class ModalSolution:
     @property
     def displacements(self) -> Complex:
         """Displacements of the coordinates in each mode, shape (..., coordinate, mode)."""
-        return self.right[..., : self.right.shape[-1] // 2, :]
+        return self.right[..., : self.coordinates, :]
 
     @property
     def velocities(self) -> Complex:
         """Velocities of the coordinates in each mode, shape (..., coordinate, mode)."""
-        return self.right[..., self.right.shape[-1] // 2 :, :]
+        return self.displacements * self.poles[..., None, :]
 
     @property
     def accelerations(self) -> Complex:
@@ -62,13 +65,14 @@ class ModalSolution:
     @property
     def condition(self) -> float:
         """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
-        # Displacements and velocities are made comparable by a mean frequency.
-        balance = np.repeat([float(np.abs(self.poles).mean()), 1.0], self.right.shape[-1] // 2)
+        # Displacements and velocities are made comparable by a usual frequency.
+        balance = np.ones(self.right.shape[-1])
+        balance[: self.coordinates] = float(np.median(np.abs(self.poles)))
         right = _sizes(self.right * balance[:, None], axis=-2)
         return float((right * _sizes(self.left / balance, axis=-1)).max())
 
 
-def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolution:
+def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolution:
     """Solve the eigenvalue problem.
 
     Parameters
@@ -76,7 +80,7 @@ def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolutio
     model
         Equations of motion.
     sensors
-        The sensors' rows.
+        The sensors.
     values
         Parameters, SI, shape (..., parameter).
 
@@ -89,12 +93,18 @@ def solve_modes(model: LinearModel, sensors: Rows, values: Real) -> ModalSolutio
     poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
     S = sensors.at(values)
     S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
-    modes = ModalSolution(poles, right, right)
-    return replace(modes, shapes=S @ modes.accelerations)
+    modes = ModalSolution(poles, right, right, S.shape[-1])
+    shapes = S @ modes.accelerations
+    return replace(modes, shapes=shapes * turns_of_delays(sensors, values, poles) if sensors.has_delays else shapes)
+
+
+def turns_of_delays(sensors: Readout, values: Real, poles: Complex) -> Complex:
+    """Return by what a delay δ of each sensor turns its shape in each mode: e^{-λδ}, shape (..., channel, mode)."""
+    return np.asarray(np.exp(-poles[..., None, :] * sensors.delays(values)[..., None]))
 
 
 def differentiate_modes(
-    model: LinearModel, sensors: Rows, values: Real, modes: ModalSolution, span: float
+    model: LinearModel, sensors: Readout, values: Real, modes: ModalSolution, span: float
 ) -> tuple[Complex, Complex]:
     """Return the derivatives of poles and readings by the parameters.
 
@@ -112,10 +122,10 @@ def differentiate_modes(
     Returns
     -------
     poles
-        Shape (..., parameter, mode).
+        Shape (..., parameter, mode), for the parameters of the model.
     readings
-        σ and τ, what multiplies q e^{λt} and q t e^{λt} in the derivative of a channel, beside each other; shape (..., channel,
-        parameter, 2 mode).
+        For all parameters: σ and τ, what multiplies q e^{λt} and q t e^{λt} in the derivative of a channel, beside each
+        other; shape (..., channel, parameter, 2 mode).
 
     Notes
     -----
@@ -123,23 +133,30 @@ def differentiate_modes(
     D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What remains is
     D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones.
 
-    With motions v, λv, λ²v of a mode, dA V is -M⁻¹ (dM λ²v + dC λv + dK v).
+    With motions v, λv, λ²v of a mode, dA V is -L⁻¹ (dM λ²v + dC λv + dK v), L being the coefficients of the highest
+    derivatives: M, and for coordinates without mass C.
     """
     motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
     # The rows of dM, dC and dK beside each other: (..., the rows of every parameter, 3 coordinate).
     derivatives = np.moveaxis(np.concatenate(model.slopes(values), axis=-1), 0, -2)
     lead = modes.poles.shape[:-1]
-    by_coordinate = (*lead, derivatives.shape[-3], len(values), modes.poles.shape[-1])
+    by_coordinate = (*lead, derivatives.shape[-3], len(model.names), modes.poles.shape[-1])
     forces = (derivatives.reshape(*lead, -1, derivatives.shape[-1]) @ motions).reshape(by_coordinate)
-    poles, readings = differentiate_response(model, sensors, values, modes, forces, span)
-    of_sensors = sensors.slopes.reshape(-1, sensors.slopes.shape[-1]) @ modes.accelerations
-    m = modes.poles.shape[-1]
-    readings[..., :m] += of_sensors.reshape(*readings.shape[:-1], m)
+    poles, of_model = differentiate_response(model, sensors, values, modes, forces, span)
+    m, (channels, parameters, n) = modes.poles.shape[-1], (slopes := sensors.slopes(values)).shape
+    readings = np.zeros((*lead, channels, parameters, 2 * m), dtype=np.complex128)
+    readings[..., : len(model.names), :] = of_model
+    of_sensors = (slopes.reshape(-1, n) @ modes.accelerations).reshape(*lead, channels, parameters, m)
+    if sensors.has_delays:
+        of_sensors *= turns_of_delays(sensors, values, modes.poles)[..., None, :]
+        for channel, position in sensors.delay_positions:
+            of_sensors[..., channel, position, :] = -modes.poles * modes.shapes[..., channel, :]
+    readings[..., :m] += of_sensors
     return poles, readings
 
 
 def differentiate_response(
-    model: LinearModel, sensors: Rows, values: Real, modes: ModalSolution, forces: Complex, span: float
+    model: LinearModel, sensors: Readout, values: Real, modes: ModalSolution, forces: Complex, span: float
 ) -> tuple[Complex, Complex]:
     """Return the derivatives of poles and readings by changes of the equations of motion.
 
@@ -156,9 +173,10 @@ def differentiate_response(
         As from `differentiate_modes`, by change instead of by parameter.
     """
     *lead, n, changes, m = forces.shape
-    channels = len(sensors.affine)
+    channels = len(sensors.positions)
     S = np.broadcast_to(sensors.at(values), (*lead, channels, n))
-    both = np.concatenate([modes.left[..., n:], S], axis=-2) @ -np.linalg.inv(model.matrices(values).M)
+    left = modes.left[..., highest_derivatives(n, model.massive)]
+    both = np.concatenate([left, S], axis=-2) @ -np.linalg.inv(model.matrices(values).leading)
     changed = (both @ forces.reshape(*lead, n, -1)).reshape(*lead, m + channels, changes, m)
     D, of_sensors = changed[..., :m, :, :], changed[..., m:, :, :]
 
@@ -166,13 +184,19 @@ def differentiate_response(
     close = np.abs(difference) * span < _CLOSE
     mixing = np.where(close, 0.0, 1.0 / np.where(close, 1.0, difference))
 
+    turns = turns_of_delays(sensors, values, modes.poles) if sensors.has_delays else None
+    shapes = modes.shapes if turns is None else modes.shapes / turns
+
     def at_sensors(mixed: Complex) -> Complex:
-        by_channel: Complex = modes.shapes @ mixed.reshape(*lead, m, -1)
+        by_channel: Complex = shapes @ mixed.reshape(*lead, m, -1)
         return by_channel.reshape(*lead, channels, changes, m)
 
     readings = np.empty((*lead, channels, changes, 2 * m), dtype=np.complex128)
     readings[..., :m] = of_sensors + at_sensors(D * mixing[..., :, None, :])
     readings[..., m:] = at_sensors(D * close[..., :, None, :])
+    if turns is not None:
+        readings[..., :m] -= sensors.delays(values)[:, None, None] * readings[..., m:]
+        readings *= np.tile(turns, 2)[..., None, :]
     return np.diagonal(D, axis1=-3, axis2=-1), readings
 
 

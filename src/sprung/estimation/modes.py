@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
-from sprung.vehicle import LinearModel, Rows, Sensor
-from sprung.vibration import Mode, largest_entry, name_modes, paper_name
+from sprung.vehicle import COORDINATES, LinearModel, Readout, Sensor, coordinates
+from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
 
 Real = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ class ModeEstimate:
     damping_ratio, damping_ratio_std
         -re/|pole|, dimensionless; 1 for a real pole.
     motion
-        How the coordinates move, z_s, θ, φ, the wheels A to D and an engine on its mounts where the vehicle has one: real and
+        How the body's rigid motions, the wheels A to D and an engine on its mounts, where the vehicle has one, move: real and
         imaginary part of each, the largest 1; empty in results of older versions, or where the mode is from the records alone.
     paper_name
         What Table 3 of the paper calls it; None where it has no such mode, or an older sprung wrote the result.
@@ -76,28 +76,32 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
     -------
     tuple of ModeEstimate
     """
-    rows = Rows.of([sensor.row for sensor in sensors], fit.names)
-    modes = solve_modes(model, rows, fit.values)
-    slopes = differentiate_modes(model, rows, fit.values, modes, 1.0)[0] * fit.slopes[:, None]
+    readout = Readout.of(sensors, fit.names)
+    modes = solve_modes(model, readout, fit.values)
+    slopes = differentiate_modes(model, readout, fit.values, modes, 1.0)[0] * fit.slopes[:, None]
     # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
     away = [
         np.linalg.eigvals(model.matrices(fit.moved(way * direction)).state).astype(np.complex128)
         for direction in fit.undetermined.T
         for way in (-1, 1)
     ]
-    upper = np.flatnonzero(modes.poles.imag >= 0)
-    named = name_modes([Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper])
+    vibrations = is_vibration(modes.poles, modes.displacements, model.massive)
+    upper = np.flatnonzero((modes.poles.imag >= 0) & vibrations)
+    found = [Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper]
+    names = coordinates(fit.names)
+    named = name_modes(found, coordinates=names)
+    drawn = [i for i, name in enumerate(names) if name in (*COORDINATES, "z_e")]
     left = set(upper.tolist())
     estimates = []
     for mode in named:
         nearest = min(left, key=lambda j: abs(modes.poles[j] - mode.pole))
         left.remove(nearest)
-        estimates.append(_estimate(mode, slopes[:, nearest], away, fit))
+        estimates.append(_estimate(mode, slopes[:, nearest], away, fit, drawn))
     return tuple(estimates)
 
 
 def _estimate(
-    mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.complex128]], fit: FitStatistics
+    mode: Mode, slope: NDArray[np.complex128], away: list[NDArray[np.complex128]], fit: FitStatistics, drawn: list[int]
 ) -> ModeEstimate:
     pole, size = mode.pole, abs(mode.pole)
     of_size = (np.conj(pole) * slope).real / size
@@ -117,7 +121,7 @@ def _estimate(
         damped_frequency=mode.damped_frequency,
         damping_ratio=mode.damping_ratio,
         damping_ratio_std=std(of_damping, mode.damping_ratio, -followed.real / np.maximum(np.abs(followed), 1e-300)),
-        motion=_largest_one(mode.shape),
+        motion=_largest_one(mode.shape[drawn]),
         paper_name=paper_name(mode.name),
     )
 

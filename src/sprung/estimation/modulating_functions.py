@@ -115,7 +115,7 @@ def _terms(model: LinearModel, keys: Sequence[Key], wheelbase: float) -> Real:
     terms = np.zeros((len(keys), 7, 21))
     for key, term in zip(model.products.tolist(), model.terms, strict=True):
         if _key(key) in keys:
-            terms[keys.index(_key(key))] = np.concatenate(list(term), axis=1)
+            terms[keys.index(_key(key))] = np.concatenate(list(term[:, :7, :7]), axis=1)
     terms /= masses[:, None]
     return terms
 

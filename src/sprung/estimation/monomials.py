@@ -46,7 +46,7 @@ def expand(model: LinearModel, law: LinearLaw) -> dict[Key, Real]:
     dict
         For each product the matrix that it multiplies, shape (7, 7).
     """
-    terms = model.terms[:, LINEAR_LAWS.index(law)]
+    terms = model.terms[:, LINEAR_LAWS.index(law), : model.size, : model.size]
     keyed = zip(model.products.tolist(), terms, strict=True)
     return {(one, two, three): term for (one, two, three), term in keyed if term.any()}
 

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.linear_fit import NEAR
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints
-from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
+from sprung.estimation.linear_fit import NEAR, expected_nuisances
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
+from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import NonlinearModel, Rows, Sensor
+from sprung.vehicle import NonlinearModel, Readout, Sensor, uncertainties_of
 
 Real = NDArray[np.float64]
 
@@ -50,6 +51,7 @@ def fit_nonlinear(
     beginning_only: bool = False,
     most: int = _MOST_STEPS,
     tilting: bool = False,
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
     progress: Progress = silent,
 ) -> FitResult:
     """Fit one vehicle with nonlinear forces to all decays by maximum likelihood.
@@ -79,6 +81,8 @@ def fit_nonlinear(
         Steps at the most, of each fit on the way.
     tilting
         Whether the sensors turn with the body, and measure the less of gravity.
+    usual
+        Usual values of parameters, as weak priors.
     progress
         Called with each step that begins.
 
@@ -86,18 +90,21 @@ def fit_nonlinear(
     -------
     FitResult
     """
-    laws = ", ".join(law.name for law, _, _ in next(iter(models.values())).forces.laws)
+    laws = ", ".join(own.law.name for own in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
-    steps, values = 0, dict(start)
+    known = {**known, **uncertainties_of(sensors)}
+    steps, values = 0, expected_nuisances(known) | dict(start)
     stages = (
         [([_beginning(decay) for decay in decays], max(enough, NEAR), _COARSE)] if beginning_only or not near else []
     )
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
-        objective = _objective(part, models, sensors, states, tilting, longest_step)
-        problem = _problem(objective, known, values)
-        found = _maximise(problem, objective, values, tolerance, most)
+        objective = _objective(
+            part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
+        )
+        problem = _problem(objective, known, values, usual)
+        found = _maximise(problem, objective, values, tolerance, most, FAR if usual else CLOSE_BY)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.
@@ -140,7 +147,9 @@ def score_stepped_terms(
     dict
         In twice the log-likelihood, to second order.
     """
-    objective = _objective(decays, models, sensors, states, tilting, _COARSE)
+    known = {**known, **uncertainties_of(sensors)}
+    values = expected_nuisances(known) | dict(values)
+    objective = _objective(decays, models, sensors, states, tilting, _COARSE, _COARSE)
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
@@ -175,16 +184,20 @@ def _objective(
     states: Real,
     tilting: bool,
     longest_step: float,
+    longest_derivative_step: float,
 ) -> TimeSteppingObjective:
-    rows = Rows.of([sensor.row for sensor in sensors], next(iter(models.values())).names)
-    return TimeSteppingObjective(tuple(decays), models, rows, states, tilting, longest_step)
+    readout = Readout.with_unknowns(sensors, next(iter(models.values())).names)
+    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, longest_derivative_step)
 
 
 def _problem(
-    objective: TimeSteppingObjective, known: Mapping[str, KnownValue], typical: Mapping[str, float]
+    objective: TimeSteppingObjective,
+    known: Mapping[str, KnownValue],
+    typical: Mapping[str, float],
+    usual: Mapping[str, UsualValue] = MappingProxyType({}),
 ) -> EstimationProblem:
-    names = next(iter(objective.models.values())).names
-    return EstimationProblem(objective, PriorsAndConstraints(Coordinates.scaled_by(names, typical), known))
+    coordinates = Coordinates.scaled_by(objective.sensors.names, typical)
+    return EstimationProblem(objective, PriorsAndConstraints(coordinates, known, usual))
 
 
 def _maximise(
@@ -193,11 +206,12 @@ def _maximise(
     values: Mapping[str, float],
     tolerance: float,
     most: int,
+    damping: float,
 ) -> Maximum[Iterate]:
     """Maximise, and once more without impossible memories of friction, as long as that is more likely."""
     priors = problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
-    best = problem.maximise(u, None, tolerance, CLOSE_BY, most)
+    best = problem.maximise(u, None, tolerance, damping, most)
     for _ in range(_RESTARTS):
         states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
         if states is None:

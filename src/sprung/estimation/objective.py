@@ -156,9 +156,14 @@ class HasModalResponse(Protocol):
     def sensor_rows(self) -> Real:
         """Rows of the sensors, shape (channel, coordinate)."""
 
-    @property
     def noise_bias_of_information(self) -> Real:
-        """Information that noise alone adds on average, shape (parameter, parameter)."""
+        """Return the information that noise alone adds on average.
+
+        Returns
+        -------
+        ndarray
+            Per SI units, shape (parameter, parameter).
+        """
 
     def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
         """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""

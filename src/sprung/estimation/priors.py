@@ -1,10 +1,11 @@
-"""What is known beforehand: exact statements are constraints of the fit, uncertain ones its priors."""
+"""What is known beforehand: exact statements are constraints of the fit, uncertain ones and usual sizes its priors."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,12 @@ Real = NDArray[np.float64]
 _FINEST = 1e-6
 """Smallest relative uncertainty of a statement: with a finer one, rounding would hide the records."""
 
+
+_LARGEST_STEP = 1.0
+"""Of a logarithm, to which a linearisation may be followed."""
+
+_STIFFEST = 1e-9
+"""Part of the reciprocal of a rate in series, to which it is followed towards zero."""
 
 _TRAVEL = 0.03
 """m of travel at which a spring's force is the size of a friction that is large."""
@@ -50,6 +57,10 @@ class Coordinates:
     def _logarithmic(self) -> NDArray[np.bool_]:
         return np.array([PARAMETERS[name].positive for name in self.names])
 
+    @cached_property
+    def _vanishing(self) -> NDArray[np.bool_]:
+        return np.array([PARAMETERS[name].vanishes_at_infinity for name in self.names])
+
     def values(self, u: Real) -> Real:
         """Parameter values, SI, at coordinates."""
         values = self.references * u
@@ -70,6 +81,43 @@ class Coordinates:
         u[self._logarithmic] = np.log(values[self._logarithmic])
         return u
 
+    def extrapolated(self, u: Real, step: Real) -> Real:
+        """Return the parameter values, SI, that a step of the coordinates leads to from far away.
+
+        A logarithm changes by one at the most. The motion of a vehicle is nearly linear in the reciprocal of the rate of a
+        spring in series, which is followed to any value.
+        """
+        values = self.values(u + np.clip(step, -_LARGEST_STEP, _LARGEST_STEP))
+        softer = np.maximum(1.0 - step, _STIFFEST)
+        return np.where(self._vanishing, self.values(u) / softer, values)
+
+    def distance(self, u: Real, name: str, value: float) -> float:
+        """Return how far the coordinate of a parameter is from that of another value, SI.
+
+        For the rate of a spring in series it is the distance of the reciprocals, to first order.
+        """
+        own = self.names.index(name)
+        if self._vanishing[own]:
+            return float(self.values(u)[own] / value - 1.0)
+        values = self.values(u)
+        values[own] = value
+        return float(u[own] - self.from_values(values)[own])
+
+
+class UsualValue(NamedTuple):
+    """Usual value of a parameter in vehicles of all kinds: a weak :term:`prior`.
+
+    Attributes
+    ----------
+    value
+        SI.
+    spread
+        Factor by which one standard deviation lies above or below it.
+    """
+
+    value: float
+    spread: float
+
 
 @dataclass(frozen=True, eq=False)
 class PriorsAndConstraints:
@@ -83,10 +131,26 @@ class PriorsAndConstraints:
         The fit's coordinates.
     statements
         Known quantities by name: parameters, or derived quantities of `sprung.vehicle.DERIVED`.
+    usual
+        Usual values of parameters by name, which hold where the records say little.
     """
 
     coordinates: Coordinates
     statements: Mapping[str, KnownValue]
+    usual: Mapping[str, UsualValue] = field(default_factory=dict)
+
+    @cached_property
+    def _usual(self) -> tuple[Real, Real]:
+        """Coordinates of the usual values, and derivatives of the residuals; (value,) and (value, coordinate)."""
+        names = self.coordinates.names
+        places = [names.index(name) for name in self.usual]
+        values = np.ones(len(names))
+        values[places] = [usual.value for usual in self.usual.values()]
+        centre = self.coordinates.from_values(values)
+        # A coordinate that is no logarithm has the same relative standard deviation at the usual value.
+        std = np.array([np.log(usual.spread) for usual in self.usual.values()])
+        std = std * values[places] / self.coordinates.derivatives(centre)[places]
+        return centre[places], np.eye(len(names))[places] / std[:, None]
 
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
@@ -112,16 +176,21 @@ class PriorsAndConstraints:
         return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
 
     def residuals(self, u: Real) -> tuple[Real, Real]:
-        """Return residuals of the uncertain statements, and their derivatives.
+        """Return residuals of the uncertain statements and of the usual values, and their derivatives.
 
         Returns
         -------
         residuals
-            (known - value) / std, shape (statement,).
+            (known - value) / std, shape (statement,); usual values in the coordinates.
         derivatives
             Of value / std by the coordinates, shape (statement, coordinate).
         """
-        return self._at(u, exact=False)
+        residuals, rows = self._at(u, exact=False)
+        if not self.usual:
+            return residuals, rows
+        centre, usual_rows = self._usual
+        usual_residuals = usual_rows.sum(axis=1) * centre - usual_rows @ u
+        return np.append(residuals, usual_residuals), np.vstack([rows, usual_rows])
 
     def without(self, name: str) -> PriorsAndConstraints:
         """Return the same without one statement."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from sprung.estimation.objective import Objective, ObjectiveAt
 from sprung.estimation.priors import PriorsAndConstraints
 from sprung.optimisation import Maximum, NormalEquations, maximise
+from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -299,7 +300,7 @@ class EstimationProblem:
         return other if other is not None and reached else found
 
     def conflicts(self, iterate: Iterate, inflation: float) -> dict[str, float]:
-        """Test each known quantity against everything else.
+        """Test each known quantity of vehicle and loads against everything else.
 
         Parameters
         ----------
@@ -317,6 +318,8 @@ class EstimationProblem:
         found = {}
         every, _ = self.priors.residuals(iterate.u)
         for name, known in self.priors.statements.items():
+            if is_of_sensor(name):
+                continue  # what is beyond them is a fault
             without = self.priors.without(name)
             relaxed = replace(self, priors=without)
             move, gain = identifiable_equations(*relaxed.system(iterate, inflation)).step()

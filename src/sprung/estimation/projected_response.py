@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.clock_delays import CONVERGED, MOST_STEPS, ClockDelays
+from sprung.estimation.modal_solution import ModalSolution
 from sprung.estimation.records import RecordBatch
 from sprung.vibration import exponential_gram, exponentials
 
@@ -27,15 +28,16 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-def initial_state_prior_std(states: int) -> Real:
+def initial_state_prior_std(coordinates: int, states: int) -> Real:
     """Return the prior of an initial state {X, Ẋ}: a metre or radian, and ten of them in a second; shape (state,)."""
-    return np.repeat([1.0, 10.0], states // 2)
+    return np.repeat([1.0, 10.0], [coordinates, states - coordinates])
 
 
-def amplitude_prior(right: Complex) -> Complex:
-    """Return the prior of initial states as information on the amplitudes of modes; both of shape (..., mode, mode)."""
-    scaled = np.swapaxes(right.conj(), 1, 2) / initial_state_prior_std(right.shape[-1]) ** 2
-    return np.asarray(scaled @ right, dtype=np.complex128)
+def amplitude_prior(modes: ModalSolution) -> Complex:
+    """Return the prior of initial states as information on the amplitudes of modes, shape (..., mode, mode)."""
+    std = initial_state_prior_std(modes.coordinates, modes.poles.shape[-1])
+    scaled = np.swapaxes(modes.right.conj(), -1, -2) / std**2
+    return np.asarray(scaled @ modes.right, dtype=np.complex128)
 
 
 def inverse_of(normal: Complex) -> Complex:
@@ -76,12 +78,12 @@ class ExponentialSums:
     data: Complex
 
     @classmethod
-    def of(cls, batch: RecordBatch, values: Real, poles: Complex, right: Complex, shapes: Complex) -> ExponentialSums:
-        """Return the sums over the samples at parameters and their poles, eigenvectors and shapes of each load."""
-        poles, right = poles[batch.load], right[batch.load]
+    def of(cls, batch: RecordBatch, values: Real, modes: ModalSolution) -> ExponentialSums:
+        """Return the sums over the samples at parameters and the poles and shapes of each load."""
+        poles, shapes, prior = modes.poles[batch.load], modes.shapes[batch.load], amplitude_prior(modes)[batch.load]
         exponent = poles * batch.step[:, None]
         gram = exponential_gram(exponent, batch.samples, batch.group)
-        return cls(batch, values, poles, shapes[batch.load], amplitude_prior(right), gram, batch.correlate(exponent))
+        return cls(batch, values, poles, shapes, prior, gram, batch.correlate(exponent))
 
     @cached_property
     def expected_delays(self) -> Real:

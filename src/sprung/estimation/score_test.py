@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.problem import identifiable_subspace
+from sprung.estimation.problem import identifiable_equations, identifiable_subspace
+from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -145,6 +146,46 @@ def score_added(fit: FitResult, gradient: Real, information: Real) -> ScoreTest:
     return score_test(system, slope, null_space.shape[1])
 
 
+def lift_priors(fit: FitResult, names: Sequence[str]) -> dict[str, tuple[float, float, float]]:
+    """Return what each of some parameters would be if nothing were known of it beforehand, all others as they are known.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    names
+        Parameters that are stated with an uncertainty, and fitted by their values.
+
+    Returns
+    -------
+    dict
+        By name: how far the estimate without the statement is from what is stated, SI; the standard uncertainty of that
+        distance; and by how many of its standard errors a parameter of the vehicle moves, the most of all, with one of the
+        estimate. Without parameters of which the recordings say nothing.
+
+    Notes
+    -----
+    With the variance v of the fit and the stated one s², the variance without the statement is v s² / (s² - v).
+    """
+    information, gradient, null_space = fit.problem.system(fit.iterate, fit.overdispersion)
+    equations = identifiable_equations(information, gradient, null_space)
+    covariance = equations.directions @ np.linalg.solve(equations.information, equations.directions.T)
+    estimate = fit.iterate.u + equations.directions @ np.linalg.solve(equations.information, equations.gradient)
+    own = [i for i, name in enumerate(fit.names) if not is_of_sensor(name)]
+    lifted = {}
+    for i, name in ((i, name) for i, name in enumerate(fit.names) if name in names):
+        stated, variance = fit.problem.priors.statements[name], float(covariance[i, i])
+        if not variance < (1 - _DETERMINED) * stated.std**2:
+            continue
+        free = variance * stated.std**2 / (stated.std**2 - variance)
+        distance = (float(estimate[i]) - stated.value) * free / variance
+        others = np.diag(covariance)[own] - covariance[own, i] ** 2 / variance
+        moves = np.abs(covariance[own, i]) / variance * free**0.5
+        shift = float((moves / np.sqrt(np.maximum(others, np.finfo(float).tiny))).max(initial=0.0))
+        lifted[name] = (distance, (free + stated.std**2) ** 0.5, shift)
+    return lifted
+
+
 def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) -> float:
     """:term:`Wald test`: what twice the log-likelihood would lose, to second order, if parameters had certain values.
 
@@ -168,8 +209,7 @@ def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) ->
             row[names.index(value)] = -1.0
             away[i] = row @ u
         else:
-            constrained = np.where(np.arange(len(names)) == own, value, fit.values)
-            away[i] = u[own] - coordinates.from_values(constrained)[own]
+            away[i] = coordinates.distance(u, name, value)
     equations = fit.problem.normal_equations(fit.iterate)
     along = rows @ equations.directions
     covariance = along @ np.linalg.solve(equations.information, along.T)

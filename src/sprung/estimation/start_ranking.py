@@ -48,7 +48,7 @@ def rank_starts(objective: ClosedFormObjective, vehicles: Real, weights: Real) -
     gram = exponential_gram(exponent, np.full(len(exponent), batch.samples[0]), secular=False)
     shapes, w = modes.shapes, batch.channel_weights * weights
     weighted = np.swapaxes(shapes.conj(), 1, 2) * w
-    inverse = inverse_of((weighted @ shapes) * gram + amplitude_prior(modes.right))
+    inverse = inverse_of((weighted @ shapes) * gram + amplitude_prior(modes))
     projected = np.sum(weighted.swapaxes(1, 2)[..., None] * data, axis=1)
     q = inverse @ projected
     fitted = shapes[..., None] * q[:, None]

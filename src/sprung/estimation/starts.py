@@ -18,6 +18,14 @@ BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 USUAL_ENGINE = 0.1
 """Part of the sprung mass that an engine on mounts usually is."""
 
+USUAL_MOUNT = 12.0
+"""Rate of a usual damper mount over that of the spring."""
+
+USUAL_RELAXATION = 0.15
+"""Part of a spring rate that usual rubber adds in fast motion."""
+
+_RELAXATION_TIMES = {"f": 0.05, "r": 0.07}  # s; unlike, as branches that do next to nothing would have equal poles
+
 _MOUNTED = (7.0, 10.0, 14.0)  # Hz of an engine on its mounts
 
 HOP_FREQUENCIES = (8.5, 12.0, 18.0)
@@ -25,6 +33,8 @@ HOP_FREQUENCIES = (8.5, 12.0, 18.0)
 
 DAMPING_RATIOS = (0.12, 0.35, 0.8)
 
+_LOSS = 0.1  # loss factor of rubber mounts
+_USUAL_BODY, _USUAL_HOP, _USUAL_DAMPING = 1.4, 12.0, 0.3  # Hz, Hz, and the damping ratio of the body
 _GRAVITY_FREE_MASS = 1500.0  # kg at a wheelbase of 2.7 m; any scale will do where nothing fixes it
 _MOUNT_DAMPING = 0.08  # damping ratio of usual engine mounts
 _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
@@ -69,6 +79,28 @@ def mountings_of(wheelbase: float) -> list[Mounting]:
     return [Mounting(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
 
 
+def usual_rubber(values: Mapping[str, float]) -> dict[str, float]:
+    """Return the usual rubber of the suspension of a vehicle: damper mounts, and Zener branches beside its springs.
+
+    Parameters
+    ----------
+    values
+        Its spring rates, SI, by name.
+
+    Returns
+    -------
+    dict
+        Parameters, SI, by name.
+    """
+    rates = {axle: values[f"k_s{axle}"] for axle in "fr"}
+    return {
+        **{f"k_d{axle}": USUAL_MOUNT * rate for axle, rate in rates.items()},
+        **{f"c_d{axle}": _LOSS * USUAL_MOUNT * rate / (2 * np.pi * _USUAL_HOP) for axle, rate in rates.items()},
+        **{f"k_z{axle}": USUAL_RELAXATION * rate for axle, rate in rates.items()},
+        **{f"c_z{axle}": _RELAXATION_TIMES[axle] * USUAL_RELAXATION * rate for axle, rate in rates.items()},
+    }
+
+
 class VehicleSize(NamedTuple):
     """Size of a vehicle, as far as it is known or follows from the sensors' positions.
 
@@ -77,7 +109,7 @@ class VehicleSize(NamedTuple):
     wheelbase
         m.
     front_share
-        The front axle's share of the weight.
+        The front axle's share of the weight, dimensionless.
     mass
         Of the whole vehicle, kg.
     weighed
@@ -94,7 +126,19 @@ class VehicleSize(NamedTuple):
 
     @classmethod
     def of(cls, known: Mapping[str, KnownValue], sensors: Sequence[Sensor]) -> VehicleSize:
-        """Return the size from what is known beforehand, the rest from the sensors' positions."""
+        """Return the size from what is known beforehand, the rest from the sensors' positions.
+
+        Parameters
+        ----------
+        known
+            Quantities measured beforehand, by name.
+        sensors
+            The sensors.
+
+        Returns
+        -------
+        VehicleSize
+        """
         value = {name: one.value for name, one in known.items()}
         places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
         wheelbase, front_share = _length(value, places)
@@ -126,25 +170,47 @@ def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool 
     dict
         Values, SI, of every parameter of every linear model; the known ones hold.
     """
+    for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
+        values = {**usual_vehicle(size, body, hop, damping), **NEUTRAL}
+        values |= usual_rubber(values)
+        for mounting in mountings_of(size.wheelbase) if engine else [USUAL_MOUNTING]:
+            values |= mounting.engine(USUAL_ENGINE * size.sprung_mass)
+            yield values | {name: one.value for name, one in known.items() if name in values}
+
+
+def usual_vehicle(
+    size: VehicleSize, body: float = _USUAL_BODY, hop: float = _USUAL_HOP, damping: float = _USUAL_DAMPING
+) -> dict[str, float]:
+    """Return a usual vehicle of a size, without further model terms.
+
+    Parameters
+    ----------
+    size
+        The size.
+    body, hop
+        Frequencies of body and wheels, Hz.
+    damping
+        Damping ratio of the body.
+
+    Returns
+    -------
+    dict
+        Parameters by name, SI; half-distances both shared and separate.
+    """
     wheelbase, front_share, half_track = size.wheelbase, size.front_share, size.half_track
     a, b = (1 - front_share) * wheelbase, front_share * wheelbase
     wheel, sprung_mass = _WHEEL_SHARE * size.mass, size.sprung_mass
-    for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
-        values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
-        for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
-            spring = corner * (2 * np.pi * body) ** 2
-            values |= {
-                f"m_u{axle}": wheel,
-                f"k_s{axle}": spring,
-                f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
-                f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
-            }
-            values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
-        values |= {"a": a, "b": b}
-        values |= NEUTRAL
-        for mounting in mountings_of(wheelbase) if engine else [USUAL_MOUNTING]:
-            values |= mounting.engine(USUAL_ENGINE * sprung_mass)
-            yield values | {name: one.value for name, one in known.items() if name in values}
+    values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
+    for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
+        spring = corner * (2 * np.pi * body) ** 2
+        values |= {
+            f"m_u{axle}": wheel,
+            f"k_s{axle}": spring,
+            f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
+            f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
+        }
+        values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
+    return values | {"a": a, "b": b}
 
 
 def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -15,9 +16,9 @@ from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linea
 from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, Moments, pool_moments
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, LinearModel, Sensor
+from sprung.vehicle import PARAMETERS, LinearModel, Sensor, is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -104,6 +105,11 @@ class FitStatistics:
     inflated_by: Inflater = "nothing"
     most_coloured: int | None = None
 
+    @cached_property
+    def residual_moments(self) -> Moments:
+        """Variance and covariance of neighbours of the residuals of each channel; see `pool_moments`."""
+        return pool_moments(self.residuals)
+
     def moved(self, step: Real) -> Real:
         """Return parameter values, SI, a step of the coordinates away, shape (parameter,)."""
         logarithmic, scales = np.array([(PARAMETERS[name].positive, PARAMETERS[name].scales) for name in self.names]).T
@@ -128,6 +134,12 @@ class FitStatistics:
             covariance=self.covariance[square],
             undetermined=self.undetermined[chosen],
         )
+
+    @property
+    def of_vehicle(self) -> FitStatistics:
+        """Marginal statistics of vehicle and loads, without the unknowns of the sensors."""
+        own = [name for name in self.names if not is_of_sensor(name)]
+        return self if len(own) == len(self.names) else self.only(own)
 
     @property
     def scaling(self) -> Real:
@@ -238,7 +250,7 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
         match optimum.at:
             case HasModalResponse() as at:
                 basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
-                bias = basis.T @ at.noise_bias_of_information @ basis
+                bias = basis.T @ at.noise_bias_of_information() @ basis
                 eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
             case _:
                 pass  # a stepped motion follows its initial states: nothing is known of a bias

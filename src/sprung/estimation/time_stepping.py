@@ -18,7 +18,18 @@ from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import ElementInput, NonlinearModel, Rows, Stepper, Trajectory
+from sprung.vehicle import (
+    ElementInput,
+    NonlinearModel,
+    Prediction,
+    Readout,
+    Stepper,
+    Trajectory,
+    coordinates,
+    differentiate_motions,
+    integrate_near,
+    segments_of,
+)
 
 Real = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -29,7 +40,7 @@ _MEMORY_STD = 1.0
 _MOST_MEMORY = 1.15
 """Memory that no friction has: it slides at one, and noise adds little."""
 
-_WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_products")
+_WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_linearised")
 """Cached properties of a `TimeSteppingAt` that do not depend on the weights."""
 
 _STATE_STEPS, _STATE_GAIN = 20, 1e-2
@@ -47,7 +58,7 @@ class TimeSteppingObjective:
     models
         Equations of motion by load name, all over the same parameters.
     sensors
-        The sensors' rows over the fit's parameters, in the order of the decays' channels.
+        The sensors over the fit's parameters, in the order of the decays' channels.
     states
         {X, Ẋ} of each drop at its first sample, from which an evaluation starts, and memories where they are known, from where
         the vehicle rests with its load; shape (drop, state) or (drop, state + memory).
@@ -55,14 +66,17 @@ class TimeSteppingObjective:
         Whether the sensors turn with the body, and measure the less of gravity.
     longest_step
         s: over a longer one forces do not run straight.
+    longest_derivative_step
+        s, of the steps by which motions are differentiated, if that is longer: rougher derivatives lead to the same optimum.
     """
 
     decays: Sequence[FreeDecay]
     models: Mapping[str, NonlinearModel]
-    sensors: Rows
+    sensors: Readout
     states: Real
     sensors_tilt: bool
     longest_step: float
+    longest_derivative_step: float = 0.0
 
     @cached_property
     def _kinds(self) -> list[tuple[str, float]]:
@@ -88,6 +102,12 @@ class TimeSteppingObjective:
     def every(self) -> int:
         """Steps from one sample to the next."""
         return max(int(np.ceil(1.0 / (min(decay.rate for decay in self.decays) * self.longest_step))), 1)
+
+    @cached_property
+    def derivative_every(self) -> int:
+        """Steps over each of which the derivatives make one."""
+        most = self.longest_derivative_step / max(self.times)
+        return max(part for part in range(1, self.every + 1) if self.every % part == 0 and part <= max(most, 1))
 
     @cached_property
     def samples(self) -> Index:
@@ -131,11 +151,18 @@ class TimeSteppingObjective:
         """How many numbers {X, Ẋ} has."""
         return self.models_by_kind[0].state_size
 
+    @property
+    def coordinates(self) -> int:
+        """How many numbers X has."""
+        return len(coordinates(self.models_by_kind[0].names))
+
     @cached_property
     def prior_std(self) -> Real:
         """Prior standard uncertainty of initial states and memories, shape (state + memory,)."""
-        memories = len(self.models_by_kind[0].forces.with_memory)
-        return np.concatenate([initial_state_prior_std(self.state_size), np.full(memories, _MEMORY_STD)])
+        memories = self.models_by_kind[0].forces.memories
+        return np.concatenate(
+            [initial_state_prior_std(self.coordinates, self.state_size), np.full(memories, _MEMORY_STD)]
+        )
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> TimeSteppingObjective:
         """Return the objective of other decays; those of the same recordings start from the same states, others from rest."""
@@ -153,11 +180,18 @@ class TimeSteppingObjective:
         begin[:, : self.states.shape[1]] += self.states[:, : begin.shape[1]]
         return self.at_states(values, weights, begin)
 
-    def at_states(self, values: Real, weights: Real, begin: Real) -> TimeSteppingAt:
-        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory)."""
-        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values)
+    def at_states(self, values: Real, weights: Real, begin: Real, near: Prediction | None = None) -> TimeSteppingAt:
+        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory).
+
+        A prediction of the motions saves time.
+        """
+        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
         states, memories = np.split(begin, [self.state_size], axis=1)
-        trajectory = stepper.integrate(states, memories, self.every * (self.records.shape[2] - 1))
+        steps = self.every * (self.records.shape[2] - 1)
+        if near is None:
+            trajectory = stepper.integrate(states, memories, steps)
+        else:
+            trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
         return TimeSteppingAt(self, values, weights, begin, stepper, trajectory)
 
     def sag(self, values: Real) -> Real:
@@ -182,17 +216,15 @@ class TimeSteppingObjective:
             {X, Ẋ} and memories, shape (drop, state + memory).
         """
         forces, size = self.models_by_kind[0].forces, self.state_size
-        X, V, memories = np.split(states + self.sag(values), [size // 2, size], axis=1)
+        X, V, memories = np.split(states + self.sag(values), [self.coordinates, size], axis=1)
         impossible = np.abs(memories) > _MOST_MEMORY
         if not impossible.any():
             return None
         rows = forces.rows.at(values)
-        memory = np.zeros((len(memories), forces.number))
-        memory[:, forces.with_memory] = memories
         travel = X @ rows.T
-        answer = forces.evaluate(values, ElementInput(travel, V @ rows.T, np.zeros_like(travel), memory))
-        by_memory = answer.by_memory[:, forces.with_memory]
-        lost = np.where(impossible, memories, 0.0) * by_memory @ rows[forces.with_memory]
+        still = np.zeros_like(travel)  # a friction's force is its memory, whatever the rate
+        answer = forces.evaluate(forces.parameters(values), ElementInput(travel, still, still, memories))
+        lost = np.where(impossible, memories, 0.0) * answer.by_memory @ rows[forces.memory_rows]
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
         return np.hstack([X, V, np.where(impossible, 0.0, memories)]) - self.sag(values)
@@ -241,7 +273,20 @@ class TimeSteppingAt:
             "dzp,p->dz", information[:, parameters:, :parameters], values - self.values
         )
         step = np.linalg.solve(information[:, parameters:, parameters:], right[:, :, None])[:, :, 0]
-        return self.objective.at_states(values, self.weights, self.begin + step)
+        of_model = (values - self.values)[: self.objective.sensors.shared]
+        change = np.hstack([np.tile(of_model, (len(step), 1)), step])
+        return self.objective.at_states(values, self.weights, self.begin + step, self._predict(change))
+
+    def _predict(self, change: Real) -> Prediction:
+        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
+        _, by_unknown, transitions = self._linearised
+        steps = len(self.trajectory.states) - 1
+        number, length = segments_of(steps, self.objective.every)
+        first = np.minimum(np.arange(number) * length, steps)
+        starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
+        return Prediction(
+            np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True), transitions
+        )
 
     def with_optimal_states(self) -> TimeSteppingAt:
         """Return the likelihood with the initial states that maximise it at these parameters."""
@@ -288,14 +333,31 @@ class TimeSteppingAt:
         """What the sensors measure less of where they turn, m/s²."""
         return STANDARD_GRAVITY if self.objective.sensors_tilt else 0.0
 
+    @property
+    def _readings(self) -> Real:
+        """What the sensors read, shape (drop, channel, time)."""
+        sensors, angles = self.objective.sensors, self._inputs[:, :, 1:3]
+        readings: Real = sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
+        if self._gravity:
+            readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+        if sensors.has_delays:
+            # To the second order: a delay is a small part of a period.
+            samples = sensors.delays(self.values)[:, None] * self._rates
+            rising = np.gradient(readings, axis=-1, edge_order=2)
+            readings += 0.5 * samples**2 * np.gradient(rising, axis=-1, edge_order=2) - samples * rising
+        return readings
+
+    @property
+    def _rates(self) -> Real:
+        """Samples per second of every drop, shape (drop, 1, 1)."""
+        return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
+
     @cached_property
     def _residuals(self) -> Real:
         """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
         objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            residuals = objective.records - objective.sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
-            angles = self._inputs[:, :, 1:3]
-            residuals += 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+            residuals = objective.records - self._readings
             residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
             residuals *= objective.is_sample[:, None, :]
         counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
@@ -313,41 +375,52 @@ class TimeSteppingAt:
         """Twice the negative log-likelihood of the initial states under their prior."""
         return float(np.sum((self.begin / self.objective.prior_std) ** 2))
 
-    @cached_property
+    @property
     def _products(self) -> Real:
         """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
 
         Shape (drop, channel, unknown + 1, unknown + 1); what offsets explain is subtracted.
         """
-        objective, every = self.objective, self.objective.every
-        rows, derivatives = self._acceleration_rows
-        S, by_S = objective.sensors.at(self.values), np.swapaxes(objective.sensors.slopes, 1, 2)
-        drops, channels, _ = objective.records.shape
-        parameters, unknown = len(self.values), len(self.values) + self.begin.shape[1]
-        total, squares = np.zeros((drops, channels, unknown + 1)), np.zeros((drops, channels, unknown + 1, unknown + 1))
-        for step, states, forces in self.stepper.sensitivities(self.trajectory):
-            chosen = slice(-step % every, None, every)
-            first = (step + (-step % every)) // every
-            driven = np.concatenate([states[chosen], forces[chosen]], axis=2)
-            if not len(driven):
-                continue
-            last = first + len(driven)
-            inputs = self._inputs[first:last]
-            moved = rows[:, :, :-1] @ driven
-            moved[..., :parameters] += np.einsum("dpij,kdj->kdip", derivatives, inputs, optimize=True)
-            columns = np.empty((drops, channels, last - first, unknown + 1))
-            readings = S @ moved
-            by_sensor = np.einsum("kdi,cip->kdcp", self._accelerations[first:last], by_S, optimize=True)
-            readings[..., :parameters] += by_sensor
-            turned = inputs[:, :, None, 1:3] @ states[chosen][:, :, 1:3]
-            readings -= self._gravity * turned
-            columns[..., :unknown] = readings.transpose(1, 2, 0, 3)
-            columns[..., :unknown] *= objective.is_sample[:, None, first:last, None]
-            columns[..., unknown] = self._residuals[:, :, first:last]
-            total += columns.sum(axis=2)
-            squares += np.swapaxes(columns, 2, 3) @ columns
-        squares -= total[..., :, None] * total[..., None, :] / objective.samples[:, None, None, None]
-        return squares * objective.channel_weights[:, :, None, None]
+        return self._linearised[0]
+
+    @cached_property
+    def _linearised(self) -> tuple[Real, Real, Real]:
+        """The products, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
+        objective = self.objective
+        S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
+        channels, shared = len(S), objective.sensors.shared
+        by_kind = [model.accelerations(self.values) for model in objective.models_by_kind]
+        outputs = np.stack([S @ rows[:, :-1] for rows, _ in by_kind])
+        direct = [np.swapaxes(by_S, 0, 1) @ rows for rows, _ in by_kind]
+        for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
+            by_row[:shared] += S @ slopes
+        if self._gravity:
+            # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
+            angles = np.broadcast_to(np.eye(2, outputs.shape[2], k=1), (len(outputs), 2, outputs.shape[2]))
+            outputs = np.concatenate([outputs, angles], axis=1)
+        stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
+        if skipped > 1:
+            longer = [skipped * time for time in objective.times]
+            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values[:shared])
+            trajectory = Trajectory(*(part[::skipped] for part in trajectory))
+        found = differentiate_motions(stepper, trajectory, outputs, objective.every // skipped)
+        products = []
+        for drop, (moved, samples) in enumerate(zip(found.outputs, objective.samples, strict=True)):
+            inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
+            if self._gravity:
+                readings -= self._gravity * (inputs[:, None, 1:3] @ moved[:samples, channels:])
+            # The unknowns of the sensors come between the parameters of the model and the initial states.
+            readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
+            by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
+            readings[..., : len(self.values)] += by_sensor
+            for channel, position in objective.sensors.delay_positions:
+                readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
+                readings[:, channel, position] *= objective.decays[drop].rate
+            columns = np.empty((channels, samples, readings.shape[2] + 1))
+            columns[..., :-1] = np.swapaxes(readings - readings.mean(axis=0), 0, 1)
+            columns[..., -1] = self._residuals[drop, :, :samples]
+            products.append(np.swapaxes(columns, 1, 2) @ columns)
+        return np.array(products) * objective.channel_weights[:, :, None, None], found.starts, found.transitions
 
     @cached_property
     def _normal_equations(self) -> tuple[Real, Real]:
@@ -404,7 +477,7 @@ class TimeSteppingAt:
         NaN for the samples before its first: friction cannot be followed backward in time.
         """
         chosen = slice(None, self.objective.every * after, self.objective.every)
-        memories = self.trajectory.memories[chosen, drop][:, self.stepper.forces.with_memory]
+        memories = self.trajectory.memories[chosen, drop]
         whole = np.hstack([self.trajectory.states[chosen, drop], memories]) - self.objective.sag(self.values)[drop]
         unknown = np.full((whole.shape[1], before), np.nan)
         return np.hstack([unknown, whole.T])

@@ -64,6 +64,11 @@ class ChannelDeletion:
         """Of the channel."""
         return self.isolation.campaign.sensors[self.channel].channel
 
+    @property
+    def correction(self) -> Correction:
+        """Leaves the channel out."""
+        return mask_channel(self.channel)
+
     @cached_property
     def prediction(self) -> ChannelPrediction:
         """The channel beside the motion of that vehicle."""
@@ -76,7 +81,7 @@ class ChannelDeletion:
             self.candidate, self.channel, decays, np.array([states[decay.file] for decay in decays]), drift
         )
 
-    @property
+    @cached_property
     def limit(self) -> ResidualTable:
         """The residuals of all channels if this one measures any part of the motion, with any delay."""
         return self.table(self.prediction.least_residual)
@@ -120,14 +125,20 @@ class ChannelDeletion:
                         self, hypothesis, hypothesis.correction, numbers, candidate=self.isolation.base
                     )
                     gain = sum(score.gain for score in own)
-                    yield replace(correction, table=self.isolation.base.table, score_gain=gain)
+                    yield replace(
+                        correction,
+                        table=self.isolation.base.table,
+                        score_gain=gain,
+                        is_beyond_prior=own[0].is_beyond_prior,
+                        required=own[0].required,
+                    )
 
     def _left_out(self, hypothesis: ChannelHypothesis) -> Hypothesis:
         fault = with_action(hypothesis.fault((), ()), "it is left out")
         return Hypothesis(
             fault,
             "left out",
-            mask_channel(self.channel),
+            self.correction,
             self.table(hypothesis.residual),
             self.candidate,
             hypothesis.free,
@@ -165,6 +176,7 @@ class ChannelCorrection(Hypothesis):
         numbers: Numbers,
         stds: Numbers = (),
         candidate: CandidateFit | None = None,
+        is_fitted: bool = False,
     ) -> ChannelCorrection:
         """Correct a channel; without a candidate fit the residuals are those predicted."""
         table = deletion.table(hypothesis.residual)
@@ -180,6 +192,7 @@ class ChannelCorrection(Hypothesis):
             table,
             candidate or deletion.candidate,
             len(numbers),
+            is_fitted=is_fitted,
             deletion=deletion,
             hypothesis=hypothesis,
             correct=correct,
@@ -205,7 +218,8 @@ class ChannelCorrection(Hypothesis):
         numbers, scores = self.numbers, list[FaultScore]()
         candidate = isolation.fit(self.correction, self.candidate.fit)
         fits = 1
-        if self.score_gain > 0 and candidate.misfit > _HALF * isolation.base.misfit:
+        explains = self.is_beyond_prior or candidate.misfit <= _HALF * isolation.base.misfit
+        if self.score_gain > 0 and not explains:
             return None, fits  # the score test was made too far away
         while numbers:
             scores = self._own(candidate.scores)
@@ -220,12 +234,22 @@ class ChannelCorrection(Hypothesis):
         if not _is_relevant(hypothesis, numbers) or not hypothesis.allows(numbers):
             return None, fits
         stds = tuple(score.std for score in scores)
-        confirmed = ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate)
+        confirmed = replace(
+            ChannelCorrection.of(deletion, hypothesis, self.correct, numbers, stds, candidate, is_fitted=True),
+            is_beyond_prior=self.is_beyond_prior,
+            required=self.required,
+        )
         if max((score.max_parameter_shift for score in scores), default=0.0) < _SHIFT:
             return confirmed, fits
         fault = with_action(hypothesis.fault(numbers, stds), "it is left out")
         return Hypothesis(
-            fault, "left out", mask_channel(deletion.channel), confirmed.table, deletion.candidate, len(numbers)
+            fault,
+            "left out",
+            deletion.correction,
+            confirmed.table,
+            deletion.candidate,
+            len(numbers),
+            is_fitted=True,
         ), fits
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:

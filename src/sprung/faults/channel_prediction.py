@@ -14,7 +14,7 @@ from scipy.signal import correlate
 from sprung.faults.isolation import CandidateFit
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Rows, Sensor
+from sprung.vehicle import Rows, Sensor, coordinates
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -88,10 +88,11 @@ class ChannelPrediction:
             load: np.linalg.eig(self.candidate.models[load].matrices(self.candidate.fit.values).state)
             for load in {decay.load for decay in self.decays}
         }
+        n = len(coordinates(self.candidate.fit.names))
         waves = []
         for decay, state in zip(self.decays, self.states, strict=True):
             poles, right = solved[decay.load]
-            amplitudes = right[len(poles) // 2 :] * (poles * np.linalg.solve(right, state.astype(np.complex128)))
+            amplitudes = right[:n] * (poles**2 * np.linalg.solve(right, state.astype(np.complex128)))
             waves.append((poles, amplitudes, np.exp(poles[:, None] * (np.arange(decay.samples) / decay.rate))))
         return waves
 

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 from sprung.campaign import Campaign
-from sprung.estimation import FitResult, autocorrelation_inflation
-from sprung.faults.fault_scores import FaultScore, score_faults
+from sprung.estimation import FitResult
+from sprung.faults.fault_scores import HYPOTHESES, FaultScore, score_faults
 from sprung.faults.high_pass import NEGLIGIBLE as NEGLIGIBLE_CORNER
 from sprung.faults.high_pass import CornerScores, score_corners
 from sprung.faults.residual_table import reference_noise, residual_table
@@ -19,11 +19,7 @@ from sprung.selection import required_gain
 Consistency = Literal["consistent", "inconsistent", "misfit"]
 """The fit agrees with the recordings; a fault of small size would improve it significantly; it does not describe them."""
 
-_HYPOTHESES = 1500
-"""How many are tried on a usual campaign: some fifteen of each of eight channels, and in each of a dozen drops those of every
-channel and an exchange of every two."""
-
-SIGNIFICANT = required_gain(1, _HYPOTHESES, 1.0)
+SIGNIFICANT = required_gain(1, HYPOTHESES, 1.0)
 """Gain in twice the log-likelihood, in units of the overdispersion, that a fault needs by the error budget: 24.7."""
 
 SHARE = 0.5
@@ -62,14 +58,17 @@ def consistency_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResu
     if not table.is_explained(noise):
         return "misfit"
     scores, corners = _scores(campaign, decays, fit)
-    gain = max((score.gain for score in scores if abs(score.value) > NEGLIGIBLE[score.kind]), default=0.0)
-    correlation = max(residual_autocorrelation(decays, fit), 1.0)
+    relevant = [score for score in scores if abs(score.value) > NEGLIGIBLE[score.kind]]
+    gain = max((score.gain for score in relevant if not score.is_beyond_prior), default=0.0)
+    # What the residuals would gain says nothing of a sensor that is further off than is stated.
+    is_far_off = any(score.is_beyond_prior and score.gain > score.required for score in relevant)
+    correlation = float(fit.autocorrelation_inflation.max())
     required = max(SIGNIFICANT, SHARE * table.misfit(noise))
     # That drops differ has been allowed for in what all corners gain together.
     together = (
         corners is not None and corners.is_relevant and corners.gain > SIGNIFICANT and corners.raw_gain > required
     )
-    if (gain > required and gain > SIGNIFICANT * correlation) or together:
+    if (gain > required and gain > SIGNIFICANT * correlation) or together or is_far_off:
         return "inconsistent"
     stands_out = fit.disagreement > _DISAGREEMENT and _one_drop_stands_out(fit, correlation)
     return "inconsistent" if stands_out else "consistent"
@@ -88,11 +87,6 @@ def score_faults_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitRes
     tuple of FaultScore
     """
     return tuple(sorted(_scores(campaign, decays, fit)[0], key=lambda score: score.gain, reverse=True))
-
-
-def residual_autocorrelation(decays: Sequence[FreeDecay], fit: FitResult) -> float:
-    """Return the largest factor by which autocorrelation of the residuals enlarges the variance of their mean."""
-    return float(autocorrelation_inflation(fit.residuals, [decay.rate for decay in decays]).max())
 
 
 def _scores(

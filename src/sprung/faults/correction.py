@@ -178,18 +178,28 @@ def advance_channel(channel: int, delay: float) -> Correction:
     return Correction(samples=advanced)
 
 
-def exchange_channels(first: int, second: int) -> Correction:
-    """Exchange what is stated of two channels; channel names and loggers stay."""
+def exchange_channels(first: int, second: int, sensors: Sequence[Sensor]) -> Correction:
+    """Exchange what is stated of two channels, also of their high-passes; channel names and loggers stay.
+
+    Parameters
+    ----------
+    first, second
+        Indices of the channels.
+    sensors
+        As they are stated.
+    """
+    placed = list(sensors)
+    placed[first], placed[second] = (
+        _placed_like(sensors[first], sensors[second]),
+        _placed_like(sensors[second], sensors[first]),
+    )
+    corners = {channel: placed[channel].high_pass or 0.0 for channel in (first, second)}
+    is_alike = sensors[first].high_pass == sensors[second].high_pass
 
     def exchanged(campaign: Campaign) -> Campaign:
-        sensors = list(campaign.sensors)
-        sensors[first], sensors[second] = (
-            _placed_like(sensors[first], sensors[second]),
-            _placed_like(sensors[second], sensors[first]),
-        )
-        return replace(campaign, sensors=tuple(sensors))
+        return replace(campaign, sensors=tuple(placed))
 
-    return Correction(description=exchanged)
+    return Correction(description=exchanged, corners={} if is_alike else corners)
 
 
 def exchange_columns(first: int, second: int, recording: str) -> Correction:

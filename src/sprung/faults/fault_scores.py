@@ -13,13 +13,30 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FitResult, HasModalResponse, score_added
-from sprung.vehicle import Heights, LinearModel, Load, Rows, Sensor
+from sprung.estimation import FitResult, HasModalResponse, lift_priors, score_added
+from sprung.selection import required_gain
+from sprung.vehicle import (
+    SENSOR_DELAY,
+    SENSOR_GAIN,
+    SENSOR_X,
+    SENSOR_Y,
+    Heights,
+    LinearModel,
+    Load,
+    Rows,
+    Sensor,
+    SensorUnknown,
+    is_of_sensor,
+)
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 Kind = Literal["gain", "late", "position", "load-position", "corner"]
+
+HYPOTHESES = 1500
+"""How many are tried on a usual campaign: some fifteen of each of eight channels, and in each of a dozen drops those of every
+channel and an exchange of every two."""
 
 _NUDGE = 0.01
 """m by which an item is moved to see what that does; its mass is quadratic in its place, so that any step is exact."""
@@ -56,6 +73,21 @@ class FaultScore(NamedTuple):
     value: float
     std: float
     max_parameter_shift: float
+    uncertainties: int = 0
+    """Where a standard uncertainty of it is stated, which `std` contains, the number of all that are stated; else 0."""
+
+    @property
+    def is_beyond_prior(self) -> bool:
+        """Whether it is what lies beyond a stated uncertainty."""
+        return self.uncertainties > 0
+
+    @property
+    def required(self) -> float:
+        """Gain that it needs by the error budget.
+
+        Of what is stated with an uncertainty only so much is tried as is stated, whatever is tried besides.
+        """
+        return required_gain(1, self.uncertainties or HYPOTHESES, 1.0)
 
     @property
     def gain(self) -> float:
@@ -86,7 +118,8 @@ def score_faults(
     """
     match fit.iterate.at:
         case HasModalResponse() as at:
-            changes = list(_changes(fit, at, sensors, loads, heights))
+            lifted = {score[:4]: score for score in _lifted_scores(fit, sensors)}
+            changes = [one for one in _changes(fit, at, sensors, loads, heights) if one[0] not in lifted]
             test = score_added(fit, *at.with_changes(np.concatenate([readings for _, readings in changes], axis=2)))
             numbers = zip(test.values.tolist(), test.stds.tolist(), test.max_shifts.tolist(), strict=True)
             scores = [
@@ -94,9 +127,32 @@ def score_faults(
                 for (labels, _), estimate, determined in zip(changes, numbers, test.determined, strict=True)
                 if determined
             ]
-            return tuple(sorted(scores, key=lambda score: score.gain, reverse=True))
+            return tuple(sorted((*lifted.values(), *scores), key=lambda score: score.gain, reverse=True))
         case _:
             return ()
+
+
+_KINDS: Mapping[SensorUnknown, tuple[Kind, int]] = {
+    SENSOR_GAIN: ("gain", 0),
+    SENSOR_X: ("position", 0),
+    SENSOR_Y: ("position", 1),
+    SENSOR_DELAY: ("late", 0),
+}
+"""Faults that lie beyond what is stated of the unknowns of a sensor."""
+
+
+def _lifted_scores(fit: FitResult, sensors: Sequence[Sensor]) -> Iterator[FaultScore]:
+    """Yield what would be gained if nothing were known beforehand of one unknown of a sensor.
+
+    The covariance of the fit contains what is known: without it the variance v of an unknown that is stated with the standard
+    uncertainty s is v s² / (s² - v), and twice the log-likelihood gains the square of its distance from what is stated over the
+    variance of that distance.
+    """
+    lifts = lift_priors(fit, [name for name in fit.names if is_of_sensor(name)])
+    for sensor in sensors:
+        for unknown, (kind, axis) in _KINDS.items():
+            if (lifted := lifts.get(f"{unknown.prefix}{sensor.channel}")) is not None:
+                yield FaultScore(kind, sensor.channel, axis, 0, *lifted, uncertainties=len(lifts))
 
 
 _Labels = tuple[Kind, str, int, int]
@@ -119,12 +175,20 @@ def _changes(
         if sensor.position is not None:
             for axis, row in enumerate(_along(sensor, fit.names)):
                 yield ("position", sensor.channel, axis, 0), of_channel(row @ modes.accelerations)
-    for number, name in enumerate(at.loads):
-        for item, piece in enumerate(loads[name].items):
-            for axis in (0, 1) if piece.position is not None else ():
-                forces = np.zeros_like(modes.accelerations[:, :, None])
-                forces[number, :, 0] = _moved(loads[name], item, axis, heights, fit) @ modes.accelerations[number]
-                yield ("load-position", name, axis, item), at.differentiate_response(forces)
+    places: list[_Labels] = [
+        ("load-position", name, axis, item)
+        for name in at.loads
+        for item, piece in enumerate(loads[name].items)
+        for axis in ((0, 1) if piece.position is not None else ())
+    ]
+    if places:
+        load, coordinate, mode = modes.accelerations.shape
+        forces = np.zeros((load, coordinate, len(places), mode), dtype=np.complex128)
+        for change, (_, name, axis, item) in enumerate(places):
+            number = at.loads.index(name)
+            forces[number, :, change] = _moved(loads[name], item, axis, heights, fit) @ modes.accelerations[number]
+        readings = at.differentiate_response(forces)
+        yield from ((labels, readings[:, :, [change]]) for change, labels in enumerate(places))
 
 
 def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
@@ -138,11 +202,11 @@ def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
 
 def _moved(load: Load, item: int, axis: int, heights: Heights, fit: FitResult) -> Real:
     """Return the change of M per metre that an item is moved; shape (coordinate, coordinate)."""
-    sides = []
-    for step in (-_NUDGE, _NUDGE):
+    elements = []
+    for side in (-1, 1):
+        step = side * _NUDGE
         x, y, z = load.items[item].position or (0.0, 0.0, 0.0)
         place = (x + step * (axis == 0), y + step * (axis == 1), z + step * (axis == 2))
         there = replace(load.items[item], position=place)
-        model = LinearModel.of(list(there.elements(heights)), fit.names)
-        sides.append(model.matrices(fit.values).M)
-    return (sides[1] - sides[0]) / (2 * _NUDGE)
+        elements += [replace(element, factor=side * element.factor) for element in there.elements(heights)]
+    return LinearModel.of(elements, fit.names).matrices(fit.values).M / (2 * _NUDGE)

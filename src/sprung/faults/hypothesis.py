@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from sprung.errors import Fault
+from sprung.faults.consistency import SIGNIFICANT
 from sprung.faults.correction import Correction
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.isolation import CandidateFit, FaultIsolation
@@ -40,10 +41,14 @@ class Hypothesis:
         The recording that is left out altogether; None where none is.
     is_specific
         Whether it says what is wrong, not only where.
-    is_rough
-        Whether the residuals are those of one step from far away, which a fit may leave much smaller.
+    is_fitted
+        Whether the residuals are those of a fit, and not only predicted.
     score_gain
         What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
+    is_beyond_prior
+        Whether its numbers lie beyond what the campaign states of a sensor with an uncertainty.
+    required
+        Gain in twice the log-likelihood that it needs by the error budget.
     """
 
     fault: Fault
@@ -54,8 +59,10 @@ class Hypothesis:
     free: int = 0
     recording: str | None = None
     is_specific: bool = True
-    is_rough: bool = False
+    is_fitted: bool = False
     score_gain: float = 0.0
+    is_beyond_prior: bool = False
+    required: float = SIGNIFICANT
 
     @property
     def is_explained(self) -> bool:
@@ -80,7 +87,7 @@ class Hypothesis:
         if self.remedy != "corrected":
             return self, 0
         candidate = isolation.fit(self.correction, self.candidate.fit)
-        return replace(self, table=candidate.table, candidate=candidate, is_rough=False, score_gain=0.0), 1
+        return replace(self, table=candidate.table, candidate=candidate, is_fitted=True, score_gain=0.0), 1
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:  # noqa: ARG002 (one form for all)
         """Return the hypothesis with its numbers where the scores of a better fit have them, and the correction by the change.
@@ -105,8 +112,11 @@ class Hypothesis:
         overdispersion
             Factor on every variance, dimensionless.
         """
-        cost = self.table.cost - self.score_gain
-        return cost / overdispersion + self.free * float(np.log(max(self.table.counts.sum(), 1.0)))
+        cost = self.table.inflated_cost(overdispersion)
+        gain = self.score_gain / (1.0 if self.is_beyond_prior else overdispersion)
+        # A number with a stated uncertainty is no free one: the samples do not determine it alone.
+        free = 0 if self.is_beyond_prior else self.free
+        return cost - gain + free * float(np.log(max(self.table.counts.sum(), 1.0)))
 
     def concerns_same(self, other: Hypothesis) -> bool:
         """Whether two hypotheses are about the same place, or one is among several of which the other says the same."""

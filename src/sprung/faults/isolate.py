@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -110,21 +110,42 @@ def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple
     fits += more
     if best is not None and (isolation.base.is_explained or best.candidate.is_explained):
         return _with_rival(isolation, best, ranked), fits
-    of_parts, made = _of_parts(isolation, progress)
-    ranked += of_parts
-    best, ranked, more = _confirm_best(isolation, ranked)
-    fits += made + more
-    for exchanges in (exchanged_loads, exchanged_channels):
-        if best is not None and best.candidate.is_explained:
-            break
-        progress(Step("testing for exchanged loads and channels"))
-        other, others, made = _confirm_best(isolation, [*exchanges(isolation)])
-        fits += made
-        ranked += others
+    best = None
+    for hypotheses, made in _groups(isolation, progress):
+        other, ranked, more = _confirm_best(isolation, [*ranked, *hypotheses])
+        fits += made + more
         if other is not None and (best is None or other.score() < best.score()):
             best = other
+        if best is not None and best.candidate.is_explained:
+            break
     best = best or _left_over(isolation, ranked)
     return (None if best is None else _with_rival(isolation, best, ranked)), fits
+
+
+def _groups(isolation: FaultIsolation, progress: Progress) -> Iterator[tuple[list[Hypothesis], int]]:
+    """Yield hypotheses about single channels and drops, and those about exchanged ones; and how many fits each group took.
+
+    The group that is predicted to explain the recordings better comes first. Nothing that is exchanged is a small fault.
+    """
+    base = isolation.base
+    progress(Step("leaving out each channel and each drop"))
+    deletions = _deletions(isolation)
+    if base.is_explained:
+        yield _of_parts(isolation, deletions, progress)
+        return
+    limit = deletions[0].limit if deletions else base.table
+    is_alone = limit.is_explained(isolation.noise)
+    if is_alone:
+        yield _of_parts(isolation, deletions, progress)
+    progress(Step("testing for exchanged loads and channels"))
+    exchanges = _with_refined(isolation, [*exchanged_loads(isolation), *exchanged_channels(isolation)])
+    is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
+    if is_likelier or is_alone:
+        yield exchanges, 0
+    if not is_alone:
+        yield _of_parts(isolation, deletions, progress)
+    if not (is_likelier or is_alone):
+        yield exchanges, 0
 
 
 def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
@@ -159,37 +180,47 @@ def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
     hypotheses: list[Hypothesis] = []
     for channel, sensor in enumerate(isolation.campaign.sensors):
         own = [score for score in base.scores if score.where == sensor.channel]
-        if max((score.gain for score in own), default=0.0) > SIGNIFICANT:
+        if any(score.gain > score.required for score in own):
             hypotheses += ChannelDeletion(isolation, channel, base).scored(own)
     return hypotheses
 
 
-def _of_parts(isolation: FaultIsolation, progress: Progress) -> tuple[list[Hypothesis], int]:
-    """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
+def _deletions(isolation: FaultIsolation) -> list[ChannelDeletion | DropDeletion]:
+    """Return each channel and each drop left out, by a few steps; first the one whose deletion gains most."""
     table = isolation.base.table
     channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
-    parts: list[tuple[float, ChannelDeletion | DropDeletion, Correction]] = []
-    progress(Step("leaving out each channel and each drop"))
+    deletions: list[ChannelDeletion | DropDeletion] = []
     for channel in channels if len(channels) > 1 else ():
-        correction = mask_channel(channel)
-        deletion = ChannelDeletion(isolation, channel, isolation.delete(correction))
-        parts.append((table.cost - deletion.limit.cost, deletion, correction))
+        deletions.append(ChannelDeletion(isolation, channel, isolation.delete(mask_channel(channel))))
     for drop in drops if len(drops) > 1 else ():
-        correction = exclude_drops(isolation.recordings[drop])
-        without = DropDeletion(isolation, drop, isolation.delete(correction), DROP_HYPOTHESES)
-        parts.append((table.cost - without.limit.cost, without, correction))
-    parts.sort(key=lambda part: part[0], reverse=True)
-    largest = parts[0][0] if parts else 0.0
+        candidate = isolation.delete(exclude_drops(isolation.recordings[drop]))
+        deletions.append(DropDeletion(isolation, drop, candidate, DROP_HYPOTHESES))
+    return sorted(deletions, key=lambda deletion: deletion.limit.cost)
+
+
+def _of_parts(
+    isolation: FaultIsolation, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
+) -> tuple[list[Hypothesis], int]:
+    """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
+    gains = [isolation.base.table.cost - deletion.limit.cost for deletion in deletions]
     hypotheses: list[Hypothesis] = []
     fits = 0
-    for gain, part, correction in parts[:_MOST_PARTS]:
+    for gain, deletion in list(zip(gains, deletions, strict=True))[:_MOST_PARTS]:
         is_found = any(one.is_specific and one.is_explained for one in hypotheses)
-        if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * largest):
+        if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * gains[0]):
             break
-        progress(Step(f"fitting without {part.name}"))
-        hypotheses += replace(part, candidate=isolation.fit(correction)).hypotheses()
+        progress(Step(f"fitting without {deletion.name}"))
+        hypotheses += replace(deletion, candidate=isolation.fit(deletion.correction)).hypotheses()
         fits += 1
     return hypotheses, fits
+
+
+def _with_refined(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Return hypotheses of which one step from far away tells the residuals, the best few after some steps more."""
+    ranked = sorted(hypotheses, key=lambda hypothesis: hypothesis.score())
+    candidates = (isolation.refine(one.correction, one.candidate.fit) for one in ranked[:_MOST_FITS])
+    refined = [replace(one, table=new.table, candidate=new) for one, new in zip(ranked, candidates, strict=False)]
+    return [*refined, *ranked[_MOST_FITS:]]
 
 
 def _confirm_best(
@@ -224,23 +255,16 @@ def _confirm_best(
 def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
     """Whether a fit of a hypothesis may be convincing, by what it predicts."""
     base = isolation.base
-    if not hypothesis.is_specific:
-        return False
-    if hypothesis.is_rough:
-        return not base.is_explained
-    explains = (
-        base.is_explained
-        or hypothesis.score_gain > 0
-        or hypothesis.table.misfit(hypothesis.candidate.noise) < _FEW * base.misfit
-    )
-    return explains and base.table.cost - hypothesis.score() > SIGNIFICANT
+    gain = base.table.cost - hypothesis.score()
+    explains = base.is_explained or hypothesis.is_beyond_prior or gain > (1 - _FEW) * base.misfit
+    return hypothesis.is_specific and not hypothesis.is_fitted and explains and gain > hypothesis.required
 
 
 def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Whether a hypothesis explains much of the misfit, and more than chance does."""
     base, overdispersion = isolation.base, hypothesis.candidate.fit.overdispersion
-    gain = base.table.cost / overdispersion - hypothesis.score(overdispersion)
-    required = max(SIGNIFICANT, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
+    gain = base.table.inflated_cost(overdispersion) - hypothesis.score(overdispersion)
+    required = max(hypothesis.required, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
     explains = base.is_explained or hypothesis.candidate.misfit < _FEW * base.misfit
     # What cannot be named may be much more likely than the best name there is.
     limit = hypothesis.score(overdispersion) - SIGNIFICANT
@@ -259,7 +283,7 @@ def _left_over(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> H
 def _with_rival(isolation: FaultIsolation, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Hypothesis:
     """Return the best hypothesis; only named, and together with another one that explains the recordings about as well."""
     overdispersion = best.candidate.fit.overdispersion
-    limit = best.score(overdispersion) + SIGNIFICANT
+    limit = best.score(overdispersion) + best.required
     largest = np.inf if isolation.base.is_explained else max(SHARE * isolation.base.misfit, best.candidate.misfit)
     rivals = [
         other

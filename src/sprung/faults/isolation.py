@@ -19,8 +19,8 @@ from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
 from sprung.preprocess import FreeDecay, prepare
-from sprung.selection import choose_structure
-from sprung.vehicle import LinearModel, Tracks
+from sprung.selection import ModelStructure, choose_structure
+from sprung.vehicle import LinearModel
 
 Real = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ _DRIFT_SPAN, _DRIFT_SHARE = 0.5, 0.75
 """s over which a drift is constant, unlike a vibration; and the share of a residual's energy that means over it then keep."""
 
 _STEPS = 3
-"""Gauss-Newton steps of a deletion where the fit of everything may be far away."""
+"""Gauss-Newton steps of a deletion or an exchange where the fit of everything may be far away."""
 
 _STARTS = 2
 """Starts of a fit without a channel or drop, of which no vehicle is known."""
@@ -40,12 +40,10 @@ class CandidateFit:
 
     Attributes
     ----------
-    campaign
-        What was fitted.
+    structure
+        The model.
     decays
-        Its decays.
-    models
-        Equations of motion by load name.
+        What was fitted.
     fit
         Where the fit ended.
     table
@@ -54,12 +52,21 @@ class CandidateFit:
         What the sensors read at rest.
     """
 
-    campaign: Campaign
+    structure: ModelStructure
     decays: tuple[FreeDecay, ...]
-    models: Mapping[str, LinearModel]
     fit: FitResult
     table: ResidualTable
     noise: ReferenceNoise
+
+    @property
+    def campaign(self) -> Campaign:
+        """What was fitted."""
+        return self.structure.campaign
+
+    @property
+    def models(self) -> Mapping[str, LinearModel]:
+        """Equations of motion by load name."""
+        return self.structure.linear_models
 
     @property
     def is_explained(self) -> bool:
@@ -100,34 +107,28 @@ class FaultIsolation:
         The fit.
     recordings
         Names of all recordings, in order: the rows of every residual table.
-    tracks, extras
-        Of the model, which stays the same in all candidate fits.
     """
 
     base: CandidateFit
     recordings: tuple[str, ...]
-    tracks: Tracks
-    extras: tuple[str, ...]
 
     @classmethod
-    def of(
-        cls,
-        campaign: Campaign,
-        decays: Sequence[FreeDecay],
-        fit: FitResult | None,
-        tracks: Tracks,
-        extras: tuple[str, ...],
-    ) -> FaultIsolation:
-        """Take up a campaign, its decays and their fit; without a fit they are fitted."""
+    def of(cls, structure: ModelStructure, decays: Sequence[FreeDecay], fit: FitResult | None = None) -> FaultIsolation:
+        """Take up a model of a campaign, its decays and their fit; without a fit they are fitted.
+
+        Parameters
+        ----------
+        structure
+            The model, with its campaign.
+        decays
+            Of all drops that can be used.
+        fit
+            Of them.
+        """
         recordings = tuple(decay.file for decay in decays)
-        structure = choose_structure(campaign, tracks, extras)
-        if fit is None:
-            fit = fit_linear(
-                decays, structure.linear_models, campaign.sensors, structure.known, starts=_STARTS, enough=NEAR
-            )
-        table, noise = residual_table(recordings, decays, fit), reference_noise(decays, fit)
-        base = CandidateFit(campaign, tuple(decays), structure.linear_models, fit, table, noise)
-        return cls(base, recordings, tracks, extras)
+        return cls(
+            _candidate(structure, recordings, decays, _fitted(structure, decays) if fit is None else fit), recordings
+        )
 
     @property
     def campaign(self) -> Campaign:
@@ -170,6 +171,18 @@ class FaultIsolation:
         """
         return self._fit(correction, start, 1)
 
+    def refine(self, correction: Correction, start: FitResult) -> CandidateFit:
+        """Continue a Gauss-Newton step by a few more.
+
+        Parameters
+        ----------
+        correction
+            Of the campaign.
+        start
+            Where the step ended.
+        """
+        return self._fit(correction, start, _STEPS)
+
     def delete(self, correction: Correction) -> CandidateFit:
         """Estimate the fit without a channel or drop, by a few Gauss-Newton steps.
 
@@ -183,31 +196,49 @@ class FaultIsolation:
         """
         if self.base.is_explained:
             return self.step(correction, self.base.fit)
-        near, anew = self._fit(correction, self.base.fit, _STEPS), self._fit(correction, None, 1)
+        near, anew = self.refine(correction, self.base.fit), self.step(correction)
         return min(near, anew, key=lambda candidate: candidate.table.cost)
 
     def after(self, candidate: CandidateFit) -> FaultIsolation:
-        """Return the isolation of what is still wrong with a corrected campaign."""
+        """Return the isolation of what is still wrong with a corrected campaign.
+
+        Parameters
+        ----------
+        candidate
+            Its fit.
+        """
         return replace(self, base=candidate)
 
     def _fit(self, correction: Correction, start: FitResult | None, most: int) -> CandidateFit:
-        campaign = correction.of_campaign(self.campaign)
+        campaign, before = correction.of_campaign(self.campaign), self.base.structure
         decays = correction.of_decays(campaign, self.decays)
-        structure = choose_structure(campaign, self.tracks, self.extras)
-        fit = fit_linear(
-            decays,
-            structure.linear_models,
-            campaign.sensors,
-            structure.known,
-            start=None if start is None else start.parameters,
-            starts=_STARTS if most > 1 else 1,
-            enough=NEAR,
-            most=most,
-        )
-        table = residual_table(self.recordings, decays, fit)
+        structure = replace(choose_structure(campaign, before.tracks, before.terms), carried_at=before.carried_at)
+        candidate = _candidate(structure, self.recordings, decays, _fitted(structure, decays, start, most))
         is_same = correction.samples is None and not correction.corners
-        noise = self.noise if is_same else reference_noise(decays, fit).of_present(table, self.noise)
-        return CandidateFit(campaign, decays, structure.linear_models, fit, table, noise)
+        noise = self.noise if is_same else candidate.noise.of_present(candidate.table, self.noise)
+        return replace(candidate, noise=noise)
+
+
+def _fitted(
+    structure: ModelStructure, decays: Sequence[FreeDecay], start: FitResult | None = None, most: int = MOST_STEPS
+) -> FitResult:
+    return fit_linear(
+        decays,
+        structure.linear_models,
+        structure.sensors,
+        structure.known,
+        start=None if start is None else start.parameters,
+        starts=_STARTS if most > 1 else 1,
+        enough=NEAR,
+        most=most,
+    )
+
+
+def _candidate(
+    structure: ModelStructure, recordings: Sequence[str], decays: Sequence[FreeDecay], fit: FitResult
+) -> CandidateFit:
+    table, noise = residual_table(recordings, decays, fit), reference_noise(decays, fit)
+    return CandidateFit(structure, tuple(decays), fit, table, noise)
 
 
 def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:

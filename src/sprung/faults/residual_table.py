@@ -11,7 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import FitResult
-from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
+from sprung.preprocess import FreeDecay, estimate_sensor_noise
+from sprung.selection import required_gain
+from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -61,17 +63,28 @@ class ResidualTable:
         Sums of squares, (m/s²)², shape (drop, channel); 0 for what is left out.
     counts
         Samples of each, 0 for what is left out.
+    penalty
+        How far the sensors of the fit are from what is stated of them, in standard uncertainties, squared and summed.
+    uncertainties
+        How many uncertainties are stated of them.
     """
 
     residual: Real
     counts: Real
+    penalty: float = 0.0
+    uncertainties: int = 0
 
     @cached_property
     def cost(self) -> float:
         """Minus twice the log-likelihood with every channel's noise fitted, up to a constant."""
         residual, counts = self.residual.sum(axis=0), self.counts.sum(axis=0)
         there = counts > 0
-        return float(np.sum(counts[there] * np.log(np.maximum(residual[there] / counts[there], 1e-24))))
+        variances = np.maximum(residual[there] / counts[there], 1e-24)
+        return float(np.sum(counts[there] * np.log(variances))) + self.penalty
+
+    def inflated_cost(self, overdispersion: float) -> float:
+        """Return the same where the records count for less by a factor; what is stated of the sensors counts whole."""
+        return (self.cost - self.penalty) / overdispersion + self.penalty
 
     def explicable(self, noise: ReferenceNoise) -> float:
         """Return what twice the log-likelihood would gain if nothing but noise were left."""
@@ -91,8 +104,14 @@ class ResidualTable:
         return excess
 
     def misfit(self, noise: ReferenceNoise) -> float:
-        """Return what the residuals are beyond noise, in twice the log-likelihood."""
-        return float(np.sum(self.counts * 2 * np.log(np.maximum(self._excess(noise), 1.0))))
+        """Return what the residuals are beyond noise, and the sensors beyond what is stated, in twice the log-likelihood."""
+        excess = max(self.penalty - self._largest_penalty, 0.0)
+        return float(np.sum(self.counts * 2 * np.log(np.maximum(self._excess(noise), 1.0)))) + excess
+
+    @cached_property
+    def _largest_penalty(self) -> float:
+        """Penalty of sensors that are as stated, by chance: chi-squared, of which each uncertainty is a degree of freedom."""
+        return required_gain(self.uncertainties, 1, 1.0)
 
     def explained_channels(self, noise: ReferenceNoise) -> NDArray[np.bool_]:
         """Of which channels the residuals are noise alone, shape (channel,)."""
@@ -100,12 +119,12 @@ class ResidualTable:
         return np.asarray(excess.max(axis=0, initial=0.0) < 1)
 
     def is_explained(self, noise: ReferenceNoise) -> bool:
-        """Whether the residuals are noise alone."""
-        return bool(self.explained_channels(noise).all())
+        """Whether the residuals are noise alone, and the sensors what is stated of them."""
+        return bool(self.explained_channels(noise).all()) and self.penalty <= self._largest_penalty
 
     def with_part(self, drops: Sequence[int], channels: Sequence[int], residual: Real, counts: Real) -> ResidualTable:
         """Return the table with the residuals of some channels of some drops replaced; both of shape (drop, channel)."""
-        whole = ResidualTable(self.residual.copy(), self.counts.copy())
+        whole = ResidualTable(self.residual.copy(), self.counts.copy(), self.penalty, self.uncertainties)
         whole.residual[np.ix_(drops, channels)] = residual
         whole.counts[np.ix_(drops, channels)] = counts
         return whole
@@ -133,7 +152,8 @@ def residual_table(recordings: Sequence[str], decays: Sequence[FreeDecay], optim
         row = recordings.index(decay.file)
         counts[row] = decay.usable * decay.samples
         residual[row] = np.where(decay.usable, of_decay, 0.0)
-    return ResidualTable(residual, counts)
+    uncertainties = sum(map(is_of_sensor, optimum.names))
+    return ResidualTable(residual, counts, optimum.sensor_penalty, uncertainties)
 
 
 def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> ReferenceNoise:
@@ -154,18 +174,16 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
-    left = optimum.residuals
-    noise = estimate_sensor_noise(decays, pool_moments(left))
+    noise = estimate_sensor_noise(decays, optimum.residual_moments)
     few = noise.samples < _FEW
-    second_difference = (
-        np.sum([np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in left], axis=0) / 6 / samples
-    )
-    level = np.sqrt(np.where(few, second_difference, noise.variance) + noise.added)
+    variance = noise.variance
+    if few.any():
+        differences = [np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in optimum.residuals]
+        variance = np.where(few, np.sum(differences, axis=0) / 6 / samples, variance)
+    level = np.sqrt(variance + noise.added)
     level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)
     return ReferenceNoise(level, np.where(few, 1.0, noise.per_independent), np.maximum(noise.samples, _FEW))
 
 
 def _energy(decay: FreeDecay) -> Real:
-    centred = decay.values - decay.values.mean(axis=1, keepdims=True)
-    energy: Real = np.nansum(centred**2, axis=1)
-    return energy
+    return np.where(decay.usable, decay.samples * decay.values.var(axis=1), 0.0)

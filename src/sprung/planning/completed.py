@@ -69,4 +69,4 @@ def completed_test(setup: MeasurementSetup, fit: FitStatistics, drops: Sequence[
     variances, vectors = np.linalg.eigh(covariance)
     least = np.finfo(float).eps * variances.max(initial=0.0)
     total = (vectors / np.maximum(variances, least)) @ vectors.T
-    return PlannedTest(setup, tuple(drops), total - setup.prior_information(setup.known))
+    return PlannedTest(setup, tuple(drops), total - setup.prior_information(setup.statements))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation import NO_INFORMATION, RANK, FitStatistics, Unidentifiable, canonical_basis, to_estimates
 from sprung.planning.setup import MeasurementSetup
-from sprung.vehicle import LOAD_MASS
+from sprung.vehicle import is_nuisance
 
 Real = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ class CramerRaoBound:
         return {
             name: 100 * one if one <= 1 else None
             for name, one in zip(self.setup.names, spread, strict=True)
-            if one > _EXACT and not name.startswith(LOAD_MASS)
+            if one > _EXACT and not is_nuisance(name)
         }
 
     @property
@@ -93,7 +93,7 @@ class CramerRaoBound:
             return ()
         eigenvalues, directions = self._directions
         without = canonical_basis(directions[:, eigenvalues < NO_INFORMATION])
-        combinations = to_estimates(self._expected_fit(without), self.setup.known).unidentifiable
+        combinations = to_estimates(self._expected_fit(without).of_vehicle, self.setup.known).unidentifiable
         combinations = tuple(own for own in combinations if set(own.parameters) & set(undetermined))
         others = tuple(name for name in undetermined if not any(name in own.parameters for own in combinations))
         if others:

@@ -23,17 +23,19 @@ from sprung.preprocess import FreeDecay, unknown_baseline
 from sprung.simulation import drop_from_blocks
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
-    LOAD_MASS,
     PARAMETERS,
     LinearModel,
     Load,
+    Readout,
     Rows,
     Sensor,
     Tracks,
     Vehicle,
     Wheel,
+    is_nuisance,
     parameter_names,
     seven_degrees_of_freedom,
+    uncertainties_of,
 )
 
 Real = NDArray[np.float64]
@@ -106,22 +108,26 @@ class MeasurementSetup:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Parameters of the model, and the masses of loads that are known with an uncertainty."""
-        masses = [name for name in self.known if name.startswith(LOAD_MASS)]
-        return (*parameter_names(self.tracks, self.extras), *masses)
+        """Parameters of the model, masses of loads that are known with an uncertainty, and what is uncertain of the sensors."""
+        return (*parameter_names(self.tracks, self.extras), *filter(is_nuisance, self.statements))
+
+    @cached_property
+    def statements(self) -> Mapping[str, KnownValue]:
+        """Everything that is known beforehand, of the vehicle, of loads and of sensors."""
+        return {**self.known, **uncertainties_of(self.sensors)}
 
     @cached_property
     def values(self) -> Real:
         """Their values, SI, shape (parameter,)."""
-        masses = {name: one.value for name, one in self.known.items() if name.startswith(LOAD_MASS)}
+        stated = {name: one.value for name, one in self.statements.items() if is_nuisance(name)}
         return np.array(
-            [masses[name] if name in masses else getattr(self.vehicle, name) for name in self.names], dtype=float
+            [stated[name] if name in stated else getattr(self.vehicle, name) for name in self.names], dtype=float
         )
 
     @cached_property
     def priors(self) -> PriorsAndConstraints:
         """What is known beforehand, in the coordinates of the fit: a model term is relative to a spring or damper rate."""
-        return PriorsAndConstraints(Coordinates.scaled_by(self.names, self.vehicle.parameters), self.known)
+        return PriorsAndConstraints(Coordinates.scaled_by(self.names, self.vehicle.parameters), self.statements)
 
     @cached_property
     def u(self) -> Real:
@@ -170,12 +176,12 @@ class MeasurementSetup:
         names = {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
         heights = self.vehicle.heights
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights)
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights, self.vehicle.wheelbase)
         models = {
             name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
             for load, name in names.items()
         }
-        objective = ClosedFormObjective(decays, models, Rows.of([sensor.row for sensor in self.sensors], self.names))
+        objective = ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names))
         weights = self.rate / sampling / self.noise**2
         of_parameters = objective.at(self.values, weights).information
         directions = self.slopes[:, None] * self.free
@@ -233,4 +239,4 @@ class PlannedTest:
     @cached_property
     def known_information(self) -> Real:
         """Information in what is known beforehand, shape (direction, direction)."""
-        return self.setup.prior_information(self.setup.known)
+        return self.setup.prior_information(self.setup.statements)

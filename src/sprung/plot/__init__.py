@@ -20,6 +20,6 @@ except ImportError as _error:
 
 from sprung.plot.drops import fit, recording
 from sprung.plot.modal import mode, spectra, stabilisation
-from sprung.plot.vehicle import amplitude, correlation, parameters
+from sprung.plot.vehicle import amplitude, correlation, curve, parameters
 
-__all__ = ["amplitude", "correlation", "fit", "mode", "parameters", "recording", "spectra", "stabilisation"]
+__all__ = ["amplitude", "correlation", "curve", "fit", "mode", "parameters", "recording", "spectra", "stabilisation"]

@@ -126,6 +126,10 @@ def _draw_mark(mark: Mark, axes: Axes, labelled: bool) -> None:
                 "ls": "--" if mark.dashed else "-",
             }
             axes.plot(mark.x, mark.y, label=mark.label or None, **look)
+            if mark.band is not None:
+                axes.fill_between(
+                    mark.x, mark.y - mark.band, mark.y + mark.band, color=LIGHT[mark.role], alpha=0.2, lw=0
+                )
         case Points():
             colour = LIGHT[mark.role]
             look = {"ms": 3.2 * mark.size, "marker": "o", "mec": colour, "mfc": "white" if mark.hollow else colour}

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from sprung.errors import InputError, Problem
 from sprung.plot.drawing import axes_or_new, check_name, draw, draw_matrix
-from sprung.report import amplitude_pictures, parameters_picture
+from sprung.report import amplitude_pictures, curve_pictures, parameters_picture
 from sprung.results import Result, other_quantities
 from sprung.study import Validation
 
@@ -89,3 +89,34 @@ def amplitude(
         raise InputError([Problem("result", "no amplitude curves", "a result with amplitude curves", do)])
     pictures = {picture.title: picture for picture in amplitude_pictures(amplitudes)}
     return draw(pictures[check_name(mode, list(pictures), "mode")], axes)
+
+
+def curve(result: Result, part: str = "damper", *, axes: Axes | None = None) -> Axes:
+    """Draw the force curves of the dampers, springs or tyres, front and rear, with their 95 % bands.
+
+    Parameters
+    ----------
+    result
+        From `sprung.identify` or `sprung.load`.
+    part
+        ``damper`` (N over m/s, rebound to the right and up), ``spring`` or ``tyre`` (N over mm, compression to the right).
+    axes
+        Into which it is drawn; a new figure unless given.
+
+    Returns
+    -------
+    Axes
+        Solid over the range that the drops reached, whose ends are rings, dashed beyond it.
+
+    Raises
+    ------
+    InputError
+        If the result has no such curve.
+    """
+    pictures = curve_pictures(result.curves)
+    if not pictures:
+        found = "no force curves: the identified vehicle is linear, or was rejected"
+        do = "Read result.fit.model and result.verdict; a linear rate is a parameter, such as c_sf."
+        raise InputError([Problem("result", found, "a result with force curves", do)])
+    [drawn] = draw(pictures[check_name(part, list(pictures), "force curve")], None if axes is None else [axes])
+    return drawn

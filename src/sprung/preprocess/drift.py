@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Recording
 from sprung.errors import Fault
 from sprung.preprocess.release import Release
+from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -29,6 +30,9 @@ _MAY_BE = 3.0
 
 _AGREES = 4.0
 """Standard errors within which the slopes at rest must equal that of the line between the levels, and beyond which not zero."""
+
+_TURN = 0.035
+"""rad by which a vehicle turns that is dropped on one side from 5 cm."""
 
 _LEAST = 1e-3
 """m/s² below which no drift matters."""
@@ -78,7 +82,11 @@ def remove_drift(recording: Recording, release: Release | None, sensors: Sequenc
     inflation = _variance_inflation_of_means(noise)
     error = np.sqrt(inflation * (level_error**2 + last_level_error**2) * std**2 + motion**2 + quantisation**2)
     direct = np.array([sensor.high_pass is None for sensor in sensors])
-    drifts = direct & (np.abs(drift) > np.maximum(_SURE * error, np.maximum(_MATTERS * std, _LEAST)))
+    # A tilted sensor shows a part of gravity, which is another one where the vehicle has come to rest at another angle.
+    turned = _SURE * np.radians([sensor.tilt_std for sensor in sensors]) * _TURN * STANDARD_GRAVITY
+    drifts = direct & (
+        np.abs(drift) > np.maximum.reduce([_SURE * error, _MATTERS * std, turned, np.full_like(std, _LEAST)])
+    )
     if not drifts.any():
         return recording
     errors = np.array([slope_error * std, last_slope_error * np.hypot(std, np.sqrt(end) * motion)])

@@ -67,9 +67,10 @@ def pool_moments(records: Iterable[Real]) -> Moments:
     """
     sums = []
     for record in records:
-        clean = np.nan_to_num(record)
-        neighbours = np.einsum("ct,ct->c", clean[:, 1:], clean[:, :-1])
-        sums.append([np.einsum("ct,ct->c", clean, clean), neighbours, np.sum(~np.isnan(record), axis=1)])
+        # Every sample of a channel that is left out is NaN, and so is its sum.
+        sums_of_record = np.einsum("ct,ct->c", record, record), np.einsum("ct,ct->c", record[:, 1:], record[:, :-1])
+        used = ~np.isnan(sums_of_record[0])
+        sums.append([*np.where(used, sums_of_record, 0.0), used * record.shape[1]])
     variance, neighbour, samples = np.sum(sums, axis=0)
     count = np.maximum(samples, 1.0)
     return variance / count, neighbour / count, samples

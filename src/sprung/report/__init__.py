@@ -19,6 +19,7 @@ from sprung.report.page.pdf import pdf_of
 from sprung.report.page.report import render_report, report_html
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
+from sprung.report.pictures.curves import curve_pictures
 from sprung.report.pictures.decays import LoadDecays, decays_by_load
 from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.parameters import parameters_picture
@@ -69,6 +70,7 @@ __all__ = [
     "check_html",
     "check_view",
     "comparison_view",
+    "curve_pictures",
     "decays_by_load",
     "draft_view",
     "draw_check",

@@ -1,7 +1,7 @@
 """The result of an identification: records, tables and files."""
 
 from sprung.results.amplitude import amplitude_document, curve_document
-from sprung.results.records import FitReport, TestedVehicle, TraceStep
+from sprung.results.records import FitReport, SensorEstimate, TestedVehicle, TraceStep
 from sprung.results.result import Result
 from sprung.results.saved import load
 from sprung.results.series import Series, npz_bytes
@@ -9,12 +9,14 @@ from sprung.results.setup import PriorComparison, Setup, setup_of
 from sprung.results.tables import (
     TRACE_TITLE,
     characteristics_tables,
+    damper_tables,
     derived_table,
     meaning_of,
     modes_table,
     other_quantities,
     parameters_table,
     ratios_table,
+    sensors_table,
     trace_table,
 )
 from sprung.results.withholding import withhold_estimates
@@ -24,6 +26,7 @@ __all__ = [
     "FitReport",
     "PriorComparison",
     "Result",
+    "SensorEstimate",
     "Series",
     "Setup",
     "TestedVehicle",
@@ -31,6 +34,7 @@ __all__ = [
     "amplitude_document",
     "characteristics_tables",
     "curve_document",
+    "damper_tables",
     "derived_table",
     "load",
     "meaning_of",
@@ -39,6 +43,7 @@ __all__ = [
     "other_quantities",
     "parameters_table",
     "ratios_table",
+    "sensors_table",
     "setup_of",
     "trace_table",
     "withhold_estimates",

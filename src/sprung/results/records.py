@@ -58,6 +58,36 @@ class TraceStep:
 
 @shown
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SensorEstimate:
+    """What was found of one sensor, beside what is stated of it with an uncertainty.
+
+    Attributes
+    ----------
+    channel
+        Of the sensor.
+    quantity
+        ``gain``, relative; ``x`` and ``y``, how much further forward and left than stated a body sensor sits, m, or seems to
+        sit because it is tilted; ``delay``, s.
+    value, std
+        Difference from what is stated, and its standard uncertainty with everything that is known, in the unit.
+    stated_std
+        Standard uncertainty before the identification: from the data sheet and the tape, with the effect of a tilt.
+    unit
+        SI.
+    """
+
+    __pydantic_config__ = EXACT_KEYS
+
+    channel: str
+    quantity: Literal["gain", "x", "y", "delay"]
+    value: float
+    std: float
+    stated_std: float
+    unit: str
+
+
+@shown
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FitReport:
     """Summary of the fit.
 

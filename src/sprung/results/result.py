@@ -18,11 +18,11 @@ from sprung.checking import DropReport, PlottedRecording
 from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.estimation import Correlation, ModeEstimate, Scale, Unidentifiable
+from sprung.estimation import Correlation, ForceCurve, ModeEstimate, Scale, Unidentifiable
 from sprung.results.amplitude import AmplitudeCurves
 from sprung.results.checksums import CHECKSUMS, arrays_checksum, document_checksum
 from sprung.results.plain import plain_document
-from sprung.results.records import EXACT_KEYS, FitReport, TestedVehicle, TraceStep
+from sprung.results.records import EXACT_KEYS, FitReport, SensorEstimate, TestedVehicle, TraceStep
 from sprung.results.series import Series, arrays_of, npz_bytes
 from sprung.results.setup import Setup
 from sprung.results.tables import (
@@ -80,12 +80,22 @@ class Result:
         By load: the modes of the identified vehicle, lowest first; none where the verdict is reject.
     fit, drops, faults
         Summary of the fit, the part of each drop that was used, and the faults of recordings and campaign.
+    sensors
+        What was found of the gain, place and delay of each sensor that are stated with an uncertainty, channel by channel; none
+        of exact sensors, or where the verdict is reject.
     validation
         By drop name: how well the fitted vehicle explains the drop, and how well the other drops predict it.
     next_step
         Recommended next measurement, one sentence; None where the verdict is reject.
     setup
         Input of the identification: what was known, settings, files and versions.
+    additional_terms
+        One sentence: what the vehicle has besides springs and dampers, with sizes and standard errors; empty where it has
+        nothing, or the verdict is reject.
+    curves
+        By name: force of a damper against its velocity, of a spring or tyre against its travel, with its standard error:
+        ``damper_front``, ``damper_rear``, ``spring_front``, ``spring_rear``, ``tyre_front``, ``tyre_rear``, where the model has
+        more than a linear rate there; none where the verdict is reject.
     amplitude
         Frequency and damping of the body's modes against amplitude; empty where not requested, or the verdict is reject.
     trace
@@ -116,6 +126,9 @@ class Result:
     validation: dict[str, DropValidation]
     next_step: str | None
     setup: Setup
+    sensors: tuple[SensorEstimate, ...] = ()
+    additional_terms: str = ""
+    curves: dict[str, ForceCurve] = field(default_factory=dict)
     amplitude: AmplitudeCurves = ()
     trace: tuple[TraceStep, ...] = ()
     omissions: tuple[str, ...] = ()
@@ -123,7 +136,7 @@ class Result:
     recordings: Mapping[str, PlottedRecording] = field(default_factory=dict, repr=False)
 
     def __post_init__(self) -> None:
-        for mapping in ("parameters", "derived", "modes", "validation", "series", "recordings"):
+        for mapping in ("parameters", "derived", "modes", "curves", "validation", "series", "recordings"):
             object.__setattr__(self, mapping, NamedValues(getattr(self, mapping)))
 
     def __repr__(self) -> str:
@@ -195,6 +208,7 @@ class Result:
         tables = [parameters_table(self.name, {**self.parameters, **other_quantities(self.derived)})]
         tables += characteristics_tables(self.name, self.derived)
         parts = [self.verdict._repr_html_(), *(table.html() for table in tables)]
+        parts += [f"<p>{escaped(self.additional_terms)}</p>\n"] if self.additional_terms else []
         parts += [f"<p>Not determined: {escaped(combination.text)}.</p>\n" for combination in self.unidentifiable]
         if not self.scale.known and self.scale.per_total_mass:
             parts.append(ratios_table(self.scale.per_total_mass).html())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -54,6 +55,8 @@ class Setup:
         By name: parameters and derived quantities, the wheelbase among them.
     heights
         By their keys in a campaign file: above the ground, m, as far as they were measured.
+    motion_ratio
+        Travel of springs and dampers per travel of their wheels, dimensionless, as far as the campaign file states it.
     sensors, loads
         As the campaign file describes them.
     model
@@ -79,6 +82,7 @@ class Setup:
     files: tuple[SourceFile, ...] = ()
     software: dict[str, str]
     test: TestRecord = field(default_factory=TestRecord)
+    motion_ratio: dict[str, KnownValue] = field(default_factory=dict)
 
 
 def setup_of(
@@ -110,13 +114,20 @@ def setup_of(
         model=campaign.model,
         options={name: _in_words(value) for name, value in options.items()},
         files=campaign.files,
-        software={
-            "sprung": version("sprung"),
-            "Python": platform.python_version(),
-            **{name: version(name) for name in _LIBRARIES},
-        },
+        software=dict(software_versions()),
         test=campaign.test,
+        motion_ratio=dict(campaign.motion_ratio),
     )
+
+
+@cache  # they are read from files, and are those of a process
+def software_versions() -> Mapping[str, str]:
+    """Return the versions that a result depends on, by name."""
+    return {
+        "sprung": version("sprung"),
+        "Python": platform.python_version(),
+        **{name: version(name) for name in _LIBRARIES},
+    }
 
 
 def _compared(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> PriorComparison:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from sprung.estimation import ModeEstimate
-from sprung.results.records import TraceStep
+from sprung.estimation import ForceCurve, ModeEstimate
+from sprung.results.records import SensorEstimate, TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
-from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, PARAMETERS, WHEEL_LOADS
+from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, MOTION_RATIOS, PARAMETERS, WHEEL_LOADS
 
 TRACE_TITLE = "How the result was reached"
 """Title of the trace wherever it is shown."""
@@ -20,6 +20,7 @@ _DERIVED = {
     "I_xx_roll_axis": "roll inertia of the sprung mass about the roll axis",
     "wheelbase": "front axle to rear axle",
     **{name: quantity.meaning for name, quantity in CHARACTERISTICS.items()},
+    **{quantity: meaning for _, quantity, meaning in MOTION_RATIOS.values()},
     **WHEEL_LOADS,
 }
 """Meaning of each derived quantity."""
@@ -36,8 +37,18 @@ _CHARACTERISTICS = (
     ("ride damping ratio", "front_ride_damping", "rear_ride_damping", ""),
     ("wheel hop frequency, Hz", "front_hop_frequency", "rear_hop_frequency", ""),
     ("wheel hop damping ratio", "front_hop_damping", "rear_hop_damping", ""),
+    ("twist of the body, Hz", "", "", "twist_frequency"),
+    ("damping ratio of twist", "", "", "twist_damping"),
+    ("bending of the body, Hz", "", "", "bending_frequency"),
+    ("damping ratio of bending", "", "", "bending_damping"),
+    ("people on seats, Hz", "", "", "seat_frequency"),
+    ("damping ratio of seats", "", "", "seat_damping"),
 )
 """Rows of the table of characteristics: what is shown, and the quantities of front axle, rear axle and whole vehicle."""
+
+
+_VELOCITIES = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2)
+"""Velocities of the table of damper forces, m/s."""
 
 
 def meaning_of(name: str) -> str:
@@ -143,6 +154,40 @@ def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tup
     return (Table(title, headers, tuple(rows), frozenset(headers[1:])),)
 
 
+def damper_tables(curves: Mapping[str, ForceCurve]) -> tuple[Table, ...]:
+    """Return the table of damper forces at the velocities of a dynamometer, as far as the drops reached.
+
+    Parameters
+    ----------
+    curves
+        Force curves by name.
+
+    Returns
+    -------
+    tuple of Table
+        One, or none where no damper has a curve.
+    """
+    dampers = {name.removeprefix("damper_"): curve for name, curve in curves.items() if name.startswith("damper_")}
+    columns = [(axle, way, sign) for axle in dampers for way, sign in (("rebound", 1.0), ("compression", -1.0))]
+    rows = []
+    for velocity in _VELOCITIES:
+        cells = [_damper_force(dampers[axle], sign * velocity) for axle, _, sign in columns]
+        if any(cells):
+            rows.append((f"{velocity:g}", *cells))
+    if not rows:
+        return ()
+    headers = ("velocity, m/s", *(f"{axle}, {way}" for axle, way, _ in columns))
+    title = "Damper forces, N, ± one standard uncertainty, at velocities that the drops reached"
+    return (Table(title, headers, tuple(rows), frozenset(headers)),)
+
+
+def _damper_force(curve: ForceCurve, velocity: float) -> str:
+    if not curve.reached[0] <= velocity <= curve.reached[1]:
+        return ""
+    value, std = round_by_uncertainty(*map(float, curve.at(velocity)))
+    return f"{value} ± {std}" if std else value
+
+
 def _with_uncertainty(estimate: Estimate | None) -> str:
     if estimate is None or estimate.value is None or estimate.std is None:
         return "-"
@@ -168,6 +213,34 @@ def ratios_table(ratios: Mapping[str, Ratio]) -> Table:
         rows.append((name, value, std, unit_text(ratio.unit)))
     title = "Divided by the empty vehicle's total mass"
     return Table(title, ("parameter", "value", "±", "unit"), tuple(rows), frozenset(("value", "±")))
+
+
+_OF_SENSORS = {"gain": ("gain, %", 100.0), "x": ("x, mm", 1e3), "y": ("y, mm", 1e3), "delay": ("delay, ms", 1e3)}
+"""Headers of the table of sensors, and the factor from SI to the unit there."""
+
+
+def sensors_table(sensors: Sequence[SensorEstimate]) -> Table:
+    """Return the table of what was found of each sensor, beside its stated uncertainty.
+
+    Parameters
+    ----------
+    sensors
+        Of a result.
+
+    Returns
+    -------
+    Table
+    """
+    found: dict[str, dict[str, str]] = {}
+    for one in sensors:
+        factor = _OF_SENSORS[one.quantity][1]
+        value, std = round_by_uncertainty(factor * one.value, factor * one.std)
+        found.setdefault(one.channel, {})[one.quantity] = f"{value} ± {std} ({factor * one.stated_std:.2g})"
+    present = [kind for kind in _OF_SENSORS if any(one.quantity == kind for one in sensors)]
+    rows = tuple((channel, *(cells.get(kind, "") for kind in present)) for channel, cells in found.items())
+    headers = tuple(_OF_SENSORS[kind][0] for kind in present)
+    title = "Sensors: difference from what is stated, ± one standard uncertainty (and the stated one)"
+    return Table(title, ("channel", *headers), rows, frozenset(headers))
 
 
 def modes_table(load: str, modes: Sequence[ModeEstimate]) -> Table:

@@ -28,7 +28,7 @@ def withhold_estimates(result: Result) -> Result:
     -------
     Result
         With every estimated parameter and derived quantity ``unidentifiable`` and without value, and without ratios,
-        correlations, modes of the fitted vehicle, amplitude curves and a next step.
+        correlations, modes of the fitted vehicle, sensors, additional terms, force and amplitude curves and a next step.
     """
     if result.verdict.state != "reject":
         return result
@@ -42,6 +42,9 @@ def withhold_estimates(result: Result) -> Result:
         unidentifiable=(Unidentifiable(names, NO_ESTIMATES),) if names else (),
         correlation=Correlation((), ()),
         modes=dict.fromkeys(result.modes, ()),
+        sensors=(),
+        additional_terms="",
+        curves={},
         amplitude=(),
         next_step=None,
         setup=_without_estimates(result.setup),

@@ -1,6 +1,9 @@
 """Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
+from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
+from sprung.selection.finite_rotation import select_finite_rotation
+from sprung.selection.ordinary import select_from_ordinary_vehicle
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
@@ -8,29 +11,37 @@ from sprung.selection.stepwise import (
     fit_forced_terms,
     fit_requested_terms,
     fit_term,
+    needed_terms,
     select_gravity_leakage,
     select_linear_terms,
     select_nonlinear_terms,
     select_roll_axis_height,
 )
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.selection.terms import ENGINE, TERMS, ModelTerm
+from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER, TERMS, ModelTerm
 
 __all__ = [
     "ENGINE",
     "FALSE_ALARM_SHARE",
+    "SEPARATE_TRACKS",
+    "STARTED_LATER",
     "TERMS",
     "ModelSearch",
     "ModelStructure",
     "ModelTerm",
     "SelectionStep",
+    "TermDescription",
     "choose_structure",
+    "describe_terms",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",
     "fit_term",
+    "needed_terms",
     "required_gain",
     "score_terms",
+    "select_finite_rotation",
+    "select_from_ordinary_vehicle",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_nonlinear_terms",

@@ -26,6 +26,10 @@ MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.3
 """Part of the linear vehicle's model error that a nonlinear one may leave after its first steps and at its end: a term that
 leaves more is not the missing one, and its estimates are of no use."""
 
+UNEXPLAINED = 0.02
+"""Model error, as a part of a channel's signal, from which a vehicle with every usual term is fitted: what is slow is tried
+only where the model so far is of no use."""
+
 OVERDISPERSED = 2.0
 """Overdispersion from which what is left is model error and not noise."""
 

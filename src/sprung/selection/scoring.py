@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from sprung.estimation import score_linear_term, score_nonlinear_terms, score_stepped_terms
+from sprung.estimation import score_linear_term, score_linear_terms, score_nonlinear_terms, score_stepped_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import neutral_values, start_variants, states_by_coordinates, stop_gaps, thinned
 from sprung.selection.terms import BUMP_STOP, TERMS
@@ -39,10 +39,7 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
         return search, {}
     if search.structure.is_nonlinear:
         return search, _stepped(search, terms)
-    scores: Scores = {}
-    for term in terms:
-        if TERMS[term].is_linear:
-            search, scores[term] = _linear(search, term)
+    search, scores = _linear(search, [term for term in terms if TERMS[term].is_linear])
     nonlinear = [term for term in terms if not TERMS[term].is_linear]
     if nonlinear:
         search, more = _nonlinear_with_stops(search, nonlinear)
@@ -50,15 +47,49 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
     return search, scores
 
 
-def _linear(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, float]]:
-    own, sensors = search.fit.parameters, search.structure.campaign.sensors
-    best, score = search.structure, (0.0, 0.0)
-    for variant in start_variants(term, search.with_terms([term]), own):
-        values = neutral_values(variant, own)
-        gain, estimates = score_linear_term(search.decays, variant.linear_models, sensors, variant.known, values)
+def _linear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
+    """Score linear terms: those beside the same coordinates in one evaluation, where modal coordinates exist."""
+    at_once, scores = (
+        _of_same_coordinates(search, [term for term in terms if not TERMS[term].adds_coordinates]),
+        Scores(),
+    )
+    for term in terms:
+        if term in at_once:
+            scores[term] = at_once[term]
+        else:
+            search, scores[term] = _of_larger_model(search, term)
+    return search, scores
+
+
+def _of_same_coordinates(search: ModelSearch, terms: Sequence[str]) -> Scores:
+    """Score linear terms that add no coordinate; empty where modal coordinates do not exist."""
+    if not terms:
+        return {}
+    larger, own = search.with_terms(terms), search.fit.parameters
+    values = {term: neutral_values(search.with_terms([term]), own) for term in terms}
+    candidates = {
+        term: {name: values[term][name] for name in TERMS[term].parameters(search.with_terms([term]).tracks)}
+        for term in terms
+    }
+    tests = score_linear_terms(search.fit, larger.linear_models, neutral_values(larger, own), candidates) or {}
+    return {term: (gain, abs(TERMS[term].size(values[term] | estimates))) for term, (gain, estimates) in tests.items()}
+
+
+def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, float]]:
+    own, sensors = search.fit.parameters, search.structure.sensors
+    best, score, larger = search.structure, (0.0, 0.0), search.with_terms([term])
+    variants = start_variants(term, larger, own)
+    starts = [neutral_values(variant, own) for variant in variants]
+    tests = score_linear_term(search.fit, larger.linear_models, sensors, larger.known, starts)
+    for variant, (gain, estimates) in zip(variants, tests, strict=True):
         if gain >= score[0]:
             score = gain, abs(TERMS[term].size(estimates))
-            best = replace(search.structure, engine_mounting=variant.engine_mounting)
+            best = replace(
+                search.structure,
+                engine_mounting=variant.engine_mounting,
+                body_frequency=variant.body_frequency,
+                seat_place=variant.seat_place,
+            )
     return replace(search, structure=best), score
 
 
@@ -89,7 +120,7 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     gains = score_stepped_terms(
         decays,
         largest.nonlinear_models,
-        search.structure.campaign.sensors,
+        search.structure.sensors,
         largest.known,
         values=neutral_values(largest, own),
         states=states_by_coordinates(search.fit.states, search.fit.names, largest.names),

@@ -13,10 +13,11 @@ from sprung.display import shown
 from sprung.estimation import NEAR, FitResult, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
-from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, required_gain
+from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import SEPARATE_TRACKS, TERMS
+from sprung.vehicle import PARAMETERS
 
 Real = NDArray[np.float64]
 
@@ -175,6 +176,12 @@ class ModelSearch:
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
 
     @property
+    def is_misfit_large(self) -> bool:
+        """Whether what is left is no noise, and enough of some channel's signal that the parameters cannot be trusted."""
+        excess = np.maximum(self.fit.noise**2 - self._noise_at_rest, 0.0) * self.fit.problem.signal_weights
+        return self.overdispersion > OVERDISPERSED and float(excess.max()) > UNEXPLAINED**2
+
+    @property
     def is_misfit_small(self) -> bool:
         """Whether what is left is no noise and yet small: any further term would seem to explain some of it."""
         return self.overdispersion > OVERDISPERSED and not self.has_model_error
@@ -207,6 +214,9 @@ class ModelSearch:
         below = [name for name in row.not_negative(self.structure.tracks) if parameters[name] < 0]
         if any(wald_test(self.fit, [(name, 0.0)]) > limit for name in below):
             return "the estimate is negative, which is not physical"
+        undetermined = self._undetermined(row.parameters(self.structure.tracks))
+        if undetermined:
+            return f"the recordings do not determine {', '.join(undetermined)}"
         size = abs(row.size(parameters))
         if size < row.negligible:
             return f"its effect of {100 * size:.2g} % is negligible"
@@ -214,6 +224,16 @@ class ModelSearch:
         if size < row.negligible * self.overdispersion**0.5:
             return "it is too small to be told from other errors of the model"
         return ""
+
+    def _undetermined(self, names: Sequence[str]) -> list[str]:
+        """Return those of some positive parameters that are not known to a factor of e."""
+        equations = self.fit.problem.normal_equations(self.fit.iterate)
+        covariance = np.linalg.solve(equations.information, equations.directions.T)
+        variance = np.einsum("ud,du->u", equations.directions, covariance) * self.overdispersion
+        # A direction without information is not among those of the equations at all.
+        seen = np.sum(equations.directions**2, axis=1) > 0.5
+        places = {name: self.fit.names.index(name) for name in names if PARAMETERS[name].positive}
+        return [name for name, at in places.items() if not (seen[at] and variance[at] < 1)]
 
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
         """Whether another fit leaves more than a part of this one's model error: then it lacks something else."""

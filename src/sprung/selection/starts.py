@@ -12,10 +12,21 @@ from sprung.estimation import FitResult, fit_linear, fit_nonlinear, mountings_of
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import ENGINE, TERMS
-from sprung.vehicle import NEUTRAL, Rows, coordinates, nonlinear_elements, with_separate_tracks
+from sprung.selection.terms import BENDING, ENGINE, OCCUPANTS, TERMS, TWIST
+from sprung.vehicle import (
+    NEUTRAL,
+    LinearModel,
+    Rows,
+    is_nuisance,
+    nonlinear_elements,
+    state_variables,
+    with_separate_tracks,
+)
 
 Real = NDArray[np.float64]
+
+_BODY_FREQUENCIES, _SEAT_PLACES = (9.0, 12.0, 16.0), (0.3, 0.7)
+"""Hz of twist and bending, and places of seats behind the front axle as parts of the wheelbase, where a fit may begin."""
 
 _STOP_GAPS = (0.35, 0.6, 0.85)
 """Parts of the largest compression at which stops may be met, where a fit begins."""
@@ -45,7 +56,9 @@ def neutral_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[
     values = {**NEUTRAL}
     for part in (*undefined, with_separate_tracks(own), shared, own):
         values |= part
-    return {name: values[name] for name in structure.names}
+    # What was found of the sensors, which belong to no structure, holds for any.
+    of_sensors = [name for name in own if is_nuisance(name) and name not in structure.names]
+    return {name: values[name] for name in (*structure.names, *of_sensors)}
 
 
 def start_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[str, float]:
@@ -68,10 +81,10 @@ def states_by_coordinates(states: Real, before: Sequence[str], names: Sequence[s
     before, names
         Parameters of the structure that they belong to, and of the other.
     """
-    own, new = coordinates(before), coordinates(names)
-    X, V, memories = np.split(states, [len(own), 2 * len(own)], axis=1)
-    chosen = [own.index(coordinate) if coordinate in own else 0 for coordinate in new]
-    return np.hstack([X[:, chosen], V[:, chosen], memories])
+    own, new = state_variables(before), state_variables(names)
+    x, memories = np.split(states, [len(own)], axis=1)
+    chosen = [own.index(variable) if variable in own else own.index(("z_s", variable[1])) for variable in new]
+    return np.hstack([x[:, chosen], memories])
 
 
 def fit_structure(
@@ -110,10 +123,19 @@ def fit_structure(
     -------
     FitResult
     """
-    sensors, known = structure.campaign.sensors, structure.known
+    sensors, known = structure.sensors, structure.known
     start = start_values(structure, before.parameters)
     if not structure.is_time_stepped:
-        fitted = fit_linear(decays, structure.linear_models, sensors, known, start=start, enough=enough, most=most)
+        fitted = fit_linear(
+            decays,
+            structure.linear_models,
+            sensors,
+            known,
+            start=start,
+            usual=structure.usual,
+            enough=enough,
+            most=most,
+        )
         return fitted.after(before)
     states = states_by_coordinates(before.states if states is None else states, before.names, structure.names)
     fitted = fit_nonlinear(
@@ -124,10 +146,11 @@ def fit_structure(
         start=start,
         states=states,
         enough=enough,
-        near=states.shape[1] > 2 * len(coordinates(structure.names)),
+        near=states.shape[1] > len(state_variables(structure.names)),
         beginning_only=beginning_only,
         most=most,
         tilting=structure.gravity_leakage,
+        usual=structure.usual,
         progress=progress,
     )
     return fitted.after(before)
@@ -135,25 +158,34 @@ def fit_structure(
 
 def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Return compressions at which stops may be met, m, from how far a fitted vehicle moves."""
-    elements = nonlinear_elements(structure.tracks, ("bump-stop",))
-    G = Rows.of([element.row for element in elements], structure.names).at(fit.values)
+    elements = nonlinear_elements(structure.tracks, ("bump-stop",), structure.wheelbase)
+    G = Rows.of([element.row for element in elements], fit.names).at(fit.values)
     motions = (fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
     return [part * largest for part in _STOP_GAPS] if largest > 0 else []
 
 
 def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
-    """Return the structures from which the fit of a term may begin: an engine may be mounted in several ways."""
+    """Return the structures from which the fit of a term may begin: an engine may be mounted in several ways.
+
+    A body may bend at several frequencies, and people sit at several places.
+    """
+    if term in (TWIST, BENDING):
+        return [replace(structure, body_frequency=frequency) for frequency in _BODY_FREQUENCIES]
+    if term == OCCUPANTS:
+        return [replace(structure, seat_place=place) for place in _SEAT_PLACES]
     if term != ENGINE:
         return [structure]
     variants = [replace(structure, engine_mounting=mounting) for mounting in mountings_of(own["a"] + own["b"])]
-    return [variant for variant in variants if has_positive_masses(variant, own)]
+    # They differ in their values alone: one compilation of the equations of motion serves all.
+    return [variant for variant in variants if has_positive_masses(structure.linear_models, start_values(variant, own))]
 
 
-def has_positive_masses(structure: ModelStructure, own: Mapping[str, float]) -> bool:
-    """Whether the fit of a structure begins with a vehicle of which every part has mass."""
-    start = np.array(list(start_values(structure, own).values()))
-    return all(np.linalg.eigvalsh(model.matrices(start).M)[0] > 0 for model in structure.linear_models.values())
+def has_positive_masses(models: Mapping[str, LinearModel], values: Mapping[str, float]) -> bool:
+    """Whether every part of a vehicle has mass, by the parameters of its equations of motion, SI."""
+    masses = [model.matrices([values[name] for name in model.names]).M for model in models.values()]
+    massive = next(iter(models.values())).massive
+    return all(np.linalg.eigvalsh(M[:massive, :massive])[0] > 0 for M in masses)
 
 
 def thinned(decays: Sequence[FreeDecay], rate: float, duration: float) -> tuple[list[FreeDecay], float]:

@@ -10,12 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from sprung.estimation import NEAR, fit_linear, wald_test
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.scoring import Scores, score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import fit_structure, has_positive_masses
+from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import ENGINE, TERMS
 
@@ -23,7 +25,7 @@ _LINEAR = tuple(name for name, term in TERMS.items() if term.is_linear)
 
 _WORTH_A_FIT = 4.0
 """Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
-gain of terms that are far from neutral, and a linear fit costs little."""
+gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
 
 _RESEMBLES = 0.05
 """Score of a term that resembles others, as a part of the best one, from which it is tried first."""
@@ -199,6 +201,23 @@ def fit_term(search: ModelSearch, term: str) -> ModelSearch:
     return _fit_linear(score_terms(search, [term])[0], term)
 
 
+def needed_terms(search: ModelSearch) -> dict[str, float]:
+    """Return the terms that the recordings brought into a model and that its fit needs.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    dict
+        By term, what twice the log-likelihood would lose without it (Wald test), divided by the overdispersion.
+    """
+    gains = {term: _lost_without(search, term) for term in search.selected if not search.veto(term)}
+    return {term: gain for term, gain in gains.items() if gain > search.required(term)}
+
+
 def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
     """Rank the terms that are worth a fit, and record the others.
 
@@ -245,8 +264,14 @@ def _first_accepted(search: ModelSearch, groups: Sequence[Sequence[str]]) -> tup
 
 def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     """Fit terms together, and leave out again what is not needed; without any of them where they gain too little."""
-    larger = search.with_terms(group)
-    tried = _fit_nonlinear(search, larger) if larger.is_nonlinear else _fit_linear(search, group[0])
+    larger, term = search.with_terms(group), group[0]
+    if larger.is_nonlinear:
+        tried = _fit_nonlinear(search, larger)
+    else:
+        first, expected = _first_step(search, term)
+        if expected < search.required(term):
+            return search.recorded({term: expected}, False, False)
+        tried = _fit_linear(first, term)
     if tried is None:
         return search.recorded(dict.fromkeys(group, 0.0), True, False)
     gain = tried.gain_over(search)
@@ -257,7 +282,6 @@ def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     if larger.is_nonlinear:
         tried, gains = _without_unneeded(tried, search)
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
-    (term,) = group
     against = tried.veto(term)
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and tried.has_model_error:
@@ -294,12 +318,7 @@ def _without_unneeded(
         against = {term: tried.veto(term) for term in tried.selected if term != keep}
         if not against:
             break
-        gains = {
-            term: 0.0
-            if against[term]
-            else wald_test(tried.fit, TERMS[term].neutral(tried.structure.tracks)) / tried.overdispersion
-            for term in against
-        }
+        gains = {term: 0.0 if reason else _lost_without(tried, term) for term, reason in against.items()}
         least = min(gains, key=lambda term: gains[term] / tried.required(term))
         if gains[least] > tried.required(least):
             return tried, gains
@@ -309,14 +328,35 @@ def _without_unneeded(
     return tried, {}
 
 
+def _first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:
+    """Take the first Newton step towards one more linear term, and return what the whole fit may gain at the most.
+
+    Near the neutral values twice the log-likelihood is quadratic: the step gains what the score test says, and no more is
+    expected after it. A new engine is far from anything: nothing follows from one step.
+    """
+    if term == ENGINE:
+        return search, np.inf
+    first = search.refit(search.with_terms([term]), most=1)
+    gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + _WORTH_A_FIT * first.fit.remaining_gain
+    return first, gain / first.fit.disagreement
+
+
+def _lost_without(search: ModelSearch, term: str) -> float:
+    """Loss of twice the log-likelihood without a term, by a Wald test, divided by the overdispersion."""
+    return wald_test(search.fit, TERMS[term].neutral(search.structure.tracks)) / search.overdispersion
+
+
 def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
-    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well."""
+    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well.
+
+    Where nothing but noise is left, nothing is wrong without an engine.
+    """
     search.progress(Step(f"fitting with {term}"))
     larger = search.with_terms([term])
-    begins = term != ENGINE or has_positive_masses(larger, search.fit.parameters)
+    begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
     ends = [search.refit(larger)] if begins else []
-    if term == ENGINE:
-        sensors, known = larger.campaign.sensors, larger.known
+    if term == ENGINE and (search.has_model_error or not ends):
+        sensors, known = larger.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
     return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimation import USUAL_MOUNTING, Mounting
+from sprung.estimation import USUAL_MOUNTING, Mounting, UsualValue, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     EXTRAS,
     LINEAR_EXTRAS,
     CarriedAt,
+    Element,
     Heights,
     LinearModel,
     NonlinearModel,
+    Sensor,
     Tracks,
     ground_contact_elements,
     nonlinear_elements,
@@ -56,8 +58,18 @@ class ModelStructure:
         Compression at which bump stops are met, where a fit begins, m.
     engine_mounting
         Mounting of an engine, where a fit begins.
+    body_frequency
+        Frequency of the body's twist or bending, where a fit begins, Hz.
+    seat_place
+        Place of people on soft seats behind the front axle, where a fit begins, as a part of the wheelbase.
     carried_at
         Where the body is carried sideways, where two heights are known at which it may be.
+    usual
+        Usual values of parameters, which are weak priors.
+    assumed_heights
+        Heights where the campaign does not state enough of them, as far as the recordings show them; None for no effect.
+    sinking
+        How much lower the body rests on its wheels under each load, m, by the load's name; empty where that is not considered.
     """
 
     campaign: Campaign
@@ -70,12 +82,32 @@ class ModelStructure:
     unilateral_tyres: bool = False
     stop_gap: float = 1.0
     engine_mounting: Mounting = USUAL_MOUNTING
+    body_frequency: float = 12.0
+    seat_place: float = 0.45
     carried_at: CarriedAt = "wheels"
+    usual: Mapping[str, UsualValue] = field(default_factory=dict)
+    assumed_heights: Heights | None = None
+    sinking: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def heights(self) -> Heights:
-        """Heights of the campaign, with the one at which the body is carried sideways."""
-        return self.campaign.heights._replace(carried_at=self.carried_at)
+        """Heights of the campaign, with the one at which the body is carried sideways, or those assumed."""
+        return self.assumed_heights or self.campaign.heights._replace(carried_at=self.carried_at)
+
+    def heights_of(self, load: str) -> Heights:
+        """Return the heights with the body as low as it rests under a load, by the load's name."""
+        return self.heights._replace(sunk=self.sinking.get(load, 0.0))
+
+    @property
+    def wheelbase(self) -> float:
+        """Wheelbase over which the body twists and bends, m: the known one, or that of the sensors."""
+        return VehicleSize.of(self.known, self.campaign.sensors).wheelbase
+
+    @cached_property
+    def sensors(self) -> tuple[Sensor, ...]:
+        """Sensors of the campaign, with what their tilt adds to the uncertainty of their places where heights are known."""
+        height, sensors = self.heights.cg_height, self.campaign.sensors
+        return sensors if height is None else tuple(sensor.at_height_above(height) for sensor in sensors)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -87,23 +119,29 @@ class ModelStructure:
     @cached_property
     def linear_models(self) -> Mapping[str, LinearModel]:
         """Linear equations of motion by load name, without nonlinear forces."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
         return {
-            load.name: LinearModel.of(elements + load.elements(self.heights, self.names), self.names)
+            load.name: LinearModel.of(
+                self._elements(load.name) + load.elements(self.heights_of(load.name), self.names), self.names
+            )
             for load in self.campaign.loads
         }
 
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with nonlinear forces."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights)
-        forces = nonlinear_elements(self.tracks, self.terms) + (
+        forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase) + (
             ground_contact_elements(self.terms) if self.unilateral_tyres else ()
         )
         return {
-            load.name: NonlinearModel.of(elements, forces, self.names, load, self.heights)
+            load.name: NonlinearModel.of(
+                self._elements(load.name), forces, self.names, load, self.heights_of(load.name)
+            )
             for load in self.campaign.loads
         }
+
+    def _elements(self, load: str) -> tuple[Element, ...]:
+        """Return the linear elements of the vehicle, as it stands under a load."""
+        return seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load), self.wheelbase)
 
     @property
     def is_nonlinear(self) -> bool:
@@ -123,7 +161,8 @@ class ModelStructure:
     def with_terms(self, terms: tuple[str, ...], tracks: Tracks | None = None) -> ModelStructure:
         """Return the structure with other terms, and other tracks."""
         ordered = tuple(extra for extra in EXTRAS if extra in terms)
-        return replace(self, tracks=tracks or self.tracks, terms=ordered)
+        changed = replace(self, tracks=tracks or self.tracks, terms=ordered)
+        return replace(changed, usual={name: value for name, value in self.usual.items() if name in changed.names})
 
 
 def choose_structure(

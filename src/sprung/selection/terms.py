@@ -13,12 +13,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sprung.estimation import USUAL_ENGINE
+from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
+from sprung.selection.description import TermDescription, Values
 from sprung.selection.structure import ModelStructure
-from sprung.vehicle import LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, parameters_of_term
-
-Values = Mapping[str, float]
-"""Parameters by name, SI."""
+from sprung.vehicle import COORDINATES, LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, coordinates, parameters_of_term
 
 StartValues = Callable[[Values, ModelStructure], Values]
 """From the fitted vehicle and the structure to fit, values of some parameters."""
@@ -29,17 +27,52 @@ SEPARATE_TRACKS = "tracks apart"
 ENGINE, BUMP_STOP, FRICTION = "engine", "bump-stop", "friction"
 """Terms with starts of their own."""
 
+OCCUPANTS, TWIST, BENDING = "occupants", "twist", "bending"
+"""Likewise, of a body that is not one rigid mass."""
+
+STARTED_LATER = frozenset({ENGINE, OCCUPANTS, TWIST, BENDING})
+"""Terms that are put into a vehicle which is fitted already: nothing determines them before."""
+
 _TRAVEL = 0.002
 """m of travel at which a spring's force is that of a usual friction."""
 
 _PRESLIDING_RATIO = 10.0
 """Stiffness of a friction before it slides, over that of the spring, at the start of a fit."""
 
-_STROKE = 0.05
-"""m of travel over which a progressive spring is judged."""
+_STROKE, _TYRE_STROKE = 0.05, 0.02
+"""m of travel over which a progressive spring and a progressive tyre are judged."""
+
+_AIR_GROWTH = 2.3
+"""Growth of an air spring's rate per compression by the height of its column: the polytropic exponent plus one."""
+
+_KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
+"""m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the
+width of its rounding as a part of the velocity."""
+
+_REBOUND, _TYRE_DAMPING, _TYRE_GROWTH = 0.8, 0.06, 0.12
+"""Usual excess of rebound over compression damping, damping of a tyre over that of the damper, and growth of its rate."""
 
 _ALMOST_NO_ENGINE = 1e-5
 """Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
+
+
+_USUAL_OCCUPANTS, _SEAT_FREQUENCY, _SEAT_DAMPING = 0.06, 4.5, 0.3
+"""People on seats as a part of the sprung mass, the natural frequency of a seat, Hz, and its damping ratio (Griffin, Handbook
+of Human Vibration, 1990)."""
+
+_MODAL_INERTIA, _MODAL_MASS, _BODY_DAMPING = 0.08, 0.6, 0.03
+"""Modal inertia of a usual twist over I_xx, modal mass of a usual bending over m_s, and damping ratio of both."""
+
+_AT_REST = 1e4
+"""Factor on a usual modal mass that is an infinite one in practice."""
+
+_ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
+
+_ALMOST_NONE = 0.01
+"""Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
+
+_RIGID = 1e5
+"""Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
 
 
 @dataclass(frozen=True)
@@ -54,12 +87,16 @@ class ModelTerm:
         Practical effect, dimensionless, from the parameters of a vehicle that has it; a sign means a direction only.
     typical, spread
         Usual size where the term is present, and the factor by which one standard deviation lies above or below it.
+    description
+        How a sentence states it.
     negligible
         Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
     explains_all
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
     resembles_others
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
+    usual
+        Values that its parameters usually have, of a term that most vehicles have.
     undefined
         Values of those parameters that have none where the term is absent.
     first
@@ -73,8 +110,10 @@ class ModelTerm:
     typical: float
     spread: float
     negligible: float
+    description: TermDescription
     explains_all: bool = False
     resembles_others: bool = False
+    usual: StartValues | None = None
     undefined: StartValues | None = None
     first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
@@ -83,6 +122,11 @@ class ModelTerm:
     def is_linear(self) -> bool:
         """Whether mass, damping and stiffness matrices carry it."""
         return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+
+    @property
+    def adds_coordinates(self) -> bool:
+        """Whether a vehicle with it moves in more coordinates than the paper's."""
+        return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
 
     def parameters(self, tracks: Tracks) -> tuple[str, ...]:
         """Return the parameters that a model with the term has and one without it has not, or not free.
@@ -143,10 +187,45 @@ def _asymmetry(values: Values, axle: str) -> float:
     return max(abs(values["y_s"]) / _half_distance(values, axle), *map(abs, rates))
 
 
+def _inboard_share(values: Values, axle: str) -> float:
+    """Place of the springs on a rigid axle, as a part of its wheels' half-distance."""
+    return values[f"n_{axle}" if f"n_{axle}" in values else f"n_{axle}2"]
+
+
 def _gravity(values: Values) -> float:
     """Share of the roll stiffness of all springs."""
-    roll = 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
-    return values["w_h"] / roll
+    return values["w_h"] / _roll_rate(values)
+
+
+def _roll_rate(values: Values) -> float:
+    """Roll stiffness of the springs of both axles, N m."""
+    return 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
+
+
+def _own_frequency(stiffness: float, mass: float) -> float:
+    """Natural frequency of a modal mass, Hz."""
+    return float(np.sqrt(stiffness / mass) / (2 * np.pi))
+
+
+def _usual_twist(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
+    """Return a usual twist of the body, its modal mass multiplied by a factor."""
+    inertia, omega = factor * _MODAL_INERTIA * own["I_xx"], 2 * np.pi * structure.body_frequency
+    return {"I_w": inertia, "k_w": inertia * omega**2, "c_w": 2 * _BODY_DAMPING * inertia * omega, "a_w": 0.0}
+
+
+def _usual_bending(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
+    """Return a usual bending of the body, its modal mass multiplied by a factor."""
+    mass, omega = factor * _MODAL_MASS * own["m_s"], 2 * np.pi * structure.body_frequency
+    rates = {"m_v": mass, "k_v": mass * omega**2, "c_v": 2 * _BODY_DAMPING * mass * omega}
+    return {**rates, "b_v": 0.3, "p_v": 0.0}
+
+
+def _usual_occupants(own: Values, structure: ModelStructure, share: float = _USUAL_OCCUPANTS) -> Values:
+    """Return people who are a part of the sprung mass, on usual seats."""
+    mass, omega = share * own["m_s"], 2 * np.pi * _SEAT_FREQUENCY
+    place = -structure.seat_place * (own["a"] + own["b"])
+    rates = {"m_o": mass, "k_o": mass * omega**2, "c_o": 2 * _SEAT_DAMPING * mass * omega}
+    return {**rates, "x_o": place, "y_o": 0.0}
 
 
 TERMS: Mapping[str, ModelTerm] = {
@@ -158,6 +237,12 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=0.15,
             spread=2.0,
             negligible=0.01,
+            description=TermDescription(
+                "{axle} dampers at {0} times the half-distance of the springs",
+                ((lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"], "1"),),
+                again="{axle} ones at {0} times",
+                neutral=1.0,
+            ),
             equal_tracks=(("t_f1", "t_f2"), ("t_r1", "t_r2")),
         ),
         ModelTerm(
@@ -166,22 +251,60 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=0.3,
             spread=2.5,
             negligible=0.01,
+            description=TermDescription(
+                "a {axle} anti-roll bar of {0}",
+                ((lambda p, axle: p[f"k_a{axle}"] / 1e3, "N/mm"),),
+                again="a {axle} one of {0}",
+            ),
         ),
         ModelTerm(
             "tyre-damping",
             _of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
-            typical=0.06,
+            usual=lambda own, _: {f"c_t{axle}": _TYRE_DAMPING * own[f"c_s{axle}"] for axle in "fr"},
+            typical=_TYRE_DAMPING,
             spread=2.5,
             negligible=0.005,
+            description=TermDescription(
+                "tyre damping of {0} at each {axle} wheel",
+                ((lambda p, axle: p[f"c_t{axle}"], "N s/m"),),
+                again="{0} at each {axle} wheel",
+            ),
         ),
-        ModelTerm("gravity", _gravity, typical=0.1, spread=2.0, negligible=0.005),
-        ModelTerm("asymmetry", _of_axles(_asymmetry), typical=0.05, spread=2.0, negligible=0.01, explains_all=True),
+        ModelTerm(
+            "gravity",
+            _gravity,
+            typical=0.1,
+            spread=2.0,
+            negligible=0.005,
+            description=TermDescription(
+                "gravity that takes {0} off the roll stiffness of the springs",
+                ((lambda p, _: 100 * _gravity(p), "%"),),
+            ),
+        ),
+        ModelTerm(
+            "asymmetry",
+            _of_axles(_asymmetry),
+            typical=0.05,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "left and right sides that differ by up to {0}",
+                ((lambda p, _: 200 * max(_asymmetry(p, axle) for axle in "fr"), "%"),),
+            ),
+            explains_all=True,
+        ),
         ModelTerm(
             "rigid-axle",
-            _of_axles(lambda p, axle: 1 - p[f"n_{axle}" if f"n_{axle}" in p else f"n_{axle}2"]),
+            _of_axles(lambda p, axle: 1 - _inboard_share(p, axle)),
             typical=0.3,
             spread=1.6,
             negligible=0.05,
+            description=TermDescription(
+                "a rigid {axle} axle with its springs at {0} of the half-distance of its wheels",
+                ((_inboard_share, "1"),),
+                again="a rigid {axle} axle with its springs at {0}",
+                neutral=1.0,
+            ),
             explains_all=True,
         ),
         ModelTerm(
@@ -190,23 +313,183 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=USUAL_ENGINE,
             spread=1.6,
             negligible=0.02,
+            description=TermDescription("an engine of {0} that moves on its mounts", ((lambda p, _: p["m_e"], "kg"),)),
             explains_all=True,
             undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
             first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
         ),
         ModelTerm(
+            "damper-mount",
+            _of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
+            usual=lambda own, _: usual_rubber(own),
+            typical=1 / USUAL_MOUNT,
+            spread=2.0,
+            negligible=0.003,
+            description=TermDescription(
+                "{axle} dampers on rubber mounts of {0}",
+                ((lambda p, axle: p[f"k_d{axle}"] / 1e3, "N/mm"),),
+                again="{axle} ones on mounts of {0}",
+                neutral=None,
+            ),
+            undefined=lambda own, _: {
+                **{f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+                **dict.fromkeys(("c_df", "c_dr"), 0.0),
+            },
+            first=lambda own, _: usual_rubber(own),
+        ),
+        ModelTerm(
+            "zener",
+            _of_axles(lambda p, axle: p[f"k_z{axle}"] / p[f"k_s{axle}"]),
+            usual=lambda own, _: usual_rubber(own),
+            typical=USUAL_RELAXATION,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "{axle} springs stiffer by {0} in fast motion, which relaxes in {1}",
+                (
+                    (lambda p, axle: 100 * p[f"k_z{axle}"] / p[f"k_s{axle}"], "%"),
+                    (lambda p, axle: 1e3 * p[f"c_z{axle}"] / p[f"k_z{axle}"], "ms"),
+                ),
+                again="{axle} ones by {0}, which relaxes in {1}",
+            ),
+            undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
+            first=lambda own, _: usual_rubber(own),
+        ),
+        ModelTerm(
+            TWIST,
+            lambda p: _roll_rate(p) / p["k_w"],
+            typical=0.05,
+            spread=2.5,
+            negligible=0.004,
+            description=TermDescription(
+                "a body that twists at {0}",
+                ((lambda p, _: _own_frequency(p["k_w"], p["I_w"]), "Hz"),),
+                neutral=None,
+            ),
+            explains_all=True,
+            undefined=lambda own, structure: _usual_twist(own, structure, _AT_REST),
+            first=_usual_twist,
+        ),
+        ModelTerm(
+            BENDING,
+            lambda p: 2 * (p["k_sf"] + p["k_sr"]) / p["k_v"],
+            typical=0.015,
+            spread=2.5,
+            negligible=0.0015,
+            description=TermDescription(
+                "a body that bends at {0}",
+                ((lambda p, _: _own_frequency(p["k_v"], p["m_v"]), "Hz"),),
+                neutral=None,
+            ),
+            explains_all=True,
+            undefined=lambda own, structure: _usual_bending(own, structure, _AT_REST),
+            first=_usual_bending,
+        ),
+        ModelTerm(
+            OCCUPANTS,
+            lambda p: p["m_o"] / p["m_s"],
+            typical=_USUAL_OCCUPANTS,
+            spread=2.0,
+            negligible=0.005,
+            description=TermDescription("{0} of people on soft seats", ((lambda p, _: p["m_o"], "kg"),)),
+            explains_all=True,
+            undefined=lambda own, structure: _usual_occupants(own, structure, _ALMOST_NO_ENGINE),
+            first=_usual_occupants,
+        ),
+        ModelTerm(
             FRICTION,
             _of_axles(lambda p, axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"])),
+            usual=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
             typical=1.0,
             spread=3.0,
             negligible=0.01,
+            description=TermDescription(
+                "dry friction of {0} at each {axle} wheel",
+                ((lambda p, axle: p[f"F_{axle}"], "N"),),
+                again="{0} at each {axle} wheel",
+            ),
             resembles_others=True,
             undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
             first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
         ),
-        ModelTerm("rebound", _of_axles(lambda p, axle: p[f"r_{axle}"] - 1), typical=0.8, spread=2.0, negligible=0.01),
         ModelTerm(
-            "progressive", _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]), typical=0.2, spread=2.5, negligible=0.02
+            "rebound",
+            _of_axles(lambda p, axle: p[f"r_{axle}"] - 1),
+            usual=lambda _, __: dict.fromkeys(("r_f", "r_r"), 1 + _REBOUND),
+            typical=_REBOUND,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "{axle} dampers {0} times as stiff in rebound as in compression",
+                ((lambda p, axle: p[f"r_{axle}"], "1"),),
+                again="{axle} ones {0} times",
+                neutral=1.0,
+            ),
+        ),
+        ModelTerm(
+            "damper-curve",
+            _of_axles(lambda p, axle: 1 - p[f"q_{axle}"]),
+            usual=lambda _, __: {"v_kf": _KNEE, "v_kr": _KNEE, "q_f": 1 - _KNEE_LOSS, "q_r": 1 - _KNEE_LOSS},
+            typical=_KNEE_LOSS,
+            spread=1.6,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} dampers with {0} of their rate beyond {1}",
+                ((lambda p, axle: p[f"q_{axle}"], "1"), (lambda p, axle: p[f"v_k{axle}"], "m/s")),
+                again="{axle} ones with {0} beyond {1}",
+                neutral=1.0,
+            ),
+            undefined=lambda _, __: {f"v_k{axle}": _KNEE for axle in "fr"},
+        ),
+        ModelTerm(
+            "rounded-knee",
+            _of_axles(lambda p, axle: p[f"w_k{axle}"] / p.get(f"v_k{axle}", _KNEE)),
+            typical=0.3,
+            spread=2.0,
+            negligible=0.05,
+            description=TermDescription(
+                "{axle} damper knees rounded over {0} on both sides",
+                ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
+                again="{axle} ones over {0}",
+            ),
+            first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
+        ),
+        ModelTerm(
+            "progressive",
+            _of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]),
+            typical=0.2,
+            spread=2.5,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} springs whose rate grows by {0} over 5 cm of compression",
+                ((lambda p, axle: 100 * _STROKE * p[f"p_{axle}"], "%"),),
+                again="{axle} ones by {0}",
+            ),
+        ),
+        ModelTerm(
+            "air",
+            _of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"e_{axle}"]),
+            typical=0.6,
+            spread=1.6,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} air springs with a column of {1}",
+                ((lambda p, axle: p[f"e_{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"e_{axle}"], "mm")),
+                again="{axle} ones with a column of {1}",
+            ),
+        ),
+        ModelTerm(
+            "tyre-curve",
+            _of_axles(lambda p, axle: _TYRE_STROKE * p[f"h_t{axle}"]),
+            usual=lambda _, __: dict.fromkeys(("h_tf", "h_tr"), _TYRE_GROWTH / _TYRE_STROKE),
+            typical=_TYRE_GROWTH,
+            spread=2.0,
+            negligible=0.01,
+            description=TermDescription(
+                "{axle} tyres whose rate grows by {0} over 2 cm of compression",
+                ((lambda p, axle: 100 * _TYRE_STROKE * p[f"h_t{axle}"], "%"),),
+                again="{axle} ones by {0}",
+            ),
         ),
         ModelTerm(
             BUMP_STOP,
@@ -214,6 +497,11 @@ TERMS: Mapping[str, ModelTerm] = {
             typical=3.0,
             spread=3.0,
             negligible=0.02,
+            description=TermDescription(
+                "{axle} bump stops of {0}, met after {1} of compression",
+                ((lambda p, axle: p[f"k_b{axle}"] / 1e3, "N/mm"), (lambda p, axle: 1e3 * p[f"x_b{axle}"], "mm")),
+                again="{axle} ones of {0}, met after {1}",
+            ),
             undefined=lambda _, structure: dict.fromkeys(("x_bf", "x_br"), structure.stop_gap),
         ),
     )

@@ -14,7 +14,7 @@ from sprung.simulation.arguments import name_files
 from sprung.simulation.nonlinear_motion import simulate_nonlinear_decays
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, coordinates, free_decay, nonlinear_elements
+from sprung.vehicle import Load, Sensor, Vehicle, free_decay, nonlinear_elements, state_variables
 
 
 def free_decays(
@@ -67,11 +67,12 @@ def free_decays(
     )
     check_not_negative(problems, duration=duration)
     random = np.random.default_rng(seed)
-    starts, size = {}, 2 * len(coordinates(vehicle.parameters))
+    orders = np.array([order for _, order in state_variables(vehicle.parameters)])
+    starts, size = {}, len(orders)
     for load in setup.loads:
         if isinstance(states, int):
             # About what a drop from a few centimetres leaves in a vehicle: m and rad, m/s and rad/s.
-            given: ArrayLike = random.standard_normal((states, size)) * np.repeat([0.02, 0.3], size // 2)
+            given: ArrayLike = random.standard_normal((states, size)) * np.array([0.02, 0.3])[orders]
         else:
             given = states.get(load.name, np.empty((0, size))) if isinstance(states, Mapping) else states
         starts[load.name] = np.atleast_2d(np.asarray(given, dtype=float))

@@ -35,6 +35,7 @@ def simulate(
     known: Mapping[str, KnownValueLike] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
     gravity: float = STANDARD_GRAVITY,
+    sensor_errors: bool = False,
     progress: Progress = silent,
 ) -> Campaign:
     """Simulate the drop tests of a vehicle, as they would have been recorded.
@@ -67,6 +68,9 @@ def simulate(
         What is said about the model to identify.
     gravity
         m/s².
+    sensor_errors
+        Whether gain, tilt, place and delay of each sensor deviate from what is stated, drawn from its ``gain_std``,
+        ``tilt_std``, ``position_std`` and ``delay_std``. Without, all sensors are exact, and the campaign says so.
     progress
         Called with each drop that is begun.
 
@@ -109,6 +113,7 @@ def simulate(
         known=known,
         model=model,
         problems=problems,
+        sensor_errors=sensor_errors,
     )
     check_not_negative(problems, duration=duration, rest=rest)
     problems.raise_if_any()
@@ -117,7 +122,7 @@ def simulate(
     after = round((rest + duration) * rate) - before
     first = max(before / rate - rest, 0.0)
     loaded = {load.name: load for load in setup.loads}
-    released, accelerations = [], []
+    released, motions = [], []
     for drop in counted(progress, "simulating the drops", setup.drops):
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         released.append(replace(drop, height=height))
@@ -125,13 +130,23 @@ def simulate(
             fall = drop_from_blocks(
                 vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity
             )
-            accelerations.append(fall.motion(1 / rate, after, first).acceleration)
+            motions.append(fall.motion(1 / rate, after, first))
     problems.raise_if_any()
     if nonlinear_elements(vehicle.tracks, vehicle.extras):
         progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
         blocks = [BlockSupport(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, after, first, gravity)
-        accelerations = [motion.acceleration for motion in motions]
-    accelerations = [np.hstack([np.zeros((len(one), before)), one]) for one in accelerations]
-    campaign = setup.campaign(released, accelerations, "drop from blocks", np.random.default_rng(seed))
-    return campaign if file is None else replace(campaign, identification=file.identification, test=file.test)
+    accelerations = [np.pad(motion.acceleration, ((0, 0), (before, 0))) for motion in motions]
+    displacements = [np.pad(motion.displacement, ((0, 0), (before, 0)), "edge") for motion in motions]
+    campaign = setup.campaign(
+        released,
+        accelerations,
+        "drop from blocks",
+        np.random.default_rng(seed),
+        displacements if sensor_errors else None,
+    )
+    return (
+        campaign
+        if file is None
+        else replace(campaign, identification=file.identification, test=file.test, motion_ratio=file.motion_ratio)
+    )

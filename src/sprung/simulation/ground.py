@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, WHEELS, WHEELS_AT, Load, Matrices, Vehicle, Wheel
+from sprung.vehicle import EMPTY, WHEELS, WHEELS_AT, Load, Matrices, Vehicle, Wheel, highest_derivatives
 
 Array = NDArray[np.float64]
 
@@ -76,21 +76,22 @@ class Ground:
     def under(cls, vehicle: Vehicle, load: Load, gravity: float) -> Ground:
         """Return a vehicle with its load on the ground; gravity in m/s²."""
         stiffness, damping = np.array([tyre_rates(vehicle)[station] for station in WHEELS]).T
+        model = vehicle.model(load)
         matrices = vehicle.matrices(load)
-        sag = np.linalg.solve(matrices.K, gravity * matrices.weight)
+        sag = matrices.deflection(gravity * matrices.M @ model.heave)
         return cls(matrices, stiffness, damping, stiffness * sag[WHEELS_AT])
 
     @property
     def compression(self) -> Array:
-        """Tyre rate times tyre compression, N: rows over Y, shape (4, 2n + 1) with n coordinates."""
-        rows = np.zeros((4, 2 * len(self.matrices.M) + 1))
+        """Tyre rate times tyre compression, N: rows over Y, shape (4, n + m + 1) with n coordinates, m with mass."""
+        rows = np.zeros((4, len(self.matrices.M) + self.matrices.massive + 1))
         rows[:, WHEELS_AT] = -np.diag(self.stiffness)
         rows[:, -1] = self.wheel_loads
         return rows
 
     @property
     def force(self) -> Array:
-        """Force of each tyre if it is in contact, N: rows over Y, shape (4, 2n + 1)."""
+        """Force of each tyre if it is in contact, N: rows over Y, shape (4, n + m + 1)."""
         rows = self.compression
         rows[:, len(self.matrices.M) :][:, WHEELS_AT] = -np.diag(self.damping)
         return rows
@@ -106,12 +107,14 @@ class Ground:
         Returns
         -------
         ndarray
-            Shape (2n + 1, 2n + 1); its last column holds the constant force.
+            Shape (n + m + 1, n + m + 1); its last column holds the constant force.
         """
-        n = len(self.matrices.M)
-        generator = np.zeros((2 * n + 1, 2 * n + 1))
+        n, m = len(self.matrices.M), self.matrices.massive
+        size = n + m + 1
+        generator = np.zeros((size, size))
         generator[:-1, :-1] = self.matrices.state
-        generator[n:-1] -= np.linalg.solve(self.matrices.M, self._wheels.T[:, ~contact] @ self.force[~contact])
+        lost = np.linalg.solve(self.matrices.leading, self._wheels.T[:, ~contact] @ self.force[~contact])
+        generator[highest_derivatives(n, m)] -= lost
         return generator
 
     @property
@@ -138,7 +141,7 @@ class Ground:
             on = np.arange(4) != lifted
             K = self.matrices.K - np.diag(np.where(on, 0.0, self.stiffness) @ self._wheels)
             F = np.where(on, self.stiffness * blocks, -self.wheel_loads) @ self._wheels
-            X = np.asarray(np.linalg.solve(K, F), dtype=np.float64)
+            X = self.matrices._replace(K=K).deflection(F)
             force = self.wheel_loads - self.stiffness * (X[WHEELS_AT] - blocks)
             candidates.append((float(np.min(np.where(on, force, -force))), X))
         # In one of the five no tyre pulls and none sinks into the ground; where two are equal but for rounding, either will do.
@@ -147,10 +150,13 @@ class Ground:
     def keeps_contact(self, Y: Array) -> bool:
         """Return whether, with all wheels on the ground, the energy left is too little for any tyre force to reach zero."""
         M, _, K = self.matrices
-        X, V = np.split(Y[:-1], 2)
+        m = self.matrices.massive
+        X, V = np.split(Y[:-1], [len(M)])
+        M = M[:m, :m]
         energy = 0.5 * (X @ K @ X + V @ M @ V)
         # Energy never grows, and by the Cauchy-Schwarz inequality |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
         # where 1 / K_z and 1 / M_z are the wheel's diagonal entries of K⁻¹ and M⁻¹: no tyre unloads by more.
-        flexibility, mobility = (np.diag(np.linalg.inv(matrix))[WHEELS_AT] for matrix in (K, M))
+        flexibility = np.diag(self.matrices.deflection(np.eye(len(K))))[WHEELS_AT]
+        mobility = np.diag(np.linalg.inv(M))[WHEELS_AT]
         largest = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
         return bool(np.all(math.sqrt(2 * energy) * largest < self.wheel_loads))

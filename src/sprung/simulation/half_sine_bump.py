@@ -47,7 +47,7 @@ def drive_over_half_sine_bump(
     Motion
         From the start of the bump on.
     ndarray
-        State {X, Ẋ} at the end of the bump, shape (2n,): where the free decay starts.
+        State {X, Ẋ} at the end of the bump, shape (n + m,): where the free decay starts.
     """
     omega, n = np.pi / duration, len(matrices.M)
     force = np.zeros(n, dtype=complex)
@@ -56,22 +56,20 @@ def drive_over_half_sine_bump(
         force[3 + WHEELS.index(station)] = height * (stiffness + 1j * omega * damping)
     dynamic = matrices.K - omega**2 * matrices.M + 1j * omega * matrices.C
     amplitude = np.linalg.solve(dynamic, force)  # X = Im(amplitude exp(iωt)), the steady-state response to the sine
-    orbit = np.concatenate([amplitude, 1j * omega * amplitude])
-    A = matrices.state
+    m = matrices.massive
+    orbit = np.concatenate([amplitude, 1j * omega * amplitude[:m]])
+    A, at_rest = matrices.state, np.zeros(n + m)
 
     during = min(samples, int(np.ceil(duration / step - 1e-9)))
     transient = -orbit.imag
     times = step * np.arange(during)
-    forced = (orbit[:, None] * np.exp(1j * omega * times)).imag + affine_response(
-        A, np.zeros(2 * n), transient, step, during
-    )
+    forced = (orbit[:, None] * np.exp(1j * omega * times)).imag + affine_response(A, at_rest, transient, step, during)
     at_end = (orbit * np.exp(1j * omega * duration)).imag + expm(A * duration) @ transient
     after = expm(A * (during * step - duration)) @ at_end
-    states = np.hstack([forced, affine_response(A, np.zeros(2 * n), after, step, max(samples - during, 1))])[
-        :, :samples
-    ]
+    states = np.hstack([forced, affine_response(A, at_rest, after, step, max(samples - during, 1))])[:, :samples]
 
-    acceleration = (A @ states)[n:]
+    # The ground acts on the wheels, which have mass: only accelerations follow it at once.
+    motion = Motion.of_states(A, states, n)
     ground = (force[:, None] * np.exp(1j * omega * times)).imag
-    acceleration[:, :during] += np.linalg.solve(matrices.M, ground)
-    return Motion(states[:n], states[n:], acceleration), at_end
+    motion.acceleration[:, :during] += np.linalg.solve(matrices.leading, ground)
+    return motion, at_end

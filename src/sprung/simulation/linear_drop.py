@@ -21,7 +21,7 @@ from sprung.errors import Problems, SprungError, did_you_mean
 from sprung.simulation.ground import Ground
 from sprung.simulation.zero_crossing import find_first_zero
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, WHEELS, Load, Motion, Vehicle, Wheel, affine_response
+from sprung.vehicle import COORDINATES, EMPTY, WHEELS, Load, Motion, Vehicle, Wheel, affine_response
 
 Array = NDArray[np.float64]
 
@@ -62,13 +62,15 @@ class DropMotion:
     starts
         Start of each segment, s after the release, shape (segment,).
     states
-        Y at each start, SI, shape (segment, 2n + 1) with n coordinates.
+        Y at each start, SI, shape (segment, n + m + 1) with n coordinates, m with mass.
     generators
-        SI, shape (segment, 2n + 1, 2n + 1); the last column of each holds the constant force.
+        SI, shape (segment, n + m + 1, n + m + 1); the last column of each holds the constant force.
     events
         Every lift-off and landing, in order; wheels on blocks higher than their tyres were compressed lift off at 0.
     until
         End of the time for which the motion is known, s after the release; infinite once no wheel can lift off any more.
+    coordinates
+        Number of coordinates, n.
     """
 
     starts: Array
@@ -76,6 +78,7 @@ class DropMotion:
     generators: Array
     events: tuple[ContactEvent, ...]
     until: float
+    coordinates: int = len(COORDINATES)
 
     @property
     def decay_start(self) -> float:
@@ -88,7 +91,7 @@ class DropMotion:
         return math.isinf(self.until)
 
     def state(self, time: float) -> Array:
-        """Return the state {X, Ẋ} from static equilibrium on flat ground, shape (2n,).
+        """Return the state {X, Ẋ} from static equilibrium on flat ground, shape (n + m,).
 
         Parameters
         ----------
@@ -131,14 +134,15 @@ class DropMotion:
             self._check(times[0], times[-1])
         segment_of = np.searchsorted(self.starts, times, side="right") - 1
         size = self.states.shape[1]
-        n = size // 2
+        n = self.coordinates
         sampled = np.empty((3 * n, samples))
         for segment, generator in enumerate(self.generators):
             inside = np.flatnonzero(segment_of == segment)
             if inside.size:
                 first = self._at(segment, times[inside[0]])
                 states = affine_response(generator, np.zeros(size), first, step, inside.size)
-                sampled[:, inside] = np.vstack([states[:-1], (generator @ states)[n:-1]])
+                rates = generator @ states
+                sampled[:, inside] = np.vstack([states[:n], rates[:n], (generator @ rates)[:n]])
         return Motion(sampled[:n], sampled[n : 2 * n], sampled[2 * n :])
 
     def _at(self, segment: int, time: float) -> Array:
@@ -203,7 +207,7 @@ def drop_from_blocks(
     """
     ground = Ground.under(vehicle, load, gravity)
     rest = _rest(ground, vehicle, load, wheels, height)
-    Y = np.concatenate([rest, np.zeros_like(rest), [1.0]])
+    Y = np.concatenate([rest, np.zeros(ground.matrices.massive), [1.0]])
     phases: list[Phase] = ["contact" if value >= 0 else "air" for value in ground.compression @ Y]
     lifted = [wheel for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"]
     events = [ContactEvent(0.0, wheel, "lift-off") for wheel in lifted]
@@ -218,7 +222,7 @@ def drop_from_blocks(
         change = _next_change(ground, *segments[-1], phases, step, duration)
         if isinstance(change, float):
             starts, states, generators = (np.array(column) for column in zip(*segments, strict=True))
-            return DropMotion(starts, states, generators, tuple(events), change)
+            return DropMotion(starts, states, generators, tuple(events), change, len(rest))
         time, Y, station, phases[station] = change
         if contact[station] != (phases[station] == "contact"):
             events.append(ContactEvent(time, WHEELS[station], "lift-off" if contact[station] else "landing"))

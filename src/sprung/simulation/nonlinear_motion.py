@@ -132,8 +132,8 @@ def _models(
     vehicle: Vehicle, loads: Sequence[Load], contact: Sequence[NonlinearElement], gravity: float
 ) -> tuple[list[NonlinearModel], NDArray[np.int64]]:
     """Return a model for each different load, and which of them each of the loads has."""
-    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights)
-    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras), *contact]
+    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights, vehicle.wheelbase)
+    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase), *contact]
     names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
     models = [NonlinearModel.of(elements, nonlinear, names, load, vehicle.heights, gravity) for load in different]
     order = [load.name for load in different]
@@ -142,7 +142,8 @@ def _models(
 
 def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) -> Array:
     """Return the rest position on blocks, X from the empty vehicle at rest on the ground, shape (coordinate,)."""
-    forces, K = model.forces, model.linear.matrices(values).K
+    forces, matrices = model.forces, model.linear.matrices(values)
+    K = matrices.K
     G, offsets = forces.rows.at(values), model.travel_offsets(values)[0]
     tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
     load = -K @ model.sag(values)
@@ -153,9 +154,9 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
     for _ in range(_ITERATIONS):
         travel = G @ X - raised + offsets
         zero = np.zeros_like(travel)
-        found = forces.evaluate(values, ElementInput(travel, zero, zero, zero))
+        found = forces.evaluate(forces.parameters(values), ElementInput(travel, zero, zero, np.zeros(forces.memories)))
         residual = K @ X + load + G.T @ found.force
-        X = X - np.linalg.solve(K + (G.T * found.by_travel) @ G, residual)
+        X = X - matrices._replace(K=K + (G.T * found.by_travel) @ G).deflection(residual)
         if np.abs(residual).max() < 1e-9 * np.abs(load).max():
             break
     return X
@@ -171,17 +172,19 @@ def _sample(
     start: float,
 ) -> list[Motion]:
     every = max(math.ceil(step / _LONGEST_STEP), 1)
-    with_memory = models[0].forces.with_memory
-    memories = np.zeros((len(states), len(with_memory)))
+    memories = np.zeros((len(states), models[0].forces.memories))
     if start > 0:
         before = Stepper.of(models, [start / every] * len(models), kind, values).integrate(states, memories, every)
-        states, memories = before.states[-1], before.memories[-1][:, with_memory]
+        states, memories = before.states[-1], before.memories[-1]
     stepper = Stepper.of(models, [step / every] * len(models), kind, values)
     trajectory = stepper.integrate(states, memories, every * (samples - 1))
     motions = []
     for drop, which in enumerate(kind.tolist()):
         X, forces = trajectory.states[::every, drop].T, trajectory.forces[::every, drop].T
-        acceleration = models[which].accelerations(values)[0] @ np.vstack([X, forces, np.ones((1, X.shape[1]))])
-        sag = models[which].sag(values)[:, None]
-        motions.append(Motion(X[: len(sag)] - sag, X[len(sag) :], acceleration))
+        highest = models[which].accelerations(values)[0] @ np.vstack([X, forces, np.ones((1, X.shape[1]))])
+        sag, m = models[which].sag(values)[:, None], models[which].linear.massive
+        # Coordinates without mass have velocities by the equations of motion, and accelerations that nothing measures.
+        velocity = np.vstack([X[len(sag) :], highest[m:]])
+        acceleration = np.vstack([highest[:m], np.gradient(highest[m:], step, axis=1)])
+        motions.append(Motion(X[: len(sag)] - sag, velocity, acceleration))
     return motions

@@ -23,6 +23,7 @@ from sprung.campaign import (
 )
 from sprung.errors import Problems, did_you_mean
 from sprung.simulation.arguments import check_unique, default_drops, default_sensors, name_files, record, records
+from sprung.simulation.sensor_errors import SensorErrors
 from sprung.simulation.sensor_model import Sensing
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
@@ -72,12 +73,13 @@ class SimulationSetup:
         known: Mapping[str, KnownValueLike] | None,
         model: ModelChoice | Mapping[str, Any] | None,
         problems: Problems,
+        sensor_errors: bool = False,
     ) -> SimulationSetup:
         """Return the setup of a test from the arguments of `simulate`; every mistake in them is added to the problems.
 
         Parameters
         ----------
-        vehicle, sensors, loads, drops, rate, noise, offset, gravity, known, model
+        vehicle, sensors, loads, drops, rate, noise, offset, gravity, known, model, sensor_errors
             As for `simulate`.
         problems
             Takes what does not fit.
@@ -117,7 +119,8 @@ class SimulationSetup:
         names |= {load.name if isinstance(load, Load) else str(load.get("name")) for load in loads or ()}
         for name in sorted({drop.load for drop in chosen_drops} - names):
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
-        sensing = Sensing.of(chosen_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
+        stated_sensors = chosen_sensors if sensor_errors else tuple(sensor.exact for sensor in chosen_sensors)
+        sensing = Sensing.of(stated_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
         stated = {"wheelbase": KnownValue(vehicle.wheelbase)} | parse_known_values(
             known or {}, "simulate: known", problems
         )
@@ -132,7 +135,12 @@ class SimulationSetup:
         )
 
     def campaign(
-        self, drops: Sequence[Drop], accelerations: Iterable[Array], what: str, random: np.random.Generator
+        self,
+        drops: Sequence[Drop],
+        accelerations: Iterable[Array],
+        what: str,
+        random: np.random.Generator,
+        displacements: Iterable[Array] | None = None,
     ) -> Campaign:
         """Return the campaign that the sensors would have recorded.
 
@@ -146,22 +154,33 @@ class SimulationSetup:
             What was simulated, for the history.
         random
             Where noise and offsets come from.
+        displacements
+            Of the coordinates, m and rad, of the same shapes, where the sensors deviate from what is stated of them.
         """
         sensors, rate = self.sensing.sensors, self.sensing.rate
-        parameters = self.vehicle.parameters
-        S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
+        if displacements is None:
+            parameters = self.vehicle.parameters
+            S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
+            seen = [S @ acceleration for acceleration in accelerations]
+        else:
+            # A generator of their own: noise is the same with them and without.
+            errors = SensorErrors.drawn(sensors, random.spawn(1)[0])
+            seen = [
+                errors.readings(self.vehicle, sensors, *motion, rate)
+                for motion in zip(accelerations, displacements, strict=True)
+            ]
         recorded = [
             drop.with_recording(
                 Recording(
                     name=name,
                     channels=tuple(sensor.channel for sensor in sensors),
-                    values=self.sensing.readings(S @ acceleration, random),
+                    values=self.sensing.readings(reading, random),
                     start=0.0,
                     rate=rate,
                     history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
                 )
             )
-            for drop, name, acceleration in zip(drops, unique_recording_names(drops), accelerations, strict=True)
+            for drop, name, reading in zip(drops, unique_recording_names(drops), seen, strict=True)
         ]
         return Campaign(
             name=self.vehicle.name,

@@ -3,12 +3,14 @@
 from sprung.vehicle.characteristics import (
     CHARACTERISTICS,
     DERIVED,
+    MOTION_RATIOS,
     WHEEL_LOADS,
     Characteristic,
     evaluate_quantity,
     wheel_loads,
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
+from sprung.vehicle.curves import FORCE_CURVES, CurveElements
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -21,11 +23,12 @@ from sprung.vehicle.elements import (
     nonlinear_elements,
     seven_degrees_of_freedom,
 )
+from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates
+from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, state_variables
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
-from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows
+from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
@@ -33,14 +36,25 @@ from sprung.vehicle.parameters import (
     LOAD_MASS,
     NEUTRAL,
     PARAMETERS,
+    SENSOR_DELAY,
+    SENSOR_GAIN,
+    SENSOR_UNKNOWNS,
+    SENSOR_X,
+    SENSOR_Y,
     Parameter,
+    SensorUnknown,
+    is_nuisance,
+    is_of_sensor,
     parameter_names,
     parameters_of_term,
     separate_track_names,
     with_separate_tracks,
 )
+from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
-from sprung.vehicle.sensor import Sensor
+from sprung.vehicle.segments import Prediction, integrate_near, segments_of
+from sprung.vehicle.sensitivities import differentiate_motions
+from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.vehicle import Vehicle
 
@@ -51,13 +65,20 @@ __all__ = [
     "EMPTY",
     "EXTRAS",
     "EXTRA_PARAMETERS",
+    "FORCE_CURVES",
     "LEVEL",
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
     "LOAD_MASS",
+    "MOTION_RATIOS",
     "NEUTRAL",
     "PARAMETERS",
     "SCHOOL_BUS",
+    "SENSOR_DELAY",
+    "SENSOR_GAIN",
+    "SENSOR_UNKNOWNS",
+    "SENSOR_X",
+    "SENSOR_Y",
     "TABLE_1_CAR",
     "UNKNOWN_KEY",
     "WHEELS",
@@ -66,6 +87,7 @@ __all__ = [
     "Added",
     "CarriedAt",
     "Characteristic",
+    "CurveElements",
     "Element",
     "ElementInput",
     "Finite",
@@ -82,28 +104,42 @@ __all__ = [
     "NotNegative",
     "Parameter",
     "Positive",
+    "Prediction",
+    "Readout",
     "Row",
     "Rows",
     "Sensor",
+    "SensorUnknown",
     "Stepper",
     "Tracks",
     "Trajectory",
     "Vehicle",
     "Wheel",
     "affine_response",
+    "body_sinking",
     "checked_record",
     "coordinates",
+    "differentiate_motions",
     "evaluate_quantity",
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "highest_derivatives",
+    "integrate_near",
+    "is_nuisance",
+    "is_of_sensor",
     "nonlinear_elements",
     "parameter_names",
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
+    "second_order_readings",
+    "segments_of",
     "separate_track_names",
     "seven_degrees_of_freedom",
+    "state_matrix",
+    "state_variables",
+    "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",
 ]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.kinematics import HEAVE, WHEELS_AT
+from sprung.vehicle.kinematics import WHEELS_AT
 from sprung.vehicle.model import LinearModel
 
 Real = NDArray[np.float64]
@@ -94,6 +94,14 @@ def _cg_left(p: Values) -> Any:
     return p["m_s"] * p["y_s"] / _total_mass(p)
 
 
+def _attached_frequency(index: str, mass: str) -> Callable[[Values], Any]:
+    return lambda p: (p[f"k_{index}"] / p[mass]) ** 0.5 / (2 * np.pi)
+
+
+def _attached_damping(index: str, mass: str) -> Callable[[Values], Any]:
+    return lambda p: p[f"c_{index}"] / (2 * (p[f"k_{index}"] * p[mass]) ** 0.5)
+
+
 def _of_axle(function: Callable[[Values, str], Any], axle: str) -> Callable[[Values], Any]:
     return lambda p: function(p, axle)
 
@@ -129,6 +137,18 @@ CHARACTERISTICS: Mapping[str, Characteristic] = {
         for quantity, (unit, meaning, function) in _AXLE_QUANTITIES.items()
         for name, axle in _AXLES.items()
     },
+    **{
+        f"{name}_{quantity}": Characteristic(unit, meaning.format(what), function(index, mass), frozenset({mass}))
+        for quantity, unit, meaning, function in (
+            ("frequency", "Hz", "natural frequency of {}", _attached_frequency),
+            ("damping", "1", "damping ratio of {}", _attached_damping),
+        )
+        for name, index, mass, what in (
+            ("twist", "w", "I_w", "the twist of the body as it floats"),
+            ("bending", "v", "m_v", "the bending of the body as it floats"),
+            ("seat", "o", "m_o", "people on their seats, the body held"),
+        )
+    },
 }
 """By name, in the order in which tables show them. Static wheel loads, which follow from the matrices, are `wheel_loads`."""
 
@@ -137,6 +157,21 @@ DERIVED: Mapping[str, Characteristic] = {
     "wheelbase": Characteristic("m", "front axle to rear axle", lambda p: p["a"] + p["b"]),
 }
 """Those that a campaign may state as known beforehand, by the names it gives them."""
+
+
+MOTION_RATIOS: Mapping[str, tuple[str, str, str]] = {
+    f"{part}_{name}": (
+        f"{letter}_s{axle}",
+        f"{letter}_s{axle}_at_{part}",
+        f"{part} rate at each {name} {part}: {letter}_s{axle} over the squared motion ratio",
+    )
+    for part, letter in (("spring", "k"), ("damper", "c"))
+    for name, axle in _AXLES.items()
+}
+"""Motion ratios, travel of a spring or damper per travel of its wheel, by the names that a campaign gives them.
+
+Each with the rate at the wheel, and with name and meaning of that at the spring or damper.
+"""
 
 WHEEL_LOADS: Mapping[str, str] = {
     "front_wheel_load": "static load of each front wheel of the empty vehicle",
@@ -197,13 +232,13 @@ def wheel_loads(model: LinearModel, values: Real) -> tuple[Real, Real]:
     gradient
         By each parameter, SI, shape (4, parameter).
     """
-    M, _, K = model.matrices(values)
+    matrices, heave = model.matrices(values), model.heave
+    M, _, K = matrices
     dM, _, dK = model.slopes(values)
-    heave = HEAVE[: len(M)]
     # Heave strains nothing but the tyres: K times it is their rates.
     tyres, tyre_slopes = (K @ heave)[WHEELS_AT], (dK @ heave)[:, WHEELS_AT]
-    sag = np.linalg.solve(K, STANDARD_GRAVITY * M @ heave)
-    sag_slopes = np.linalg.solve(K, (STANDARD_GRAVITY * dM @ heave - dK @ sag).T).T
+    sag = matrices.deflection(STANDARD_GRAVITY * M @ heave)
+    sag_slopes = matrices.deflection((STANDARD_GRAVITY * dM @ heave - dK @ sag).T).T
     loads = tyres * sag[WHEELS_AT]
     gradient = tyre_slopes * sag[WHEELS_AT] + tyres * sag_slopes[:, WHEELS_AT]
     return loads, gradient.T

@@ -13,7 +13,17 @@ from typing import Literal
 
 from sprung.display import shown
 from sprung.vehicle import kinematics
-from sprung.vehicle.force_laws import BUMP_STOP, FRICTION, GROUND, PROGRESSIVE, REBOUND, ForceLaw
+from sprung.vehicle.force_laws import (
+    AIR,
+    BUMP_STOP,
+    FRICTION,
+    GROUND,
+    PROGRESSIVE,
+    REBOUND,
+    TYRE_CURVE,
+    ForceLaw,
+    damper_curve,
+)
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Row, Wheel
 
@@ -23,10 +33,15 @@ LinearLaw = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 """Whether springs and dampers of an axle share their half-distance."""
 
-LINEAR_EXTRAS = ("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine")
+LINEAR_EXTRAS = (
+    "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount", "zener",
+    "twist", "bending", "occupants",
+)  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
-EXTRAS = (*LINEAR_EXTRAS, "friction", "rebound", "progressive", "bump-stop")
+EXTRAS = (
+    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "rounded-knee", "progressive", "air", "bump-stop", "tyre-curve",
+)  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
 
@@ -115,7 +130,7 @@ def _by_place(letter: str, tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
 
 
 def seven_degrees_of_freedom(
-    tracks: Tracks = "shared", extras: Collection[str] = (), heights: Heights = LEVEL
+    tracks: Tracks = "shared", extras: Collection[str] = (), heights: Heights = LEVEL, wheelbase: float = 0.0
 ) -> tuple[Element, ...]:
     """Return the linear elements of the paper's seven-degree-of-freedom vehicle.
 
@@ -127,15 +142,23 @@ def seven_degrees_of_freedom(
         Any of `EXTRAS`; only those of `LINEAR_EXTRAS` add elements.
     heights
         Heights, as far as they are known; they add to the inertia and stiffness of roll and pitch.
+    wheelbase
+        m; for a body that twists or bends.
 
     Returns
     -------
     tuple of Element
     """
-    return (*_basic_elements(tracks, extras), *_elements_of_heights(heights))
+    return (
+        *_basic_elements(tracks, extras, wheelbase),
+        *_elements_of_the_body(extras, wheelbase),
+        *_elements_of_heights(heights, "gravity" in extras),
+    )
 
 
-def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:
+def nonlinear_elements(
+    tracks: Tracks = "shared", extras: Collection[str] = (), wheelbase: float = 0.0
+) -> tuple[NonlinearElement, ...]:
     """Return the nonlinear elements of a vehicle.
 
     Parameters
@@ -144,24 +167,37 @@ def nonlinear_elements(tracks: Tracks = "shared", extras: Collection[str] = ()) 
         Whether springs and dampers of an axle share their half-distance; friction acts at the springs.
     extras
         Any of `EXTRAS`; those of `LINEAR_EXTRAS` add none.
+    wheelbase
+        m; for a body that twists.
 
     Returns
     -------
     tuple of Force
     """
-    travel = _travels(tracks, extras)
+    travel = _travels(tracks, extras, wheelbase)
     elements = []
     for station in kinematics.WHEELS:
         axle, spring = station[0], travel(station, "spring")
         if "friction" in extras:
             elements.append(NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), spring))
         if "rebound" in extras:
-            damper = travel(station, "damper")
+            damper = _damper_travel(station, tracks, extras, wheelbase)
             elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
+        if "damper-curve" in extras:
+            rebound, rounded = "rebound" in extras, "rounded-knee" in extras
+            before = (f"c_s{axle}", *(f"r_{axle}",) * rebound, *(f"w_k{axle}",) * rounded)
+            law = damper_curve(has_ratio=rebound, is_rounded=rounded)
+            damper = _damper_travel(station, tracks, extras, wheelbase)
+            elements.append(NonlinearElement(law, (*before, f"v_k{axle}", f"q_{axle}"), damper))
         if "progressive" in extras:
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
+        if "air" in extras:
+            elements.append(NonlinearElement(AIR, (f"e_{axle}", f"k_s{axle}"), spring))
         if "bump-stop" in extras:
             elements.append(NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), spring))
+        if "tyre-curve" in extras:
+            tyre = kinematics.wheel(station)
+            elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre))
     return tuple(elements)
 
 
@@ -186,23 +222,32 @@ def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElem
     )
 
 
-def _travels(tracks: Tracks, extras: Collection[str]) -> Callable[[Wheel, LinearLaw], Row]:
+def _travels(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Callable[[Wheel, LinearLaw], Row]:
     """Return the function that gives the travel of the spring or damper at a wheel station."""
     distances = half_distances(tracks)
     shares = inboard_shares(tracks) if "rigid-axle" in extras else {}
-    return lambda station, law: kinematics.travel(station, distances[station[0], law], shares.get((station[0], law)))
+    return lambda station, law: kinematics.travel(
+        station, distances[station[0], law], shares.get((station[0], law)), wheelbase
+    )
 
 
-def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
-    asymmetric, travel = "asymmetry" in extras, _travels(tracks, extras)
-    yield Element("mass", "m_s", kinematics.bounce(asymmetric))
-    yield Element("mass", "I_yy", kinematics.pitch())
+def _damper_travel(station: Wheel, tracks: Tracks, extras: Collection[str], wheelbase: float) -> Row:
+    """Return the travel of the damper itself at a wheel station: behind a mount it is a coordinate of its own."""
+    if "damper-mount" in extras:
+        return kinematics.behind_mount(station)
+    return _travels(tracks, extras, wheelbase)(station, "damper")
+
+
+def _basic_elements(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Iterator[Element]:
+    asymmetric, travel = "asymmetry" in extras, _travels(tracks, extras, wheelbase)
+    yield Element("mass", "m_s", kinematics.bounce(asymmetric, wheelbase))
+    yield Element("mass", "I_yy", kinematics.pitch(wheelbase))
     yield Element("mass", "I_xx", kinematics.roll())
     for station in kinematics.WHEELS:
         axle, side = station[0], kinematics.side(station)
         rates: list[tuple[LinearLaw, str, Row]] = [
             ("spring", f"k_s{axle}", travel(station, "spring")),
-            ("damper", f"c_s{axle}", travel(station, "damper")),
+            ("damper", f"c_s{axle}", _damper_travel(station, tracks, extras, wheelbase)),
             ("spring", f"k_t{axle}", kinematics.wheel(station)),
         ]
         yield Element("mass", f"m_u{axle}", kinematics.wheel(station))
@@ -212,21 +257,51 @@ def _basic_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element
                 yield Element(law, f"d_{rate.replace('_', '')}", row, side)
         if "tyre-damping" in extras:
             yield Element("damper", f"c_t{axle}", kinematics.wheel(station))
+        if "damper-mount" in extras:
+            mount = travel(station, "damper") - kinematics.behind_mount(station)
+            yield Element("spring", f"k_d{axle}", mount)
+            yield Element("damper", f"c_d{axle}", mount)
+        if "zener" in extras:
+            branch = kinematics.behind_branch(station)
+            yield Element("spring", f"k_z{axle}", travel(station, "spring") - branch)
+            yield Element("damper", f"c_z{axle}", branch)
     if "gravity" in extras:
         yield Element("spring", "w_h", kinematics.roll(), -1.0)
         yield Element("spring", "w_h", kinematics.pitch(), -1.0)
+    yield from _axle_elements(tracks, extras, wheelbase)
+
+
+def _elements_of_the_body(extras: Collection[str], wheelbase: float) -> Iterator[Element]:
+    """Yield the elements of a body that is not one rigid mass."""
     if "engine" in extras:
-        # The sprung mass and its inertias include the engine, which is taken off the body and moves by itself.
-        yield Element("mass", "m_e", kinematics.engine_bay(), -1.0)
-        yield Element("mass", "m_e", kinematics.engine())
-        yield Element("spring", "k_e", kinematics.engine_bay() - kinematics.engine())
-        yield Element("damper", "c_e", kinematics.engine_bay() - kinematics.engine())
-    yield from _axle_elements(tracks, extras)
+        yield from _attached_mass("e", kinematics.engine_bay(), kinematics.engine())
+    if "occupants" in extras:
+        yield from _attached_mass("o", kinematics.seats(), kinematics.occupants())
+    # Modal masses and rates are those for the angle between the axles and for the rise of the middle.
+    for term, mass, index, row, size in (
+        ("twist", "I_w", "w", kinematics.twist(), wheelbase**2),
+        ("bending", "m_v", "v", kinematics.bending(), kinematics.sag(wheelbase) ** 2),
+    ):
+        if term in extras:
+            yield Element("mass", mass, row, size)
+            yield Element("spring", f"k_{index}", row, size)
+            yield Element("damper", f"c_{index}", row, size)
 
 
-def _axle_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]:
+def _attached_mass(index: str, below: Row, own: Row) -> Iterator[Element]:
+    """Yield the elements of a mass on a spring and a damper of its own.
+
+    The sprung mass and its inertias include it: it is taken off the body, where it is attached, and moves by itself.
+    """
+    yield Element("mass", f"m_{index}", below, -1.0)
+    yield Element("mass", f"m_{index}", own)
+    yield Element("spring", f"k_{index}", below - own)
+    yield Element("damper", f"c_{index}", below - own)
+
+
+def _axle_elements(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Iterator[Element]:
     """Yield the elements between the two wheels of an axle."""
-    travel = _travels(tracks, extras)
+    travel = _travels(tracks, extras, wheelbase)
     for left, right in kinematics.AXLES:
         axle = left[0]
         if "anti-roll" in extras:
@@ -235,11 +310,29 @@ def _axle_elements(tracks: Tracks, extras: Collection[str]) -> Iterator[Element]
             yield Element("mass", f"m_x{axle}", kinematics.wheel(left) - kinematics.wheel(right), 0.5)
 
 
-def _elements_of_heights(heights: Heights) -> Iterator[Element]:
+def _elements_of_heights(heights: Heights, is_weighed: bool) -> Iterator[Element]:
+    """Yield what heights add to a vehicle; `is_weighed` says that the moment of its body's weight is a parameter, w_h."""
     if not heights.has_effect:
         return
+    rows, stiffness = (kinematics.roll(), kinematics.pitch()), heights.gravity_stiffness()
+    for row in rows:
+        yield Element("spring", "m_s", row, heights.sinking_stiffness if is_weighed else -stiffness)
+    if heights.is_free:
+        yield from _elements_of_lateral_motion(heights)
+        return
     yield Element("mass", "m_s", kinematics.roll(), heights.cg_arm**2)
-    for row, arm in zip((kinematics.roll(), kinematics.pitch()), heights.wheel_arms, strict=True):
-        yield Element("spring", "m_s", row, -heights.gravity_stiffness())
+    for row, arm in zip(rows, heights.wheel_arms, strict=True):
         for axle in "fr":
             yield Element("mass", f"m_u{axle}", row, 2.0 * arm**2)
+
+
+def _elements_of_lateral_motion(heights: Heights) -> Iterator[Element]:
+    """Yield the masses of a vehicle that nothing holds sideways, by their horizontal displacements."""
+    _, arm = heights.wheel_arms
+    yield Element("mass", "m_s", kinematics.forward())
+    yield Element("mass", "m_s", kinematics.sideways_at("", 0.0))
+    # The yaw inertia of a car is about that of pitch, and little follows from it: only unequal arms of the axles turn it.
+    yield Element("mass", "I_yy", kinematics.yaw())
+    for axle in "fr":
+        yield Element("mass", f"m_u{axle}", kinematics.forward(height=arm), 2.0)
+        yield Element("mass", f"m_u{axle}", kinematics.sideways_at(axle, arm), 2.0)

@@ -1,8 +1,9 @@
 """Heights: the effect of gravity and of lateral motion on roll and pitch, where heights were measured.
 
 A body that turns about an axis moves everything above or below that axis sideways, and mass that moves sideways adds to the
-roll inertia. Its centre of gravity sinks as it turns, by its height above the lateral support, which acts like a negative
-spring.
+roll inertia. Where nothing holds the vehicle sideways, it turns about the axis that leaves its momentum zero. Its centre of
+gravity sinks as it turns, by its height above the lateral support, which acts like a negative spring. A load lets the body
+rest lower, which shortens both arms.
 """
 
 from __future__ import annotations
@@ -30,12 +31,15 @@ class Heights(NamedTuple):
     carried_at
         Lateral support of the body: ``wheels``, where these slide along the body and turn with it, or ``roll axis``, where the
         ground holds the tyres and links hold the wheels.
+    sunk
+        How much lower the body rests on its wheels under a load than without it, m; the other heights are without it.
     """
 
     cg_height: float | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
     carried_at: CarriedAt = "wheels"
+    sunk: float = 0.0
 
     @property
     def by_key(self) -> dict[str, float | None]:
@@ -46,6 +50,11 @@ class Heights(NamedTuple):
     def has_effect(self) -> bool:
         """Whether roll and pitch depend on them beyond the places of loads."""
         return self.cg_height is not None and self._support is not None
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nothing holds the vehicle sideways or lengthways: the body turns about no axis that is known."""
+        return self.has_effect and self.roll_axis_height is None
 
     @property
     def is_ambiguous(self) -> bool:
@@ -62,14 +71,14 @@ class Heights(NamedTuple):
         """Height of the centre of gravity above the axis of roll, m; 0 where it is not known."""
         if self.cg_height is None or not self.has_effect or self.roll_axis_height is None:
             return 0.0
-        return self.cg_height - self.roll_axis_height
+        return self.cg_height - self.sunk - self.roll_axis_height
 
     @property
     def wheel_arms(self) -> tuple[float, float]:
         """Heights of the wheel centres above the axes of roll and pitch, m; the latter is level with the centre of gravity."""
         if self.cg_height is None or self.wheel_height is None:
             return 0.0, 0.0
-        above = self.wheel_height - self.cg_height
+        above = self.wheel_height - self.cg_height + self.sunk
         return above + self.cg_arm, above
 
     def item_arms(self, height: float) -> tuple[float, float]:
@@ -90,7 +99,12 @@ class Heights(NamedTuple):
         height, support = self.cg_height if height is None else height, self._support
         if not self.has_effect or height is None or support is None:
             return 0.0
-        return STANDARD_GRAVITY * (height - support)
+        return STANDARD_GRAVITY * (height - self.sunk - support)
+
+    @property
+    def sinking_stiffness(self) -> float:
+        """Growth of the roll and pitch stiffness, for each unit of mass on the body, as it rests lower, N m/rad per kg."""
+        return STANDARD_GRAVITY * self.sunk if self.has_effect else 0.0
 
 
 LEVEL = Heights()

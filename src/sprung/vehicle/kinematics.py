@@ -1,10 +1,14 @@
 """Rows: the displacement of an element, a load or a sensor, as a linear function of the vehicle's coordinates.
 
 Coordinates are the paper's, X = [z_s, θ, φ, z_uA, z_uB, z_uC, z_uD]: sprung-mass bounce, pitch (positive nose down),
-roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right; z_e of an engine on
-its mounts is one more, which only a vehicle with such an engine has. A row g has the displacement g·X. Every row is
-affine in the geometric parameters (a, b and the half-distances), so a row is its constant part and one slope per
-parameter; derivatives with respect to geometry need nothing else.
+roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right. A vehicle that has
+more than the paper's has further ones: first those that move a mass, as z_e of an engine on its mounts, then those without
+mass, as the travel of a damper behind a rubber mount. A body that is not rigid has its twist q_w, rad/m, and its bending
+q_v, 1/m: at x forward of the front axle and y left of the centreline it rises by y (x + L/2) q_w - x (x + L)/2 q_v with the
+wheelbase L = a + b. So θ and z_s are those of the line through both axles, and φ is the roll in the middle between them.
+
+A row g has the displacement g·X. Every row is affine in the geometric parameters (a, b and the half-distances), so a row is its
+constant part and one slope per parameter; derivatives with respect to geometry need nothing else.
 """
 
 from __future__ import annotations
@@ -13,9 +17,6 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
-
-import numpy as np
-from numpy.typing import NDArray
 
 from sprung.display import shown
 
@@ -28,16 +29,33 @@ WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
 AXLES: tuple[tuple[Wheel, Wheel], ...] = (("fl", "fr"), ("rl", "rr"))
 """Left and right wheel of each axle, front first."""
 
-COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD", "z_e")
-"""Coordinates, displacements in m and angles in rad; the last only of a vehicle whose engine moves on its mounts."""
+COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD")
+"""The paper's coordinates, displacements in m and angles in rad."""
 
 WHEELS_AT = slice(3, 7)
 """Positions of the wheels among the coordinates."""
 
-HEAVE = np.array([1.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
-"""A unit of heave: everything moving up alike, in the coordinates."""
+_LETTERS = "ABCD"
+"""Letters of the wheel stations in the paper."""
 
-_Z, _THETA, _PHI, *_WHEELS, _ENGINE = np.eye(len(COORDINATES))
+_WITH_MASS: Mapping[str, tuple[str, ...]] = {"m_e": ("z_e",), "m_o": ("z_o",), "I_w": ("q_w",), "m_v": ("q_v",)}
+"""By parameter: the coordinates with mass that a vehicle with it has beside the paper's."""
+
+_WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
+    "k_df": ("x_dA", "x_dB", "x_dC", "x_dD"),
+    "k_zf": ("x_zA", "x_zB", "x_zC", "x_zD"),
+}
+"""By parameter: the coordinates without mass, likewise: travels of dampers that a spring connects, at each wheel."""
+
+_RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e", "z_o"})
+"""Coordinates that are vertical displacements over the ground."""
+
+UNCONSTRAINED = ("x", "y", "psi")
+"""Displacement of the body's centre of gravity forward and to the left, m, and yaw angle, rad, positive to the left: no force
+of the suspension acts on them, so that they follow from the others; see `LinearModel`."""
+
+Shape = Mapping[str, float]
+"""A linear function of the coordinates: the coefficient of each, by its name."""
 
 
 @shown
@@ -48,22 +66,19 @@ class Row:
     Attributes
     ----------
     constant
-        Shape (coordinate,): the part of g that depends on no parameter.
+        The part of g that depends on no parameter, by coordinate.
     slopes
-        For each geometric parameter the change of g per metre, shape (coordinate,).
+        For each geometric parameter the change of g per metre, by coordinate.
     """
 
-    constant: NDArray[np.float64]
-    slopes: Mapping[str, NDArray[np.float64]] = field(default_factory=lambda: MappingProxyType({}))
+    constant: Shape
+    slopes: Mapping[str, Shape] = field(default_factory=lambda: MappingProxyType({}))
 
     def __sub__(self, other: Row) -> Row:
         """Return the row of the difference of two displacements."""
-        names = self.slopes.keys() | other.slopes.keys()
-        zero = np.zeros_like(self.constant)
-        return Row(
-            self.constant - other.constant,
-            {name: self.slopes.get(name, zero) - other.slopes.get(name, zero) for name in names},
-        )
+        names = list(dict.fromkeys((*self.slopes, *other.slopes)))
+        slopes = {name: _combine(self.slopes.get(name, {}), other.slopes.get(name, {}), -1.0) for name in names}
+        return Row(_combine(self.constant, other.constant, -1.0), slopes)
 
     def referred_to_front_axle(self, wheelbase: float) -> Row:
         """Return the row over coordinates with the body's vertical motion above the front axle, not at its centre of gravity.
@@ -76,11 +91,16 @@ class Row:
             a + b, m.
         """
         # z_s is z above the front axle plus a θ, and b is the wheelbase less a.
-        zero = np.zeros_like(self.constant)
-        by_b = self.slopes.get("b", zero)
-        by_a = self.slopes.get("a", zero) + self.constant[0] * _THETA - by_b
+        by_b = self.slopes.get("b", {})
+        by_a = _combine(self.slopes.get("a", {}), {"theta": self.constant.get("z_s", 0.0)})
+        by_a = {name: value for name, value in _combine(by_a, by_b, -1.0).items() if value}
         rest = {name: slope for name, slope in self.slopes.items() if name not in ("a", "b")}
-        return Row(self.constant + wheelbase * by_b, rest | ({"a": by_a} if by_a.any() else {}))
+        return Row(_combine(self.constant, by_b, wheelbase), rest | ({"a": by_a} if by_a else {}))
+
+
+def _combine(one: Shape, other: Shape, factor: float = 1.0) -> dict[str, float]:
+    """Return the sum of a linear function and a multiple of another one."""
+    return {name: one.get(name, 0.0) + factor * other.get(name, 0.0) for name in dict.fromkeys((*one, *other))}
 
 
 def coordinates(names: Collection[str]) -> tuple[str, ...]:
@@ -94,9 +114,41 @@ def coordinates(names: Collection[str]) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The paper's seven, and the engine's where it has one that moves on its mounts.
+        The paper's seven, others that move a mass, then those without mass.
     """
-    return COORDINATES if "m_e" in names else COORDINATES[:-1]
+    return (*massive_coordinates(names), *_of(_WITHOUT_MASS, names))
+
+
+def massive_coordinates(names: Collection[str]) -> tuple[str, ...]:
+    """Return the names of those coordinates of a vehicle that move a mass; `names` are its parameters."""
+    return (*COORDINATES, *_of(_WITH_MASS, names))
+
+
+def state_variables(names: Collection[str]) -> tuple[tuple[str, int], ...]:
+    """Return the layout of the state: displacements of all coordinates, then velocities of those that move a mass.
+
+    Where no mass is, the velocity follows from the displacements, and is no state of its own.
+
+    Parameters
+    ----------
+    names
+        Parameters of the vehicle.
+
+    Returns
+    -------
+    tuple of (str, int)
+        For each state variable its coordinate, and 0 for the displacement or 1 for the velocity.
+    """
+    return (*((name, 0) for name in coordinates(names)), *((name, 1) for name in massive_coordinates(names)))
+
+
+def heave(names: Collection[str]) -> tuple[float, ...]:
+    """Return a unit of heave, everything moving up alike, in the coordinates of a vehicle; `names` are its parameters."""
+    return tuple(float(name in _RISES_IN_HEAVE) for name in coordinates(names))
+
+
+def _of(table: Mapping[str, tuple[str, ...]], names: Collection[str]) -> tuple[str, ...]:
+    return tuple(coordinate for name, added in table.items() if name in names for coordinate in added)
 
 
 def body_point(x: float, y: float) -> Row:
@@ -107,28 +159,99 @@ def body_point(x: float, y: float) -> Row:
     x, y
         Position, m: forward of the front axle, left of the centreline. The centre of gravity is at x = -a.
     """
-    return Row(_Z - x * _THETA + y * _PHI, {"a": -_THETA})
+    bent = {"q_w": y / 2, "q_v": -x / 2}
+    constant = {"z_s": 1.0, "theta": -x, "phi": y, "q_w": x * y, "q_v": -x * x / 2}
+    return Row(constant, {"a": {"theta": -1.0, **bent}, "b": bent})
 
 
-def pitch() -> Row:
-    """Pitch angle of the body, rad."""
-    return Row(_THETA)
+def pitch(wheelbase: float = 0.0) -> Row:
+    """Mean pitch angle of the body, rad; of one that bends with the wheelbase, m."""
+    return Row({"theta": 1.0}, {"p_v": {"q_v": sag(wheelbase)}})
 
 
 def roll() -> Row:
-    """Roll angle of the body, rad."""
-    return Row(_PHI)
+    """Mean roll angle of the body, rad."""
+    return Row({"phi": 1.0}, {"a_w": {"q_w": 1.0}})
 
 
-def bounce(off_centre: bool = False) -> Row:
+def pitch_at(x: float) -> Row:
+    """Pitch angle of the body at x forward of the front axle, rad."""
+    return Row({"theta": 1.0, "q_v": x}, {"a": {"q_v": 0.5}, "b": {"q_v": 0.5}})
+
+
+def roll_at(x: float) -> Row:
+    """Roll angle of the body at x forward of the front axle, rad."""
+    return Row({"phi": 1.0, "q_w": x}, {"a": {"q_w": 0.5}, "b": {"q_w": 0.5}})
+
+
+def twist() -> Row:
+    """Twist of the body, rad/m."""
+    return Row({"q_w": 1.0})
+
+
+def bending() -> Row:
+    """Curvature of the bent body, 1/m: positive where its middle is up."""
+    return Row({"q_v": 1.0})
+
+
+def sag(wheelbase: float) -> float:
+    """Return the rise of the body's middle above the line through its axles by a unit of curvature, m²; wheelbase in m."""
+    return wheelbase**2 / 8
+
+
+def forward(y: float = 0.0, height: float = 0.0) -> Row:
+    """Forward displacement of a point of the body.
+
+    Parameters
+    ----------
+    y, height
+        Position, m: left of the centreline, above the centre of gravity.
+    """
+    return Row({"x": 1.0, "psi": -y, "theta": height})
+
+
+def sideways(x: float, height: float) -> Row:
+    """Displacement of a point of the body to the left.
+
+    Parameters
+    ----------
+    x, height
+        Position, m: forward of the front axle, above the centre of gravity.
+    """
+    return Row({"y": 1.0, "psi": x, "phi": -height}, {"a": {"psi": 1.0}})
+
+
+def sideways_at(axle: str, height: float) -> Row:
+    """Displacement to the left of a point of the body over an axle, or over the centre of gravity.
+
+    Parameters
+    ----------
+    axle
+        ``f``, ``r``, or nothing for the centre of gravity.
+    height
+        Above the centre of gravity, m.
+    """
+    along: dict[str, Mapping[str, Shape]] = {"f": {"a": {"psi": 1.0}}, "r": {"b": {"psi": -1.0}}}
+    return Row({"y": 1.0, "psi": 0.0, "phi": -height}, along.get(axle, {}))
+
+
+def yaw() -> Row:
+    """Yaw angle of the body, rad."""
+    return Row({"psi": 1.0})
+
+
+def bounce(off_centre: bool = False, wheelbase: float = 0.0) -> Row:
     """Vertical displacement of the sprung mass's centre of gravity.
 
     Parameters
     ----------
     off_centre
         Whether it may be y_s left of the centreline; z_s is then the displacement beside it, on the centreline.
+    wheelbase
+        Of a body that bends, m.
     """
-    return Row(_Z, {"y_s": _PHI} if off_centre else {})
+    own = {"y_s": {"phi": 1.0}} if off_centre else {}
+    return Row({"z_s": 1.0}, {**own, "b_v": {"q_v": sag(wheelbase)}})
 
 
 def side(station: Wheel) -> float:
@@ -138,10 +261,10 @@ def side(station: Wheel) -> float:
 
 def wheel(station: Wheel) -> Row:
     """Vertical displacement of one wheel."""
-    return Row(_WHEELS[WHEELS.index(station)])
+    return Row({COORDINATES[WHEELS_AT][WHEELS.index(station)]: 1.0})
 
 
-def corner(station: Wheel, half_distance: str) -> Row:
+def corner(station: Wheel, half_distance: str, wheelbase: float = 0.0) -> Row:
     """Vertical displacement of the body above one wheel, at a half-distance from the centreline which is a parameter.
 
     Parameters
@@ -150,19 +273,33 @@ def corner(station: Wheel, half_distance: str) -> Row:
         The wheel station.
     half_distance
         Name of the parameter: ``t_f2`` for the front springs.
+    wheelbase
+        Of a body that twists, m.
     """
-    along = {"a": -_THETA} if station[0] == "f" else {"b": _THETA}
-    return Row(_Z, {**along, half_distance: side(station) * _PHI})
+    own = side(station)
+    half_angle = 0.5 * wheelbase if station[0] == "f" else -0.5 * wheelbase
+    along = {"a": {"theta": -1.0}} if station[0] == "f" else {"b": {"theta": 1.0}}
+    return Row({"z_s": 1.0}, {**along, half_distance: {"phi": own, "q_w": own * half_angle}})
 
 
 def engine() -> Row:
     """Vertical displacement of an engine on its mounts."""
-    return Row(_ENGINE)
+    return Row({"z_e": 1.0})
 
 
 def engine_bay() -> Row:
     """Vertical displacement of the body at its engine mounts, on the centreline, x_e forward of the front axle."""
-    return Row(_Z, {"a": -_THETA, "x_e": -_THETA})
+    return Row({"z_s": 1.0}, {"a": {"theta": -1.0}, "x_e": {"theta": -1.0}})
+
+
+def occupants() -> Row:
+    """Vertical displacement of people on soft seats."""
+    return Row({"z_o": 1.0})
+
+
+def seats() -> Row:
+    """Vertical displacement of the body under the seats, x_o forward of the front axle and y_o left of the centreline."""
+    return Row({"z_s": 1.0}, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, "y_o": {"phi": 1.0}})
 
 
 def on_axle(station: Wheel, share: str) -> Row:
@@ -175,20 +312,35 @@ def on_axle(station: Wheel, share: str) -> Row:
     share
         Name of the parameter of its place: 0 in the middle, 1 at the wheel.
     """
+    own, other = (COORDINATES[WHEELS_AT][WHEELS.index(one)] for one in (station, _beside(station)))
+    return Row({own: 0.5, other: 0.5}, {share: {own: 0.5, other: -0.5}})
+
+
+def _beside(station: Wheel) -> Wheel:
+    """Return the other wheel of the axle."""
     left, right = AXLES["fr".index(station[0])]
-    middle = 0.5 * (wheel(left).constant + wheel(right).constant)
-    return Row(middle, {share: wheel(station).constant - middle})
+    return right if station == left else left
 
 
-def travel(station: Wheel, half_distance: str, share: str | None = None) -> Row:
+def behind_mount(station: Wheel) -> Row:
+    """Travel of the damper at one wheel that a rubber mount connects to the body."""
+    return Row({f"x_d{_LETTERS[WHEELS.index(station)]}": 1.0})
+
+
+def behind_branch(station: Wheel) -> Row:
+    """Travel of the damper in the :term:`Zener branch` at one wheel."""
+    return Row({f"x_z{_LETTERS[WHEELS.index(station)]}": 1.0})
+
+
+def travel(station: Wheel, half_distance: str, share: str | None = None, wheelbase: float = 0.0) -> Row:
     """Suspension travel at one wheel: body minus what is below it, positive in rebound.
 
     Parameters
     ----------
-    station, half_distance
+    station, half_distance, wheelbase
         As for `corner`.
     share
         As for `on_axle` where the axle is rigid; None for a wheel of its own.
     """
     below = wheel(station) if share is None else on_axle(station, share)
-    return corner(station, half_distance) - below
+    return corner(station, half_distance, wheelbase) - below

@@ -84,13 +84,16 @@ class Item:
         elif self.position is not None:
             x, y, z = self.position
             yield Element("mass", mass, kinematics.body_point(x, y))
-            for row, own, arm in zip(
-                (kinematics.roll(), kinematics.pitch()), self.inertia, heights.item_arms(z), strict=True
-            ):
+            arms, rows = heights.item_arms(z), (kinematics.roll_at(x), kinematics.pitch_at(x))
+            for row, own, arm in zip(rows, self.inertia, arms, strict=True):
                 yield Element("mass", own, row)
-                yield Element("mass", mass, row, arm**2)
+                if not heights.is_free:
+                    yield Element("mass", mass, row, arm**2)
                 if heights.has_effect:
                     yield Element("spring", mass, row, -heights.gravity_stiffness(z))
+            if heights.is_free:
+                yield Element("mass", mass, kinematics.forward(y, arms[1]))
+                yield Element("mass", mass, kinematics.sideways(x, arms[0]))
 
 
 @checked_record

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
 from sprung.vehicle.elements import Element, LinearLaw
-from sprung.vehicle.kinematics import HEAVE, Row, coordinates
+from sprung.vehicle.kinematics import UNCONSTRAINED, Row, coordinates, heave, massive_coordinates
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,15 @@ class Matrices(NamedTuple):
     Attributes
     ----------
     M, C, K
-        Mass (kg, kg m²), damping (N s/m, N s, N m s) and stiffness (N/m, N, N m), shape (..., n, n).
+        Mass (kg, kg m²), damping (N s/m, N s, N m s) and stiffness (N/m, N, N m), shape (..., n, n). The coordinates without
+        mass are the last; their rows of M are zero.
+
+    Notes
+    -----
+    The state is {X, Ẋ}, displacements of all n coordinates, then velocities of the m that move a mass: n + m numbers. The
+    highest derivatives are the accelerations of the m coordinates with mass and the velocities of the others. They follow from
+    the equations of motion, as M has no entry for the others: with L, the first m columns of M and the others of C, they are
+    -L⁻¹ (K X + C Ẋ). The poles of A are the finite eigenvalues of λ² M + λ C + K.
     """
 
     M: Array
@@ -36,18 +44,71 @@ class Matrices(NamedTuple):
 
     @property
     def state(self) -> Array:
-        """State matrix A of eq. (4), shape (..., 2n, 2n), for the state {X, Ẋ}."""
-        n = self.M.shape[-1]
-        A = np.zeros((*self.M.shape[:-2], 2 * n, 2 * n))
-        A[..., :n, n:] = np.eye(n)
-        A[..., n:, :] = -np.linalg.inv(self.M) @ np.concatenate([self.K, self.C], axis=-1)
-        return A
+        """State matrix A of eq. (4), shape (..., n + m, n + m), for the state {X, Ẋ}."""
+        forces = np.concatenate([self.K, self.C[..., : self.massive]], axis=-1)
+        return state_matrix(-np.linalg.inv(self.leading) @ forces, self.massive)
 
     @property
-    def weight(self) -> Array:
-        """Mass on each coordinate, kg, or kg m on an angle: M times a unit of heave; shape (..., n)."""
-        weight: Array = self.M @ HEAVE[: self.M.shape[-1]]
-        return weight
+    def massive(self) -> int:
+        """Number of coordinates that move a mass, m."""
+        return int(np.any(self.M, axis=tuple(range(self.M.ndim - 1))).sum())
+
+    @property
+    def leading(self) -> Array:
+        """Coefficients of the highest derivatives, L, shape (..., n, n)."""
+        m = self.massive
+        return self.M if m == self.M.shape[-1] else np.concatenate([self.M[..., :m], self.C[..., m:]], axis=-1)
+
+    def deflection(self, force: ArrayLike) -> Array:
+        """Return the displacements under constant forces, X, of the shape of the forces, (n,) or (n, force).
+
+        A coordinate without mass and without stiffness stays where it is.
+        """
+        is_free = (np.diag(self.K) == 0) & ~self.M.any(axis=0)
+        K = self.K + np.diag(is_free.astype(float))
+        return np.asarray(np.linalg.solve(K, np.asarray(force, dtype=float)), dtype=np.float64)
+
+
+def state_matrix(highest: ArrayLike, massive: int) -> Array:
+    """Return the matrix A of Ẏ = A Y from the rows of the highest derivatives.
+
+    Parameters
+    ----------
+    highest
+        Accelerations of the coordinates with mass, then velocities of the others, as functions of the state {X, Ẋ} and of any
+        inputs; shape (..., n, n + m + input).
+    massive
+        Number of coordinates that move a mass, m.
+
+    Returns
+    -------
+    ndarray
+        Shape (..., n + m, n + m + input).
+    """
+    highest = np.asarray(highest, dtype=float)
+    n = highest.shape[-2]
+    A = np.zeros((*highest.shape[:-2], n + massive, highest.shape[-1]))
+    A[..., :massive, n : n + massive] = np.eye(massive)
+    A[..., highest_derivatives(n, massive), :] = highest
+    return A
+
+
+def highest_derivatives(n: int, massive: int) -> NDArray[np.int64]:
+    """Return the positions in the state of what the highest derivatives of the coordinates are the rates of.
+
+    Parameters
+    ----------
+    n
+        Number of coordinates.
+    massive
+        How many of them, the first, move a mass.
+
+    Returns
+    -------
+    ndarray of int
+        Shape (n,).
+    """
+    return np.concatenate([np.arange(n, n + massive), np.arange(massive, n)])
 
 
 @shown
@@ -64,8 +125,17 @@ class Rows:
     affine: Array
 
     @classmethod
-    def of(cls, rows: Sequence[Row], names: Sequence[str]) -> Rows:
+    def of(cls, rows: Sequence[Row], names: Sequence[str], further: Sequence[str] = ()) -> Rows:
         """Stack rows over the coordinates and parameters of a vehicle; a slope by a name not in the list is an error.
+
+        Parameters
+        ----------
+        rows
+            Displacements.
+        names
+            The parameters.
+        further
+            Coordinates beside those that these parameters imply.
 
         Raises
         ------
@@ -73,17 +143,19 @@ class Rows:
             If a row depends on a parameter that is not listed.
         """
         index = {name: i for i, name in enumerate(names, start=1)}
-        size = len(coordinates(names))
-        affine = np.zeros((len(rows), size, 1 + len(names)))
+        position = {coordinate: i for i, coordinate in enumerate((*coordinates(names), *further))}
+        affine = np.zeros((len(rows), len(position), 1 + len(names)))
         for row, block in zip(rows, affine, strict=True):
-            block[:, 0] = row.constant[:size]
-            for name, slope in row.slopes.items():
-                block[:, index[name]] = slope[:size]
+            for name, shape in (("", row.constant), *row.slopes.items()):
+                for coordinate, value in shape.items():
+                    # Rows of sensors and loads hold whatever the body may do, also what this vehicle's does not.
+                    if coordinate in position:
+                        block[position[coordinate], index[name] if name else 0] = value
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
-        """Return the rows at parameter values of shape (..., parameter); shape (..., row, coordinate)."""
-        factors = _with_one(values)
+        """Return the rows at parameter values of shape (..., parameter), further ones ignored; shape (..., row, coordinate)."""
+        factors = _with_one(values)[..., : self.affine.shape[2]]
         rows: Array = factors @ self.affine.reshape(-1, factors.shape[-1]).T
         return rows.reshape(*factors.shape[:-1], *self.affine.shape[:2])
 
@@ -101,6 +173,11 @@ class LinearModel:
     An element adds κ g gᵀ with κ a parameter and g affine in the geometry, so every entry is a sum of products of at
     most three parameters: k_sf, k_sf a, k_sf a². Only these products, which are few, depend on the parameters; their
     coefficients are constant matrices.
+
+    Where masses also move along the coordinates `UNCONSTRAINED`, on which no force acts, their momentum along these stays zero,
+    as it is at rest before the release. With M = [[M₁₁, M₁₂], [M₂₁, M₂₂]], the second block for these, they are -M₂₂⁻¹ M₂₁ X,
+    and the mass matrix of X is the Schur complement M₁₁ - M₁₂ M₂₂⁻¹ M₂₁ (Routh's reduction of cyclic coordinates: Goldstein,
+    Classical Mechanics, section 8.3).
 
     Attributes
     ----------
@@ -138,30 +215,34 @@ class LinearModel:
             If an element needs a parameter that is not listed.
         """
         index = {name: i for i, name in enumerate(names, start=1)}
-        terms: dict[tuple[int, ...], Array] = {}
-        rows = Rows.of([element.row for element in elements], names).affine
-        shape_of_term = (len(LINEAR_LAWS), rows.shape[1], rows.shape[1])
-        for element, row in zip(elements, rows, strict=True):
-            named = isinstance(element.coefficient, str)
-            kappa, size = (index[str(element.coefficient)], 1.0) if named else (0, float(element.coefficient))
-            size *= element.factor
-            factors = np.flatnonzero(row.any(axis=0))
-            parts = size * row.T[factors]
-            squares = parts[:, None, :, None] * row.T[factors][None, :, None, :]
-            law = LINEAR_LAWS.index(element.law)
-            for first, products_of_first in zip(factors.tolist(), squares, strict=True):
-                for second, square in zip(factors.tolist(), products_of_first, strict=True):
-                    key = tuple(sorted((kappa, first, second)))
-                    if key not in terms:
-                        terms[key] = np.zeros(shape_of_term)
-                    terms[key][law] += square
-        kept = {key: term for key, term in terms.items() if term.any()}
-        shape = (len(kept), *shape_of_term)
-        products, constants = (
-            np.array(list(kept), dtype=np.int64).reshape(-1, 3),
-            np.array(list(kept.values())).reshape(shape),
-        )
-        return cls(tuple(names), products, constants, tuple(elements))
+        coefficients = [
+            (index[one.coefficient], one.factor)
+            if isinstance(one.coefficient, str)
+            else (0, one.coefficient * one.factor)
+            for one in elements
+        ]
+        kappa, size = np.array(coefficients, dtype=float).reshape(-1, 2).T
+        laws = np.array([LINEAR_LAWS.index(one.law) for one in elements], dtype=np.int64)
+        used = {coordinate for one in elements for coordinate in one.row.constant}
+        further = UNCONSTRAINED if used.intersection(UNCONSTRAINED) else ()
+        rows = Rows.of([one.row for one in elements], names, further).affine
+        n, base = rows.shape[1], 1 + len(names)
+        # Every pair of an element's factors, the constant among them, is a part of κ g gᵀ.
+        owner, factor = np.nonzero(rows.any(axis=1))
+        first, second = np.nonzero(owner[:, None] == owner)
+        own = owner[first]
+        squares = (size[own, None] * rows[own, :, factor[first]])[:, :, None] * rows[own, :, factor[second]][:, None]
+        keys = np.sort([kappa[own].astype(np.int64), factor[first], factor[second]], axis=0)
+        code = np.ravel_multi_index((*keys, laws[own]), (base, base, base, len(LINEAR_LAWS)))
+        order = np.argsort(code, kind="stable")
+        codes, begins = np.unique(code[order], return_index=True)
+        by_law = np.add.reduceat(squares[order], begins) if codes.size else squares
+        products, which = np.unique(codes // len(LINEAR_LAWS), return_inverse=True)
+        terms = np.zeros((len(products), len(LINEAR_LAWS), n, n))
+        terms[which, codes % len(LINEAR_LAWS)] = by_law
+        kept = terms.any(axis=(1, 2, 3))
+        products = np.stack(np.unravel_index(products[kept], (base, base, base)), axis=1)
+        return cls(tuple(names), products, terms[kept], tuple(elements))
 
     def with_known(self, known: Mapping[str, float]) -> LinearModel:
         """Return the model in which some parameters that multiply elements are known numbers, SI by name."""
@@ -189,9 +270,11 @@ class LinearModel:
 
     def matrices(self, values: ArrayLike) -> Matrices:
         """Return M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
-        factors = _with_one(values)[..., self.products]
-        flat = factors.prod(axis=-1) @ self._flat
-        return Matrices(*np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0))
+        M, C, K = self._all_matrices(values)
+        if not self.is_reduced:
+            return Matrices(M, C, K)
+        T, n = self._reduction(M), self.size
+        return Matrices(np.swapaxes(T, -1, -2) @ M @ T, C[..., :n, :n], K[..., :n, :n])
 
     def slopes(self, values: ArrayLike) -> Matrices:
         """Return the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n)."""
@@ -199,23 +282,78 @@ class LinearModel:
         others = np.array([second * third, first * third, first * second])
         changes = np.einsum("ik,ikp->pk", others, self._factors)
         flat = changes @ self._flat
-        return Matrices(*np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0))
+        dM, dC, dK = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
+        if not self.is_reduced:
+            return Matrices(dM, dC, dK)
+        # The derivative of the Schur complement is Tᵀ dM T: that of T is multiplied by momenta, which are zero.
+        T, n = self._reduction(self._all_matrices(values)[0]), self.size
+        return Matrices(np.swapaxes(T, -1, -2) @ dM @ T, dC[..., :n, :n], dK[..., :n, :n])
+
+    @cached_property
+    def size(self) -> int:
+        """Number of coordinates, n, without those on which no force acts."""
+        return len(coordinates(self.names))
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether masses also move along coordinates on which no force acts."""
+        return int(self.terms.shape[-1]) > self.size
+
+    def unconstrained_motion(self, values: ArrayLike) -> Array:
+        """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); 0 where no mass moves along them."""
+        if not self.is_reduced:
+            return np.zeros((len(UNCONSTRAINED), self.size))
+        return self._reduction(self._all_matrices(values)[0])[self.size :]
+
+    def _all_matrices(self, values: ArrayLike) -> Array:
+        """Return M, C and K over all coordinates, also those on which no force acts; shape (3, ..., all, all)."""
+        factors = _with_one(values)[..., self.products]
+        flat = factors.prod(axis=-1) @ self._flat
+        return np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
+
+    def _reduction(self, M: Array) -> Array:
+        """Return all coordinates as functions of those on which forces act, T, shape (..., all, n)."""
+        T = np.zeros((*M.shape[:-1], self.size))
+        T[..., : self.size, :] = np.eye(self.size)
+        # A load alone may have no mass along one of them, hence the pseudoinverse.
+        inverse = np.linalg.pinv(M[..., self.size :, self.size :], hermitian=True)
+        T[..., self.size :, :] = -inverse @ M[..., self.size :, : self.size]
+        return T
 
     def accelerations(self, values: ArrayLike) -> tuple[Array, Array]:
-        """Return the lower half of the state matrix of eq. (4) and its derivatives.
+        """Return the highest derivatives as functions of the state {X, Ẋ}, and their derivatives; see `Matrices`.
 
         Returns
         -------
-        lower
-            [-M⁻¹K, -M⁻¹C], shape (n, 2n): accelerations from {X, Ẋ}.
+        highest
+            Accelerations of the coordinates with mass, then velocities of the others, shape (n, n + m): the lower half of the
+            state matrix of eq. (4), [-M⁻¹K, -M⁻¹C], where all have mass.
         slopes
-            Its derivative by each parameter, shape (parameter, n, 2n).
+            Its derivative by each parameter, shape (parameter, n, n + m).
         """
         M, C, K = self.matrices(values)
         dM, dC, dK = self.slopes(values)
-        lower: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C])), dtype=float)
-        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ lower + np.concatenate([dK, dC], axis=2)), dtype=float)
-        return lower, slopes
+        m = self.massive
+        leading = np.hstack([M[:, :m], C[:, m:]])
+        by_leading = np.concatenate([dM[..., :m], dC[..., m:]], axis=2)
+        highest: Array = -np.asarray(np.linalg.solve(leading, np.hstack([K, C[:, :m]])), dtype=float)
+        right = by_leading @ highest + np.concatenate([dK, dC[..., :m]], axis=2)
+        slopes: Array = -np.asarray(np.linalg.solve(leading, right), dtype=float)
+        return highest, slopes
+
+    def velocities(self, values: ArrayLike) -> Array:
+        """Return the velocities of all coordinates as functions of the state {X, Ẋ}, shape (n, n + m)."""
+        return state_matrix(self.accelerations(values)[0], self.massive)[: len(self.heave)]
+
+    @cached_property
+    def massive(self) -> int:
+        """Number of coordinates that move a mass, m; they are the first."""
+        return len(massive_coordinates(self.names))
+
+    @cached_property
+    def heave(self) -> Array:
+        """A unit of heave: everything moving up alike, in the coordinates; M times this is the weight over gravity, (n,)."""
+        return np.array(heave(self.names))
 
     @cached_property
     def _flat(self) -> Array:

@@ -19,91 +19,166 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.elements import Element, NonlinearElement
 from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
-from sprung.vehicle.kinematics import coordinates
+from sprung.vehicle.kinematics import state_variables
 from sprung.vehicle.load import EMPTY, Load
-from sprung.vehicle.model import LinearModel, Matrices, Rows
+from sprung.vehicle.model import LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
+class CompiledLaw(NamedTuple):
+    """Elements of one law, one for each of some rows.
+
+    Attributes
+    ----------
+    law
+        Their force law.
+    rows
+        Rows on which they act, a slice where these are adjacent.
+    memories
+        Their memories among those of all elements, empty where the law has none.
+    positions
+        Positions of the law's parameters in the list, shape (parameter, element).
+    """
+
+    law: ForceLaw
+    rows: slice | Index
+    memories: slice
+    positions: Index
+
+
 class NonlinearForces(NamedTuple):
-    """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,); those of one law adjacent.
+    """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,).
+
+    Elements that act on the same row are evaluated together: their forces add up to one force of the row.
 
     Attributes
     ----------
     rows
-        Row of the travel of each element.
+        The different rows of the elements' travels.
     laws
-        Each law, the slice of its elements, and the positions of their parameters in the list, shape (parameter, element).
-    with_memory
-        Positions of the elements that have a memory, in the order of the memories, shape (memory,).
+        Elements by law.
+    memory_rows
+        Row of each memory, shape (memory,).
     weightless
-        1 for elements whose travel counts from the empty vehicle without gravity, else 0; dimensionless, shape (element,).
+        1 for rows whose travel counts from the empty vehicle without gravity, else 0; dimensionless, shape (row,).
     """
 
     rows: Rows
-    laws: tuple[tuple[ForceLaw, slice, Index], ...]
-    with_memory: Index
+    laws: tuple[CompiledLaw, ...]
+    memory_rows: Index
     weightless: Array
 
     @classmethod
     def of(cls, elements: Sequence[NonlinearElement], names: Sequence[str]) -> NonlinearForces:
         """Compile nonlinear elements over a list of parameter names."""
-        laws = list({element.law.name: element.law for element in elements}.values())
-        ordered = [element for law in laws for element in elements if element.law.name == law.name]
-        compiled = []
-        for law in laws:
-            chosen = [i for i, element in enumerate(ordered) if element.law.name == law.name]
-            positions = np.array([[names.index(name) for name in ordered[i].parameters] for i in chosen]).T
-            compiled.append((law, slice(chosen[0], chosen[-1] + 1), positions))
-        with_memory = np.array([i for i, element in enumerate(ordered) if element.law.has_memory], dtype=np.int64)
-        weightless = np.array([float(element.weightless) for element in ordered])
-        return cls(Rows.of([element.row for element in ordered], names), tuple(compiled), with_memory, weightless)
+        by_law: dict[str, list[NonlinearElement]] = {}
+        for element in elements:
+            by_law.setdefault(element.law.name, []).append(element)
+        distinct: dict[tuple[bytes, bool], NonlinearElement] = {}
+        laws, memory_rows = [], list[int]()
+        for alike in by_law.values():
+            at = []
+            for element in alike:
+                compiled = Rows.of([element.row], names)
+                key = ((compiled.affine + 0.0).tobytes(), element.weightless)
+                distinct.setdefault(key, element)
+                at.append(list(distinct).index(key))
+            law, first = alike[0].law, len(memory_rows)
+            memory_rows += at * law.has_memory
+            positions = np.array([[names.index(name) for name in element.parameters] for element in alike]).T
+            laws.append(CompiledLaw(law, _adjacent(at), slice(first, len(memory_rows)), positions))
+        rows = Rows.of([element.row for element in distinct.values()], names)
+        weightless = np.array([float(element.weightless) for element in distinct.values()])
+        return cls(rows, tuple(laws), np.array(memory_rows, dtype=np.int64), weightless)
 
     @property
     def number(self) -> int:
-        """Number of elements."""
+        """Number of rows."""
         return len(self.rows.affine)
 
-    def evaluate(self, values: Array, given: ElementInput) -> ElementForce:
-        """Return all forces.
+    @property
+    def memories(self) -> int:
+        """Number of memories."""
+        return len(self.memory_rows)
+
+    def parameters(self, values: Array) -> tuple[Array, ...]:
+        """Return the parameters of each law, shape (parameter, element), from all parameters, SI, shape (parameter,)."""
+        return tuple(values[law.positions] for law in self.laws)
+
+    def evaluate(self, parameters: Sequence[Array], given: ElementInput) -> ElementForce:
+        """Return the force of each row.
 
         Parameters
         ----------
-        values
-            Parameters, SI, shape (parameter,).
+        parameters
+            Of each law, as from `parameters`.
         given
-            Input, of shape (..., element).
+            Input by row, shape (..., row), and memories, shape (..., memory).
+
+        Returns
+        -------
+        ElementForce
+            By row; what concerns a memory has the shape (..., memory), with the derivative of the row's force by it.
         """
-        parts = [law.evaluate(values[positions], _part(given, chosen)) for law, chosen, positions in self.laws]
-        if len(parts) == 1:
+        parts = [
+            law.evaluate(own_parameters, self._part(given, law, at, own))
+            for (law, at, own, _), own_parameters in zip(self.laws, parameters, strict=True)
+        ]
+        if len(parts) == 1 and self.memories:
             return parts[0]
-        return ElementForce(*(np.concatenate(part, axis=-1) for part in zip(*parts, strict=True)))
+        force, by_travel, by_rate = np.zeros((3, *given.travel.shape))
+        memory, by_memory, memory_by_travel, memory_by_memory = np.empty((4, *given.memory.shape))
+        for part, (law, at, own, _) in zip(parts, self.laws, strict=True):
+            force[..., at] += part.force
+            by_travel[..., at] += part.by_travel
+            by_rate[..., at] += part.by_rate
+            if law.has_memory:
+                memory[..., own], by_memory[..., own] = part.memory, part.by_memory
+                memory_by_travel[..., own], memory_by_memory[..., own] = part.memory_by_travel, part.memory_by_memory
+        return ElementForce(force, memory, by_travel, by_rate, by_memory, memory_by_travel, memory_by_memory)
 
     def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
-        """Return the derivatives of forces and of memories by the parameters, each of shape (..., element, parameter).
+        """Return the derivatives of forces and of memories by the parameters.
 
         Parameters
         ----------
         values
             Parameters, SI, shape (parameter,).
         given
-            Input, of shape (..., element).
+            Input by row, shape (..., row), and memories, shape (..., memory).
+
+        Returns
+        -------
+        force, memory
+            Shapes (..., row, parameter) and (..., memory, parameter).
         """
         force = np.zeros((*given.travel.shape, len(values)))
-        memory = np.zeros_like(force)
-        for law, chosen, positions in self.laws:
-            of_force, of_memory = law.differentiate(values[positions], _part(given, chosen))
+        memory = np.zeros((*given.memory.shape, len(values)))
+        for law, at, own, positions in self.laws:
+            of_force, of_memory = law.differentiate(values[positions], self._part(given, law, at, own))
+            row_of = np.arange(self.number)[at].tolist()
             for which, row in enumerate(positions):
                 for column, position in enumerate(row.tolist()):
-                    force[..., chosen.start + column, position] += of_force[which][..., column]
-                    memory[..., chosen.start + column, position] += of_memory[which][..., column]
+                    force[..., row_of[column], position] += of_force[which][..., column]
+                    if law.has_memory:
+                        memory[..., own.start + column, position] += of_memory[which][..., column]
         return force, memory
 
+    @staticmethod
+    def _part(given: ElementInput, law: ForceLaw, at: slice | Index, own: slice) -> ElementInput:
+        travel, rate, increment = given.travel[..., at], given.rate[..., at], given.increment[..., at]
+        return ElementInput(travel, rate, increment, given.memory[..., own] if law.has_memory else _NO_MEMORY)
 
-def _part(given: ElementInput, chosen: slice) -> ElementInput:
-    return ElementInput(*(values[..., chosen] for values in given))
+
+def _adjacent(positions: Sequence[int]) -> slice | Index:
+    """Return positions as a slice where they are adjacent: a view costs less than a copy."""
+    first, last = positions[0], positions[-1] + 1
+    return slice(first, last) if list(positions) == list(range(first, last)) else np.array(positions)
+
+
+_NO_MEMORY = np.zeros(1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,54 +225,84 @@ class NonlinearModel:
     @property
     def state_size(self) -> int:
         """Length of the state {X, Ẋ}."""
-        return 2 * len(coordinates(self.names))
+        return len(state_variables(self.names))
 
     def sag(self, values: Array) -> Array:
         """Return the static deflection by the load's weight, without the nonlinear elements: X, shape (coordinate,)."""
-        weight = self.load.matrices(values).weight * self.gravity
-        return -np.asarray(np.linalg.solve(self.linear.matrices(values).K, weight), dtype=np.float64)
+        weight = self.load.matrices(values).M @ self.linear.heave * self.gravity
+        return -self.linear.matrices(values).deflection(weight)
 
     def travel_offsets(self, values: Array) -> tuple[Array, Array]:
-        """Return the travel of each element where the empty vehicle rests, m, and its derivatives.
+        """Return the travel of each row where the empty vehicle rests, m, and its derivatives.
 
         Returns
         -------
         offsets
-            Zero but for elements whose travel counts from the vehicle without gravity; shape (element,).
+            Zero but for rows whose travel counts from the vehicle without gravity; shape (row,).
         slopes
-            By each parameter, shape (element, parameter).
+            By each parameter, shape (row, parameter).
         """
         M, C, K = (
             loaded - load for loaded, load in zip(self.linear.matrices(values), self.load.matrices(values), strict=True)
         )
-        dM, dC, dK = (
+        dM, _, dK = (
             loaded - load for loaded, load in zip(self.linear.slopes(values), self.load.slopes(values), strict=True)
         )
-        empty, slopes = Matrices(M, C, K), Matrices(dM, dC, dK)
-        sag = -np.linalg.solve(empty.K, empty.weight * self.gravity)
-        sag_slopes = -np.linalg.solve(empty.K, (slopes.weight * self.gravity + slopes.K @ sag).T)
+        empty, gravity = Matrices(M, C, K), self.linear.heave * self.gravity
+        sag = -empty.deflection(M @ gravity)
+        sag_slopes = -empty.deflection((dM @ gravity + dK @ sag).T)
         G, row_slopes, weightless = self.forces.rows.at(values), self.forces.rows.slopes, self.forces.weightless
         return weightless * (G @ sag), weightless[:, None] * (row_slopes @ sag + G @ sag_slopes)
 
     def accelerations(self, values: Array) -> tuple[Array, Array]:
-        """Return the accelerations as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
+        """Return the highest derivatives as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
 
         Returns
         -------
         rows
-            Shape (n, 2n + element + 1) with n coordinates.
+            Accelerations of the m coordinates with mass, then velocities of the others, shape (n, n + m + row + 1) with n
+            coordinates.
         slopes
-            By each parameter, shape (parameter, n, 2n + element + 1).
+            By each parameter, shape (parameter, n, n + m + row + 1).
         """
         M, C, K = self.linear.matrices(values)
         dM, dC, dK = self.linear.slopes(values)
-        weight = self.load.matrices(values).weight * self.gravity
-        weight_slopes = self.load.slopes(values).weight * self.gravity
+        m, gravity = self.linear.massive, self.linear.heave * self.gravity
+        leading = np.hstack([M[:, :m], C[:, m:]])
+        by_leading = np.concatenate([dM[..., :m], dC[..., m:]], axis=2)
+        weight, weight_slopes = self.load.matrices(values).M @ gravity, self.load.slopes(values).M @ gravity
         G = self.forces.rows.at(values)
         G_slopes = np.moveaxis(self.forces.rows.slopes, 1, 0)
-        rows: Array = -np.asarray(np.linalg.solve(M, np.hstack([K, C, G.T, weight[:, None]])), dtype=float)
-        right = np.concatenate([dK, dC, np.swapaxes(G_slopes, 1, 2), weight_slopes[:, :, None]], axis=2)
-        slopes: Array = -np.asarray(np.linalg.solve(M, dM @ rows + right), dtype=float)
+        inputs = np.hstack([K, C[:, :m], G.T, weight[:, None]])
+        rows: Array = -np.asarray(np.linalg.solve(leading, inputs), dtype=float)
+        right = np.concatenate([dK, dC[..., :m], np.swapaxes(G_slopes, 1, 2), weight_slopes[:, :, None]], axis=2)
+        slopes: Array = -np.asarray(np.linalg.solve(leading, by_leading @ rows + right), dtype=float)
+        return rows, slopes
+
+    def element_inputs(self, values: Array) -> tuple[Array, Array]:
+        """Return travels and rates of all rows as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
+
+        Returns
+        -------
+        rows
+            First the travels, then the rates; shape (2 row, state + row + 1).
+        slopes
+            By each parameter, shape (parameter, 2 row, state + row + 1).
+        """
+        G, G_slopes = self.forces.rows.at(values), np.moveaxis(self.forces.rows.slopes, 1, 0)
+        offsets, offset_slopes = self.travel_offsets(values)
+        (number, n), m = G.shape, self.linear.massive
+        # The velocities of coordinates without mass follow from displacements and forces.
+        highest, highest_slopes = self.accelerations(values)
+        velocities, velocity_slopes = np.zeros_like(highest), np.zeros_like(highest_slopes)
+        velocities[:m, n : n + m] = np.eye(m)
+        velocities[m:], velocity_slopes[:, m:] = highest[m:], highest_slopes[:, m:]
+        rows = np.zeros((2 * number, highest.shape[1]))
+        slopes = np.zeros((len(values), *rows.shape))
+        for whole, part, offset in ((rows, G, offsets), (slopes, G_slopes, offset_slopes.T)):
+            whole[..., :number, :n] = part
+            whole[..., :number, -1] = offset
+        rows[number:], slopes[:, number:] = G @ velocities, G_slopes @ velocities + G @ velocity_slopes
         return rows, slopes
 
     def step(self, values: Array, length: float) -> tuple[Array, Array]:
@@ -214,27 +319,26 @@ class NonlinearModel:
         -------
         step
             [Φ, B, B', d]: the state at the end is Φ x + B u + B' u' + d, from the state x at the start and the forces u at the
-            start and u' at the end; shape (2n, 2n + 2 element + 1) with n coordinates.
+            start and u' at the end; shape (state, state + 2 row + 1).
         slopes
-            By each parameter, shape (parameter, 2n, 2n + 2 element + 1).
+            By each parameter, shape (parameter, state, state + 2 row + 1).
         """
         rows, slopes = self.accelerations(values)
-        n = len(rows)
-        inputs = rows.shape[1] - 2 * n
-        held, size = 2 * n + inputs, 2 * (n + inputs)
+        state = self.state_size
+        inputs = rows.shape[1] - state
+        held, size = state + inputs, state + 2 * inputs
         # The inputs run linearly over the step: their increments over it are states of their own.
         generator = np.zeros((size, size))
-        generator[:n, n : 2 * n] = length * np.eye(n)
-        generator[n : 2 * n, :held] = length * rows
-        generator[2 * n : held, held:] = np.eye(inputs)
+        generator[:state, :held] = length * state_matrix(rows, self.linear.massive)
+        generator[state:held, held:] = np.eye(inputs)
         change = np.zeros((len(slopes), size, size))
-        change[:, n : 2 * n, :held] = length * slopes
+        change[:, highest_derivatives(len(rows), self.linear.massive), :held] = length * slopes
         # The exponential of [[Z, dZ], [0, Z]] holds that of Z and its derivative (Van Loan, IEEE TAC 23, 1978).
         block = np.zeros((len(slopes), 2 * size, 2 * size))
         block[:, :size, :size] = block[:, size:, size:] = generator
         block[:, :size, size:] = change
         exponential = np.asarray(expm(block))
-        return _as_step(exponential[0, : 2 * n, :size]), _as_step(exponential[:, : 2 * n, size:])
+        return _as_step(exponential[0, :state, :size]), _as_step(exponential[:, :state, size:])
 
 
 def _as_step(rows: Array) -> Array:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from typing import NamedTuple
+from functools import cache
+from typing import Literal, NamedTuple
 
 from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
 
@@ -21,18 +23,51 @@ class Parameter(NamedTuple):
     """Whether it must be positive; the others may be zero."""
     signed: bool = False
     """Whether it may be negative."""
+    vanishes_at_infinity: bool = False
+    """Whether the effect of its term vanishes where it is infinite: the rate of a spring in series, or a modal mass."""
 
 
 LOAD_MASS = "mass of "
 """First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
 
 
+class SensorUnknown(NamedTuple):
+    """What is uncertain of a sensor, and an unknown of a fit."""
+
+    quantity: Literal["gain", "x", "y", "delay"]
+    """In results."""
+    unit: str
+    """SI."""
+    meaning: str
+    """In words."""
+
+    @property
+    def prefix(self) -> str:
+        """First words of its name among the parameters of a fit, which the name of the channel follows."""
+        return f"{self.quantity} of "
+
+
+SENSOR_GAIN = SensorUnknown("gain", "1", "part by which a channel reads too much")
+"""The gain of a sensor."""
+SENSOR_X = SensorUnknown("x", "m", "how much further forward than stated a body sensor sits")
+"""The place of a sensor along the vehicle."""
+SENSOR_Y = SensorUnknown("y", "m", "how much further left than stated a body sensor sits")
+"""The place of a sensor across the vehicle."""
+SENSOR_DELAY = SensorUnknown("delay", "s", "how much later than the other channels a channel is")
+"""The delay of a sensor."""
+SENSOR_UNKNOWNS = (SENSOR_GAIN, SENSOR_X, SENSOR_Y, SENSOR_DELAY)
+"""What may be uncertain of a sensor."""
+
+
 class _Parameters(dict[str, Parameter]):
-    """The parameters by name; a name that begins with `LOAD_MASS` is the mass of a load, which each campaign names itself."""
+    """The parameters by name; masses of loads and unknowns of sensors have names of which only the first words are fixed."""
 
     def __missing__(self, name: str) -> Parameter:
         if name.startswith(LOAD_MASS):
             return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
+        for unknown in SENSOR_UNKNOWNS:
+            if name.startswith(unknown.prefix):
+                return Parameter(unknown.unit, unknown.meaning, False, False, True)
         raise KeyError(name)
 
 
@@ -103,17 +138,81 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "k_e": Parameter("N/m", "engine mounts, all together", True),
         "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
         "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
+        "k_df": Parameter(
+            "N/m",
+            "rate of the rubber mount in series with the damper, each front wheel",
+            True,
+            vanishes_at_infinity=True,
+        ),
+        "k_dr": Parameter(
+            "N/m",
+            "rate of the rubber mount in series with the damper, each rear wheel",
+            True,
+            vanishes_at_infinity=True,
+        ),
+        "c_df": Parameter("N s/m", "damping of the rubber mount of the damper, each front wheel", True, False),
+        "c_dr": Parameter("N s/m", "damping of the rubber mount of the damper, each rear wheel", True, False),
+        "k_zf": Parameter("N/m", "spring rate that relaxes, beside the spring of each front wheel", True, False),
+        "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
+        "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
+        "c_zr": Parameter("N s/m", "damping in series with the relaxing spring rate, each rear wheel", True),
+        "I_w": Parameter(
+            "kg m^2",
+            "modal inertia of the body's twist, for the angle between the axles",
+            True,
+            vanishes_at_infinity=True,
+        ),
+        "k_w": Parameter("N m", "stiffness of the body's twist, for the angle between the axles", True),
+        "c_w": Parameter("N m s", "damping of the body's twist, for the angle between the axles", True),
+        "a_w": Parameter("m", "node of the body's twist, ahead of the middle between the axles", False, False, True),
+        "m_v": Parameter(
+            "kg",
+            "modal mass of the body's bending, for the rise of its middle above its axles",
+            True,
+            vanishes_at_infinity=True,
+        ),
+        "k_v": Parameter("N/m", "stiffness of the body's bending, for the rise of its middle above its axles", True),
+        "c_v": Parameter("N s/m", "damping of the body's bending, for the rise of its middle above its axles", True),
+        "b_v": Parameter(
+            "1",
+            "rise of the centre of gravity as the body bends, over that of the middle above its axles",
+            False,
+            False,
+            True,
+        ),
+        "p_v": Parameter(
+            "1/m", "mean pitch of the body as it bends, over the rise of its middle above its axles", False, False, True
+        ),
+        "m_o": Parameter("kg", "people on soft seats, a part of the sprung mass", True, False),
+        "k_o": Parameter("N/m", "seats of these people, all together", True),
+        "c_o": Parameter("N s/m", "damping of the seats of these people, all together", True, False),
+        "x_o": Parameter("m", "people on soft seats, forward of the front axle", False, False, True),
+        "y_o": Parameter("m", "people on soft seats, left of the centreline", False, False, True),
         "F_f": Parameter("N", "dry friction, each front wheel", True, False),
         "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
         "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
         "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
         "r_f": Parameter("1", "rebound damping over compression damping, front", False),
         "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
+        "v_kf": Parameter("m/s", "velocity at which the curve of the front dampers has its knee", False),
+        "v_kr": Parameter("m/s", "velocity at which the curve of the rear dampers has its knee", False),
+        "q_f": Parameter("1", "damping beyond the knee over that before it, front", False),
+        "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
+        "w_kf": Parameter("m/s", "half the width over which the knee of the front dampers is rounded", False, False),
+        "w_kr": Parameter("m/s", "half the width over which the knee of the rear dampers is rounded", False, False),
         "p_f": Parameter(
             "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
         ),
         "p_r": Parameter(
             "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
+        ),
+        "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
+        "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
+        "h_tf": Parameter(
+            "1/m", "growth of the front tyre rate with compression, as a part of it per metre", False, False, True
+        ),
+        "h_tr": Parameter(
+            "1/m", "growth of the rear tyre rate with compression, as a part of it per metre", False, False, True
         ),
         "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
         "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
@@ -128,26 +227,41 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "tyre-damping": ("c_tf", "c_tr"),
     "gravity": ("w_h",),
     "engine": ("m_e", "k_e", "c_e", "x_e"),
+    "damper-mount": ("k_df", "k_dr", "c_df", "c_dr"),
+    "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
+    "twist": ("I_w", "k_w", "c_w", "a_w"),
+    "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
+    "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
+    "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
+    "rounded-knee": ("w_kf", "w_kr"),
     "progressive": ("p_f", "p_r"),
+    "air": ("e_f", "e_r"),
+    "tyre-curve": ("h_tf", "h_tr"),
     "bump-stop": ("k_bf", "k_br", "x_bf", "x_br"),
     "asymmetry": ("y_s", "d_ksf", "d_ksr", "d_ktf", "d_ktr", "d_csf", "d_csr"),
     "rigid-axle": ("n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2", "m_xf", "m_xr"),
 }
 """The parameters that each extra may add; see `parameters_of_term`."""
 
-_INDIFFERENT = frozenset({"s_f", "s_r", "x_bf", "x_br", "k_e", "c_e", "x_e"})
+_INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"}) | {
+    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_df", "c_dr"
+}  # fmt: skip
 """Parameters of extras without effect where the others of the extra are neutral."""
 
-_FACTORS = frozenset({"r_f", "r_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
+_FACTORS = frozenset({"r_f", "r_r", "q_f", "q_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
 
 NEUTRAL: Mapping[str, float] = {
-    name: float(name in _FACTORS) for names in EXTRA_PARAMETERS.values() for name in names if name not in _INDIFFERENT
+    name: math.inf if PARAMETERS[name].vanishes_at_infinity else float(name in _FACTORS)
+    for names in EXTRA_PARAMETERS.values()
+    for name in names
+    if name not in _INDIFFERENT
 }
 """Values with which an extra has no effect; the others of its parameters then have none either."""
 
 
+@cache
 def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> tuple[str, ...]:
     """Return the names of the parameters of a model, in the order of `PARAMETERS`.
 
@@ -188,6 +302,37 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
     return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
 
 
+def is_of_sensor(name: str) -> bool:
+    """Whether a parameter is an unknown of a sensor.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    bool
+    """
+    return name.startswith(tuple(unknown.prefix for unknown in SENSOR_UNKNOWNS))
+
+
+def is_nuisance(name: str) -> bool:
+    """Whether a parameter belongs to a load or to a sensor, not to the vehicle.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    bool
+    """
+    return name.startswith(LOAD_MASS) or is_of_sensor(name)
+
+
+@cache
 def separate_track_names(name: str) -> tuple[str, ...]:
     """Return the names of a parameter in a model with separate half-distances of springs and dampers.
 

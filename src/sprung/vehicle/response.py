@@ -30,6 +30,12 @@ class Motion(NamedTuple):
     velocity: Array
     acceleration: Array
 
+    @classmethod
+    def of_states(cls, A: Array, states: Array, coordinates: int) -> Motion:
+        """Return the motion of states {X, Ẋ} of n coordinates, shape (state, time), whose rate is A times them."""
+        rates = A @ states
+        return cls(states[:coordinates], rates[:coordinates], (A @ rates)[:coordinates])
+
 
 def affine_response(A: ArrayLike, constant: ArrayLike, state: ArrayLike, step: float, samples: int) -> Array:
     """Solve Ẏ = A Y + constant at equal steps, exactly.
@@ -74,7 +80,7 @@ def free_decay(matrices: Matrices, state: ArrayLike, step: float, samples: int) 
     matrices
         M, C and K.
     state
-        {X, Ẋ} at the first sample, shape (2n,) with n coordinates, m, rad, m/s, rad/s.
+        {X, Ẋ} at the first sample, shape (n + m,): velocities of the m coordinates with mass; m, rad, m/s, rad/s.
     step
         Sampling interval, s.
     samples
@@ -91,6 +97,5 @@ def free_decay(matrices: Matrices, state: ArrayLike, step: float, samples: int) 
     >>> bool(np.isclose(free_decay(unit, np.eye(14)[0], 0.25, 5).displacement[0, 4], 1.0))
     True
     """
-    A, n = matrices.state, len(matrices.M)
-    states = affine_response(A, np.zeros(2 * n), state, step, samples)
-    return Motion(states[:n], states[n:], (A @ states)[n:])
+    A = matrices.state
+    return Motion.of_states(A, affine_response(A, np.zeros(len(A)), state, step, samples), len(matrices.M))

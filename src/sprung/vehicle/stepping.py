@@ -1,13 +1,12 @@
-"""Time stepping: many motions of a vehicle with nonlinear elements at once, and their sensitivities.
+"""Time stepping: many motions of a vehicle with nonlinear elements at once.
 
-The motions themselves are followed step by step, all drops side by side. Once they are known, a step maps a small change of
-its start to one of its end by a matrix for each step and drop. These matrices are computed for many steps at once, and
-following the sensitivities takes one product of matrices per step.
+The linear vehicle is stepped exactly, the forces of the nonlinear elements being its inputs, and these depend on few
+displacements. So a step of all motions is one product of matrices, and an evaluation of the force laws at its end.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -21,11 +20,11 @@ from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_CORRECTIONS = 3
-"""Evaluations of the forces at the end of each step: they depend little on their own effect within the step."""
+_MOST_EVALUATIONS = 12
+"""Evaluations of the forces at the end of each step, at the most: mostly two are enough."""
 
-_CHUNK = 128
-"""Steps whose matrices are computed at once: they fit into a processor's cache."""
+_SOLVED = 1e-6
+"""Difference of forces from those that they were evaluated with, as a part of the largest, that is none."""
 
 
 class Trajectory(NamedTuple):
@@ -34,11 +33,11 @@ class Trajectory(NamedTuple):
     Attributes
     ----------
     states
-        {X, Ẋ}, SI, shape (step + 1, drop, 2n) with n coordinates.
+        {X, Ẋ}, SI, shape (step + 1, drop, state).
     forces
-        N, shape (step + 1, drop, element).
+        Of the rows of the nonlinear elements, N, shape (step + 1, drop, row).
     memories
-        Dimensionless, shape (step + 1, drop, element).
+        Dimensionless, shape (step + 1, drop, memory).
     """
 
     states: Array
@@ -56,46 +55,77 @@ class Stepper:
         The nonlinear elements, the same for all.
     values
         Parameters, SI, shape (parameter,).
-    offsets, offset_slopes
-        Travel of each element where the empty vehicle rests, m, shape (element,), and its derivatives, (element, parameter).
-    steps, slopes
-        `NonlinearModel.step` of each load and length, SI, shape (kind, 2n, 2n + 2 element + 1) with n coordinates, and its
-        derivatives by each parameter, shape (kind, parameter, 2n, 2n + 2 element + 1).
+    steps, step_slopes
+        `NonlinearModel.step` of each load and length, SI, shape (kind, state, state + 2 row + 1), and its derivatives by each
+        parameter, shape (kind, parameter, state, state + 2 row + 1).
+    inputs, input_slopes
+        `NonlinearModel.element_inputs` likewise, shapes (kind, 2 row, state + row + 1) and
+        (kind, parameter, 2 row, state + row + 1).
     kind
         Which of them each drop uses, shape (drop,).
     """
 
     forces: NonlinearForces
     values: Array
-    offsets: Array
-    offset_slopes: Array
     steps: Array
-    slopes: Array
+    step_slopes: Array
+    inputs: Array
+    input_slopes: Array
     kind: Index
 
     @classmethod
     def of(cls, models: Sequence[NonlinearModel], lengths: Sequence[float], kind: Index, values: Array) -> Stepper:
         """Compute the steps of models, each of a length in s."""
-        computed = [model.step(values, length) for model, length in zip(models, lengths, strict=True)]
-        steps, slopes = (np.stack(stacked) for stacked in zip(*computed, strict=True))
-        return cls(models[0].forces, values, *models[0].travel_offsets(values), steps, slopes, kind)
+        computed = [
+            (*model.step(values, length), *model.element_inputs(values))
+            for model, length in zip(models, lengths, strict=True)
+        ]
+        steps, step_slopes, inputs, input_slopes = (np.stack(part) for part in zip(*computed, strict=True))
+        return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, kind)
 
     @cached_property
-    def _rows(self) -> Array:
-        """Rows of the travels, shape (element, coordinate)."""
-        return self.forces.rows.at(self.values)
+    def parameters(self) -> tuple[Array, ...]:
+        """Parameters of the laws, each of shape (parameter, element)."""
+        return self.forces.parameters(self.values)
 
     @cached_property
-    def _row_slopes(self) -> Array:
-        """Derivatives of the rows by each parameter, shape (element, coordinate, parameter)."""
-        return np.ascontiguousarray(np.moveaxis(self.forces.rows.slopes, 1, 2))
+    def slots(self) -> Index:
+        """Drops of each kind, shape (kind, slot): a kind with fewer drops than another one repeats some drop."""
+        drops = [np.flatnonzero(self.kind == kind) for kind in range(len(self.steps))]
+        most = max(map(len, drops))
+        return np.array([np.resize(own if own.size else np.zeros(1, dtype=np.int64), most) for own in drops])
 
     @cached_property
-    def _parts(self) -> tuple[Array, Array, Array, Array]:
-        """Φ, B, B' and d of the step of each kind."""
-        elements, n = self._rows.shape
-        transition, before, after, constant = np.split(self.steps, np.cumsum([2 * n, elements, elements]), axis=2)
-        return transition, before, after, constant
+    def places(self) -> tuple[Index, Index]:
+        """Kind and slot of each drop, shapes (drop,)."""
+        return self.kind, np.array([int(np.sum(self.kind[:drop] == kind)) for drop, kind in enumerate(self.kind)])
+
+    @cached_property
+    def transition(self) -> Array:
+        """[Φ, B]: the end of a step without the forces there, from {x, u} at its start; shape (kind, state, state + row)."""
+        return self.steps[..., : sum(self.by_force.shape[1:])]
+
+    @cached_property
+    def by_force(self) -> Array:
+        """B': the end of a step by the forces there, shape (kind, state, row)."""
+        state, rows = self.steps.shape[1], self.forces.number
+        return self.steps[..., state + rows : state + 2 * rows]
+
+    @cached_property
+    def by_state(self) -> Array:
+        """Travels and rates by the state, shape (kind, 2 row, state)."""
+        return self.inputs[..., : self.steps.shape[1]]
+
+    @cached_property
+    def directly_by_force(self) -> Array:
+        """Travels and rates by the forces with the state held, shape (kind, 2 row, row)."""
+        return self.inputs[..., self.steps.shape[1] : -1]
+
+    @cached_property
+    def input_by_force(self) -> Array:
+        """Travels and rates at the end of a step by the forces there, shape (kind, 2 row, row)."""
+        found: Array = self.by_state @ self.by_force + self.directly_by_force
+        return found
 
     def integrate(self, states: Array, memories: Array, steps: int) -> Trajectory:
         """Integrate motions from their initial states.
@@ -103,7 +133,7 @@ class Stepper:
         Parameters
         ----------
         states
-            {X, Ẋ} of each drop, SI, shape (drop, 2n).
+            {X, Ẋ} of each drop, SI, shape (drop, state).
         memories
             Of the elements that have one, dimensionless, shape (drop, memory).
         steps
@@ -114,191 +144,118 @@ class Stepper:
         Trajectory
             Not finite from where a motion diverges.
         """
-        rows, values = self._rows, self.values
-        elements, n = rows.shape
-        both = np.kron(np.eye(2), rows)
-        kind = self.kind
-        transition, before, after, constant = self._parts
-        # One product gives the end of a step without the forces there, and travel and rate there.
-        predictor = np.concatenate([transition, before, constant], axis=2)
-        predictor = np.concatenate([predictor, both @ predictor], axis=1)[kind]
-        predictor[:, 2 * n : 2 * n + elements, -1] += self.offsets
-        by_force = after[kind]
-        travel_by_force = (both @ after)[kind]
-        trajectory = Trajectory(
-            np.empty((steps + 1, len(kind), 2 * n)),
-            np.empty((steps + 1, len(kind), elements)),
-            np.zeros((steps + 1, len(kind), elements)),
-        )
-        trajectory.states[0] = states
-        trajectory.memories[0][:, self.forces.with_memory] = memories
-        travel = states[:, :n] @ rows.T + self.offsets
-        at_start = ElementInput(travel, states[:, n:] @ rows.T, np.zeros_like(travel), trajectory.memories[0])
-        trajectory.forces[0] = self.forces.evaluate(values, at_start).force
-        start = np.ones((len(kind), 2 * n + elements + 1))
-        # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
-        diagonal = np.arange(elements)
-        own_travel, own_rate = travel_by_force[:, diagonal, diagonal], travel_by_force[:, elements + diagonal, diagonal]
-        with np.errstate(over="ignore", invalid="ignore"):
-            for k in range(steps):
-                start[:, : 2 * n], start[:, 2 * n : -1] = trajectory.states[k], trajectory.forces[k]
-                predicted = np.matmul(predictor, start[:, :, None])[:, :, 0]
-                memory, force = trajectory.memories[k], trajectory.forces[k]
-                for correction in range(_CORRECTIONS):
-                    end = predicted[:, 2 * n :] + np.matmul(travel_by_force, force[:, :, None])[:, :, 0]
-                    increment = end[:, :elements] - travel
-                    given = ElementInput(end[:, :elements], end[:, elements:], increment, memory)
-                    found = self.forces.evaluate(values, given)
-                    if correction < _CORRECTIONS - 1:
-                        by_travel = found.by_travel + found.by_memory * found.memory_by_travel
-                        slope = 1.0 - by_travel * own_travel - found.by_rate * own_rate
-                        force = force + (found.force - force) / slope
-                trajectory.forces[k + 1], trajectory.memories[k + 1], travel = found.force, found.memory, given.travel
-                end_state = predicted[:, : 2 * n] + np.matmul(by_force, found.force[:, :, None])[:, :, 0]
-                trajectory.states[k + 1] = end_state
-        return trajectory
+        slots, (kind, slot) = self.slots, self.places
+        whole, kept = self.follow(states[slots], memories[slots], steps)
+        state = states.shape[1]
+        return Trajectory(whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot])
 
-    def sensitivities(self, trajectory: Trajectory) -> Iterator[tuple[int, Array, Array]]:
-        """Yield the derivatives of motions by the parameters, the initial states and the initial memories, in this order.
+    def follow(self, states: Array, memories: Array, steps: int) -> tuple[Array, Array]:
+        """Follow motions that are arranged by kind.
 
         Parameters
         ----------
-        trajectory
-            The motions.
-
-        Yields
-        ------
-        first
-            The step at which a chunk of steps begins; chunks follow each other from the start on.
-        states, forces
-            Derivatives of {X, Ẋ} and of the forces, shapes (step, drop, 2n, unknown) and (step, drop, element, unknown).
-        """
-        parameters, memories = len(self.values), len(self.forces.with_memory)
-        steps, drops, state = trajectory.states.shape
-        current = np.zeros((drops, state + memories, parameters + state + memories))
-        current[:, :, parameters:] = np.eye(state + memories)
-        for first in range(0, steps, _CHUNK):
-            last = min(first + _CHUNK, steps)
-            chunk = np.empty((last - first, *current.shape))
-            chunk[0] = current
-            if last > first + 1 or last < steps:
-                matrices, drive = self._linearise(trajectory, first, min(last, steps - 1))
-                for k in range(last - first):
-                    chunk[k] = current
-                    if first + k < steps - 1:
-                        current = matrices[k] @ current
-                        current[..., :parameters] += drive[k]
-            yield first, chunk[:, :, :state], self._force_sensitivities(trajectory, first, chunk)
-
-    def _evaluate(self, trajectory: Trajectory, first: int, last: int) -> tuple[ElementForce, ElementInput]:
-        """Return the forces of the steps that end at first ... last - 1, and their input."""
-        X, V = np.split(trajectory.states, 2, axis=-1)
-        travel, rate = X[first:last] @ self._rows.T + self.offsets, V[first:last] @ self._rows.T
-        earlier = np.arange(first, last) - 1
-        earlier[earlier < 0] = 0
-        increment = travel - (X[earlier] @ self._rows.T + self.offsets)
-        given = ElementInput(travel, rate, increment, trajectory.memories[earlier])
-        return self.forces.evaluate(self.values, given), given
-
-    def _force_sensitivities(self, trajectory: Trajectory, first: int, chunk: Array) -> Array:
-        """Return the derivatives of the forces from those of states and memories."""
-        last, parameters = first + len(chunk), len(self.values)
-        found, given = self._evaluate(trajectory, first, last)
-        rows, row_slopes = self._rows, self._row_slopes
-        n = rows.shape[1]
-        forces = found.by_travel[..., None] * (rows @ chunk[:, :, :n])
-        forces += found.by_rate[..., None] * (rows @ chunk[:, :, n : 2 * n])
-        memory = np.zeros_like(forces)
-        memory[:, :, self.forces.with_memory] = chunk[:, :, 2 * n :]
-        forces += found.by_memory[..., None] * memory
-        forces[..., :parameters] += self.forces.differentiate(self.values, given)[0]
-        X, V = np.split(trajectory.states[first:last], 2, axis=-1)
-        forces[..., :parameters] += found.by_travel[..., None] * (_by_geometry(X, row_slopes) + self.offset_slopes)
-        forces[..., :parameters] += found.by_rate[..., None] * _by_geometry(V, row_slopes)
-        return forces
-
-    def _linearise(self, trajectory: Trajectory, first: int, last: int) -> tuple[Array, Array]:
-        """Linearise the steps from first to last - 1 about their motions.
+        states, memories
+            As for `integrate`, shapes (kind, motion, state) and (kind, motion, memory).
+        steps
+            How many.
 
         Returns
         -------
-        matrices
-            Derivatives of {x, memory} at the end by those at the start, shape (step, drop, 2n + memory, 2n + memory).
-        drive
-            Their derivatives by the parameters with the start held, shape (step, drop, 2n + memory, parameter).
+        motions
+            {x, u, 1}, shape (step + 1, kind, motion, state + row + 1).
+        memories
+            Shape (step + 1, kind, motion, memory).
         """
-        rows, row_slopes, memories = self._rows, self._row_slopes, self.forces.with_memory
-        now, now_input = self._evaluate(trajectory, first, last)
-        then, then_input = self._evaluate(trajectory, first + 1, last + 1)
-        now_force, _ = self.forces.differentiate(self.values, now_input)
-        then_force, then_memory = self.forces.differentiate(self.values, then_input)
-        n = rows.shape[1]
-        x, y = trajectory.states[first:last], trajectory.states[first + 1 : last + 1]
+        forces, shape = self.forces, states.shape[:2]
+        state, rows = states.shape[2], self.forces.number
+        # One product gives the end of a step without the forces there, and travels and rates there.
+        ends = np.concatenate([self.transition, self.steps[..., -1:]], axis=2)
+        inputs = self.by_state @ ends
+        inputs[..., -1] += self.inputs[..., -1]
+        predictor = _transposed(np.concatenate([ends, inputs], axis=1))
+        by_force, feedback = _transposed(self.by_force), _Feedback.of(self.input_by_force, forces)
+        motions = np.ones((steps + 1, *shape, state + rows + 1))
+        kept = np.empty((steps + 1, *shape, forces.memories))
+        motions[0, ..., :state], kept[0] = states, memories
+        predicted = np.empty((*shape, state + 2 * rows))
+        with np.errstate(over="ignore", invalid="ignore"):
+            at_start = states @ _transposed(self.by_state) + self.inputs[:, None, :, -1]
+            held, force = _Feedback.of(self.directly_by_force, forces), np.zeros((*shape, rows))
+            found, travel = self._solve(at_start, at_start[..., :rows], memories, force, held)
+            force = before = motions[0, ..., state:-1] = found.force
+            for k in range(steps):
+                np.matmul(motions[k], predictor, out=predicted)
+                found, travel = self._solve(predicted[..., state:], travel, kept[k], 2 * force - before, feedback)
+                before, force, end = force, found.force, motions[k + 1]
+                end[..., state:-1], kept[k + 1] = force, found.memory
+                np.add(predicted[..., :state], force @ by_force, out=end[..., :state])
+        return motions, kept
 
-        # The forces at the start: by the state there, and by the parameters with the state held.
-        start_by_x = _by_state(now.by_travel, rows, now.by_rate)
-        start_by_p = (
-            now_force
-            + now.by_travel[..., None] * (_by_geometry(x[..., :n], row_slopes) + self.offset_slopes)
-            + now.by_rate[..., None] * _by_geometry(x[..., n:], row_slopes)
-        )
-        # The forces at the end: by the state there, by state and memory at the start, and by the parameters.
-        by_increment = then.by_memory * then.memory_by_travel
-        end_by_y = _by_state(then.by_travel + by_increment, rows, then.by_rate)
-        end_by_x = -_by_state(by_increment, rows, np.zeros_like(by_increment))
-        end_by_memory = then.by_memory * then.memory_by_memory
-        increments = _by_geometry(y[..., :n] - x[..., :n], row_slopes)
-        end_by_p = then_force + then.by_memory[..., None] * then_memory
-        end_by_p += then.by_travel[..., None] * (_by_geometry(y[..., :n], row_slopes) + self.offset_slopes)
-        end_by_p += by_increment[..., None] * increments
-        end_by_p += then.by_rate[..., None] * _by_geometry(y[..., n:], row_slopes)
+    def _solve(
+        self, predicted: Array, before: Array, memories: Array, force: Array, feedback: _Feedback
+    ) -> tuple[ElementForce, Array]:
+        """Return forces and travels that depend on each other.
 
-        transition, before, after = (part[self.kind] for part in self._parts[:3])
-        # The state at the end moves the forces there, which move the state: y = r + B' E y has the solution
-        # y = r + B' (I - E B')⁻¹ E r.
-        inverse = np.linalg.inv(np.eye(self.forces.number) - end_by_y @ after)
-        by_x = transition + before @ start_by_x + after @ end_by_x
-        by_memory = before * now.by_memory[..., None, :] + after * end_by_memory[..., None, :]
-        by_p = self._step_by_parameters(x, trajectory.forces[first:last], trajectory.forces[first + 1 : last + 1])
-        by_p += before @ start_by_p + after @ end_by_p
-        whole = np.concatenate([by_x, by_memory[..., memories], by_p], axis=-1)
-        whole += (after @ inverse) @ (end_by_y @ whole)
-
-        state, size, parameters = 2 * n, 2 * n + len(memories), len(self.values)
-        matrices = np.zeros((*x.shape[:2], size, size))
-        drive = np.zeros((*x.shape[:2], size, parameters))
-        matrices[..., :state, :] = whole[..., :size]
-        drive[..., :state, :] = whole[..., size:]
-        if len(memories):
-            slope = then.memory_by_travel[..., memories, None]
-            increment = rows[memories] @ whole[..., :n, :]
-            increment[..., :n] -= rows[memories]
-            matrices[..., state:, :] = slope * increment[..., :size]
-            diagonal = state + np.arange(len(memories))
-            matrices[..., diagonal, diagonal] += then.memory_by_memory[..., memories]
-            by_geometry = slope * (increment[..., size:] + increments[..., memories, :])
-            drive[..., state:, :] = by_geometry + then_memory[..., memories, :]
-        return matrices, drive
-
-    def _step_by_parameters(self, x: Array, before: Array, after: Array) -> Array:
-        """Return the derivatives of the step itself by the parameters, shape (step, drop, 2n, parameter)."""
-        inputs = np.concatenate([x, before, after, np.ones((*x.shape[:2], 1))], axis=-1)
-        parameters, state = self.slopes.shape[1:3]
-        found = np.empty((*x.shape[:2], state, parameters))
-        for kind, slopes in enumerate(self.slopes):
-            drops = np.flatnonzero(self.kind == kind)
-            if drops.size:
-                change = inputs[:, drops] @ slopes.reshape(parameters * state, -1).T
-                found[:, drops] = np.swapaxes(change.reshape(len(x), len(drops), parameters, state), 2, 3)
-        return found
-
-
-def _by_state(by_travel: Array, rows: Array, by_rate: Array) -> Array:
-    """Return the derivatives of forces by the state {X, Ẋ}, shape (..., element, 2n)."""
-    return np.concatenate([by_travel[..., None] * rows, by_rate[..., None] * rows], axis=-1)
+        Parameters
+        ----------
+        predicted
+            Travels and rates without the forces, shape (kind, slot, 2 row).
+        before, memories
+            Travels and memories at the start of the step, shapes (kind, slot, row) and (kind, slot, memory).
+        force
+            The forces to begin with, shape (kind, slot, row).
+        feedback
+            What the forces add to travels and rates.
+        """
+        rows, memory_rows = force.shape[-1], self.forces.memory_rows
+        earlier: tuple[Array, Array] | None = None
+        for left in reversed(range(_MOST_EVALUATIONS)):
+            end = predicted + force @ feedback.by_force
+            travel = end[..., :rows]
+            given = ElementInput(travel, end[..., rows:], travel - before, memories)
+            found = self.forces.evaluate(self.parameters, given)
+            error = found.force - force
+            if not left or not np.abs(error).max(initial=0.0) > _SOLVED * np.abs(found.force).max(initial=0.0):
+                break
+            # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
+            slope = found.by_travel * feedback.own_travel + found.by_rate * feedback.own_rate
+            if len(memory_rows):
+                slope[..., memory_rows] += found.by_memory * found.memory_by_travel * feedback.memory_travel
+            correction = error / (1.0 - slope)
+            if earlier is not None:
+                # Where a kink lies between, Newton's method may go back and forth: the secant does not.
+                passed = error * earlier[1] < 0
+                secant = error * (force - earlier[0]) / np.where(passed, earlier[1] - error, 1.0)
+                correction = np.where(passed, secant, correction)
+            earlier, force = (force, error), force + correction
+        return found, travel
 
 
-def _by_geometry(X: Array, row_slopes: Array) -> Array:
-    """Return the derivatives of travels by geometry at X of shape (..., n): shape (..., element, parameter)."""
-    change: Array = np.einsum("...i,fip->...fp", X, row_slopes, optimize=True)
-    return change
+class _Feedback(NamedTuple):
+    """What forces add to travels and rates.
+
+    Attributes
+    ----------
+    by_force
+        Travels and rates by the forces, shape (kind, row, 2 row).
+    own_travel, own_rate
+        Those of each row by its own force, shape (kind, 1, row).
+    memory_travel
+        Travel of the row of each memory by its own force, shape (kind, 1, memory).
+    """
+
+    by_force: Array
+    own_travel: Array
+    own_rate: Array
+    memory_travel: Array
+
+    @classmethod
+    def of(cls, by_force: Array, forces: NonlinearForces) -> _Feedback:
+        """Prepare travels and rates by the forces, shape (kind, 2 row, row)."""
+        travel, rate = (np.diagonal(part, axis1=1, axis2=2)[:, None] for part in np.split(by_force, 2, axis=1))
+        return cls(_transposed(by_force), travel.copy(), rate.copy(), travel[..., forces.memory_rows])
+
+
+def _transposed(matrices: Array) -> Array:
+    """Return matrices for products from the right, contiguous."""
+    return np.ascontiguousarray(np.swapaxes(matrices, -1, -2))

@@ -46,8 +46,15 @@ class Vehicle:
         Dry friction of each suspension, N, and its presliding stiffness, N/m.
     r_f, r_r
         Rebound damping over compression damping; c_s is then that of compression.
+    v_kf, v_kr, q_f, q_r, w_kf, w_kr
+        Velocity at which the damper curves have their knee, m/s, the damping beyond it over that before it, and half the width
+        over which it is rounded, m/s.
     p_f, p_r
         Growth of the spring rates with compression, as a part of them per metre.
+    e_f, e_r
+        One over the effective height of the air column of a spring, 1/m.
+    h_tf, h_tr
+        Growth of the tyre rates with compression, as a part of them per metre.
     k_bf, k_br, x_bf, x_br
         Stiffness of the bump stops, N/m, and the compression from rest at which they are met, m.
     w_h
@@ -65,6 +72,20 @@ class Vehicle:
     m_e, k_e, c_e, x_e
         Engine on mounts of its own, kg, a part of the sprung mass and of its inertias; its mounts' rate, N/m, and damping,
         N s/m; and its place, m forward of the front axle.
+    k_df, k_dr, c_df, c_dr
+        Rates of the rubber mounts in series with the dampers, N/m, infinite without mounts; and their own damping, N s/m.
+    k_zf, k_zr, c_zf, c_zr
+        :term:`Zener branch` beside each spring: a rate k_z, N/m, in series with a damping c_z, N s/m, so that k_s is the rate
+        at rest, k_s + k_z that of fast motion and c_z / k_z the relaxation time.
+    I_w, k_w, c_w, a_w
+        Twist of the body: modal inertia, kg m², stiffness, N m, and damping, N m s, for the angle between the axles, and its
+        node, m ahead of the middle between them. An infinite inertia is that of a body that does not twist.
+    m_v, k_v, c_v, b_v, p_v
+        Bending of the body: modal mass, kg, stiffness, N/m, and damping, N s/m, for the rise of its middle above its axles;
+        rise of the centre of gravity, 1, and mean pitch, 1/m, over that. An infinite mass is that of a body that does not bend.
+    m_o, k_o, c_o, x_o, y_o
+        People on soft seats, kg, a part of the sprung mass and of its inertias; rate, N/m, and damping, N s/m, of all seats
+        together; and their place, m forward of the front axle and left of the centreline.
     cg_height, wheel_height, roll_axis_height
         Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
     name
@@ -114,8 +135,18 @@ class Vehicle:
     s_r: float = 1e6
     r_f: float = 1.0
     r_r: float = 1.0
+    v_kf: float = 1.0
+    v_kr: float = 1.0
+    q_f: float = 1.0
+    q_r: float = 1.0
+    w_kf: float = 0.0
+    w_kr: float = 0.0
     p_f: float = 0.0
     p_r: float = 0.0
+    e_f: float = 0.0
+    e_r: float = 0.0
+    h_tf: float = 0.0
+    h_tr: float = 0.0
     k_bf: float = 0.0
     k_br: float = 0.0
     x_bf: float = 1.0
@@ -139,6 +170,28 @@ class Vehicle:
     k_e: float = 1e6
     c_e: float = 0.0
     x_e: float = 0.0
+    k_df: float = math.inf
+    k_dr: float = math.inf
+    c_df: float = 0.0
+    c_dr: float = 0.0
+    k_zf: float = 0.0
+    k_zr: float = 0.0
+    c_zf: float = 1e3
+    c_zr: float = 1e3
+    I_w: float = math.inf
+    k_w: float = 1e6
+    c_w: float = 1e3
+    a_w: float = 0.0
+    m_v: float = math.inf
+    k_v: float = 1e7
+    c_v: float = 1e4
+    b_v: float = 0.0
+    p_v: float = 0.0
+    m_o: float = 0.0
+    k_o: float = 1e5
+    c_o: float = 0.0
+    x_o: float = 0.0
+    y_o: float = 0.0
     cg_height: float | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
@@ -149,11 +202,14 @@ class Vehicle:
         for axle in "fr":
             self._resolve_places("t", axle, None, problems)
             self._resolve_places("n", axle, 1.0, problems)
+        own = parameter_names("separate", self.extras)
+        has_mounts = "damper-mount" in self.extras
         for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
             value, parameter = getattr(self, name), PARAMETERS[name]
-            positive = parameter.positive and name not in ("c_sf", "c_sr")
+            positive = parameter.positive and (has_mounts or name not in ("c_sf", "c_sr"))
             possible = value is None or (
-                math.isfinite(value) and (value > 0 or parameter.signed or (value == 0 and not positive))
+                (math.isfinite(value) or (value == NEUTRAL.get(name) and name not in own))
+                and (value > 0 or parameter.signed or (value == 0 and not positive))
             )
             if not possible:
                 kind = "positive" if positive else "finite" if parameter.signed else "finite, not negative"
@@ -292,7 +348,8 @@ class Vehicle:
         load
             What is on it.
         """
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights) + load.elements(self.heights)
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights, self.wheelbase)
+        elements += load.elements(self.heights)
         return LinearModel.of(elements, tuple(self.parameters))
 
     def matrices(self, load: Load = EMPTY) -> Matrices:

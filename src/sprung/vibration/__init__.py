@@ -6,6 +6,7 @@ from sprung.vibration.exponential_sums import (
     exponential_gram,
     exponential_moments,
     exponentials,
+    real_product,
     split_into_blocks,
 )
 from sprung.vibration.modes import (
@@ -13,6 +14,7 @@ from sprung.vibration.modes import (
     UNRESOLVED_FROM,
     Mode,
     ModeUncertainty,
+    is_vibration,
     largest_entry,
     make_modes,
     modal_assurance_criterion,
@@ -40,12 +42,14 @@ __all__ = [
     "exponential_gram",
     "exponential_moments",
     "exponentials",
+    "is_vibration",
     "largest_entry",
     "make_modes",
     "modal_assurance_criterion",
     "name_modes",
     "name_modes_at_sensors",
     "paper_name",
+    "real_product",
     "sort_modes",
     "split_into_blocks",
 ]

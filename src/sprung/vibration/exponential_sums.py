@@ -202,3 +202,23 @@ def exponentials(exponent: Complex, samples: int = BLOCK_LENGTH) -> Complex:
     across = np.exp(exponent * (width * np.arange(-(-samples // width))[:, None]))
     product = across[:, None] * np.exp(exponent * np.arange(width)[:, None])
     return product.reshape(-1, exponent.size)[:samples]
+
+
+def real_product(coefficients: Complex, waves: Complex) -> Real:
+    """Return the real part of a product of coefficients and exponentials, as a product of pairs of real numbers.
+
+    Parameters
+    ----------
+    coefficients
+        In any unit, shape (..., mode).
+    waves
+        Dimensionless, shape (time, mode).
+
+    Returns
+    -------
+    ndarray
+        In the unit of the coefficients, shape (..., time).
+    """
+    pairs = np.ascontiguousarray(coefficients.conj()).view(float)
+    product: Real = pairs.reshape(-1, pairs.shape[-1]) @ np.ascontiguousarray(waves).view(float).T
+    return product.reshape(*coefficients.shape[:-1], len(waves))

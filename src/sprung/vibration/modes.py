@@ -234,7 +234,37 @@ def eigenmodes(matrices: Matrices) -> tuple[Mode, ...]:
     Returns
     -------
     tuple of Mode
-        Shapes in its coordinates, in the order of `group_real_pairs`.
+        Shapes in its coordinates, in the order of `group_real_pairs`; without the relaxations of `is_vibration`.
     """
     poles, vectors = np.linalg.eig(matrices.state)
-    return make_modes(poles, vectors[: len(matrices.M)])
+    shapes = vectors[: len(matrices.M)]
+    vibrations = is_vibration(poles, shapes, matrices.massive)
+    return make_modes(poles[vibrations], shapes[:, vibrations])
+
+
+def is_vibration(poles: ArrayLike, shapes: ArrayLike, massive: int) -> NDArray[np.bool_]:
+    """Return which modes move masses, and do not only relax.
+
+    Each coordinate without mass adds one pole: the relaxation of a damper against the spring in series with it. Of the real
+    poles these are the ones in whose shapes the coordinates without mass have the largest shares.
+
+    Parameters
+    ----------
+    poles
+        1/s, shape (pole,).
+    shapes
+        In the coordinates, those with mass first, as columns; shape (coordinate, pole).
+    massive
+        Number of coordinates with mass.
+
+    Returns
+    -------
+    ndarray
+        Shape (pole,).
+    """
+    sizes = np.abs(np.asarray(shapes)) ** 2
+    share = np.where(np.imag(poles) == 0, sizes[massive:].sum(axis=0) / sizes.sum(axis=0), -1.0)
+    found = np.argsort(-share, kind="stable")[: len(sizes) - massive]
+    vibrations = np.ones(share.shape, dtype=bool)
+    vibrations[found[share[found] > 0]] = False
+    return vibrations

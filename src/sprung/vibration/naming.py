@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.optimize import linear_sum_assignment
 
-from sprung.vehicle import Matrices, Rows, Sensor
+from sprung.vehicle import COORDINATES, Matrices, Rows, Sensor
 from sprung.vibration.modes import Mode, eigenmodes, group_real_pairs, modal_assurance_criterion
 
 Real = NDArray[np.float64]
@@ -29,9 +29,13 @@ _TRAMP = {
     ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
 }
 
-_ENGINE = "engine bounce"
+_ALONE = {"z_e": "engine bounce", "z_o": "seat bounce", "q_w": "body twist", "q_v": "body bending"}
+"""By coordinate: the name of the mode in which it moves by itself."""
 
-MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), _ENGINE)
+_TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)
+"""Shapes of the modes of body and wheels, in the order of `MODE_NAMES`, shape (7, mode)."""
+
+MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), *_ALONE.values())
 """Every name that a mode may get. Of the eight names of wheel modes one vehicle has four: for hop and for tramp either those of
 the axles or those of all four wheels."""
 
@@ -73,7 +77,10 @@ def paper_name(name: str | None) -> str | None:
 
 
 def name_modes(
-    modes: Sequence[Mode], half_wheelbase: float = _HALF_WHEELBASE, half_track: float = _HALF_TRACK
+    modes: Sequence[Mode],
+    half_wheelbase: float = _HALF_WHEELBASE,
+    half_track: float = _HALF_TRACK,
+    coordinates: Sequence[str] = COORDINATES,
 ) -> tuple[Mode, ...]:
     """Return modes with the names of the templates most like their shapes, each name once but for pairs of real poles.
 
@@ -92,9 +99,11 @@ def name_modes(
     Parameters
     ----------
     modes
-        Shapes in the coordinates of a vehicle: its seven, or these and its engine's.
+        Shapes in the coordinates of a vehicle.
     half_wheelbase, half_track
         Levers that make pitch and roll angles comparable with displacements, m.
+    coordinates
+        Names of the coordinates, the paper's seven first.
 
     Returns
     -------
@@ -104,23 +113,24 @@ def name_modes(
     groups = group_real_pairs(modes)
     if not groups:
         return ()
-    # The body counts at its four corners, and an engine as much, of which it is a large part.
-    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, 2])[: len(groups[0][0].shape)]
-    shapes = [scale[:, None] * np.stack([mode.shape for mode in group], axis=1) for group in groups]
+    # The body counts at its four corners, and as much what is a large part of it, as an engine; what has no mass does not.
+    further = [name for name in coordinates if name in _ALONE]
+    chosen = [*range(len(COORDINATES)), *(list(coordinates).index(name) for name in further)]
+    # Twist and bending count by how far the corners, or the middle, of the body move.
+    sizes_of = {"q_w": 2 * half_wheelbase * half_track, "q_v": half_wheelbase**2}
+    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, *(sizes_of.get(one, 2.0) for one in further)])
+    together = scale[:, None] * np.stack([mode.shape[chosen] for group in groups for mode in group], axis=1)
+    # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
+    of_shapes = np.hstack(
+        [modal_assurance_criterion(together[:7], _TEMPLATES), modal_assurance_criterion(together, _alone(scale))]
+    )
+    known = (*MODE_NAMES[: _TEMPLATES.shape[1]], *(_ALONE[name] for name in further))
+    sizes = np.array([len(group) for group in groups])
+    of_groups = np.add.reduceat(of_shapes, np.cumsum(sizes) - sizes, axis=0) / sizes[:, None]
     best, name_of = -np.inf, dict[int, str]()
-    for (hop, of_hop), (tramp, of_tramp) in product(_HOP.items(), _TRAMP.items()):
-        names = (*_BODY, *hop, *tramp, _ENGINE)
-        templates = block_diag(np.eye(3), np.vstack([of_hop, of_tramp]).T)
-        # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
-        alike = np.stack(
-            [
-                np.append(
-                    modal_assurance_criterion(shape[:7], templates).mean(axis=0),
-                    modal_assurance_criterion(shape, _alone(scale)).mean(axis=0),
-                )
-                for shape in shapes
-            ]
-        )
+    for hop, tramp in product(_HOP, _TRAMP):
+        names = (*_BODY, *hop, *tramp, *(_ALONE[name] for name in further))
+        alike = of_groups[:, [known.index(name) for name in names]]
         rows, columns = linear_sum_assignment(alike, maximize=True)
         total = float(alike[rows, columns].sum())
         if total > best + _TIE:
@@ -137,13 +147,15 @@ def _alone(scale: Real) -> Real:
     return np.eye(len(scale))[:, 7:]
 
 
-def compute_modes(matrices: Matrices) -> tuple[Mode, ...]:
+def compute_modes(matrices: Matrices, coordinates: Sequence[str] = COORDINATES) -> tuple[Mode, ...]:
     """Return the modes of M Ẍ + C Ẋ + K X = 0, eq. (3), with their names.
 
     Parameters
     ----------
     matrices
         M, C and K.
+    coordinates
+        Names of their coordinates, the paper's seven first.
 
     Returns
     -------
@@ -158,7 +170,8 @@ def compute_modes(matrices: Matrices) -> tuple[Mode, ...]:
     ['body roll 1.071', 'body bounce 2.015', 'body pitch 2.812']
     """
     sprung, pitch, roll = np.diag(matrices.M)[:3]
-    return name_modes(eigenmodes(matrices), float(np.sqrt(pitch / sprung)), float(np.sqrt(roll / sprung)))
+    levers = float(np.sqrt(pitch / sprung)), float(np.sqrt(roll / sprung))
+    return name_modes(eigenmodes(matrices), *levers, coordinates)
 
 
 def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:

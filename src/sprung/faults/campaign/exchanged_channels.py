@@ -23,6 +23,6 @@ def exchanged_channels(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         names = f"{sensors[first].channel}, {sensors[second].channel}"
         what = "the two channels are exchanged, as the fit of all channels shows; corrected"
         fault = Fault("exchanged", names, what, "Exchange the two in the campaign file, or their cables.")
-        correction = exchange_channels(first, second)
+        correction = exchange_channels(first, second, sensors)
         candidate = isolation.step(correction)
-        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate, is_rough=True)
+        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)

@@ -29,7 +29,7 @@ def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         candidate = isolation.step(correction)
         what = f"loads '{loads[0]}' and '{loads[1]}' are exchanged in all drops; corrected"
         fault = Fault("load-exchanged", f"all drops, {loads[0]} and {loads[1]}", what, _DO)
-        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate, is_rough=True)
+        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
     labels, candidate = stated, isolation.base
     for _ in range(_ROUNDS):
         better = _most_likely_loads(isolation, candidate, loads)
@@ -41,7 +41,7 @@ def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
     if moved and len(moved) < len(stated):
         what = "these drops move as if their loads were exchanged; corrected"
         fault = Fault("load-exchanged", ", ".join(moved), what, _DO)
-        yield Hypothesis(fault, "corrected", relabel_loads(moved), candidate.table, candidate, is_rough=True)
+        yield Hypothesis(fault, "corrected", relabel_loads(moved), candidate.table, candidate)
 
 
 def _most_likely_loads(isolation: FaultIsolation, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.faults.correction import exclude_drops
+from sprung.faults.correction import Correction, exclude_drops
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.faults.residual_table import ResidualTable
@@ -53,12 +54,17 @@ class DropDeletion:
         return self.isolation.recordings[self.drop]
 
     @property
+    def correction(self) -> Correction:
+        """Leaves the drop out."""
+        return exclude_drops(self.name)
+
+    @property
     def counts(self) -> Real:
         """Samples of the drop by channel; shape (channel,)."""
         counts: Real = self.isolation.base.table.counts[self.drop]
         return counts
 
-    @property
+    @cached_property
     def limit(self) -> ResidualTable:
         """The residuals if the drop leaves as much per sample as the others do."""
         table = self.candidate.table
@@ -78,5 +84,4 @@ class DropDeletion:
 
     def left_out(self, fault: Fault, residual: Real, free: int) -> Hypothesis:
         """Return the hypothesis that the drop is left out for a reason with which it would leave these residuals."""
-        excluded = exclude_drops(self.name)
-        return Hypothesis(fault, "left out", excluded, self.table(residual), self.candidate, free, self.name)
+        return Hypothesis(fault, "left out", self.correction, self.table(residual), self.candidate, free, self.name)

@@ -18,6 +18,7 @@ from sprung.faults.statements.undeclared_load import undeclared_loads
 from sprung.faults.statements.upside_down import upside_down
 from sprung.preprocess import FirstMotion, Prepared, is_first_motion_consistent, merge_dropped_wheels, prepare
 from sprung.progress import Progress, silent
+from sprung.selection import choose_structure
 
 _HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
 """In the order in which they are believed where the recordings cannot tell them apart."""
@@ -135,7 +136,7 @@ def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> Commo
     """Fit the campaign with each correction, and take the one with which the recordings are most likely."""
     fitted = []
     for one in explaining:
-        base = FaultIsolation.of(one.changed, prepare(one.changed).decays, None, "shared", ()).base
+        base = FaultIsolation.of(choose_structure(one.changed, "shared", ()), prepare(one.changed).decays).base
         samples = max(float(base.table.counts.sum()), 1.0)
         fitted.append((base.table.cost / samples, samples, base.fit.overdispersion, one))
     fitted.sort(key=lambda each: each[0])

@@ -74,13 +74,7 @@ def mark_elements(mark: Mark, box: Box, number: int | None = None) -> Iterator[s
     zoomable = number is not None
     match mark:
         case Curve():
-            steps = "".join(_path(part, box) for part in _segments(mark))
-            if steps:
-                look = f'stroke-width="{FINE * mark.width:g}"'
-                if mark.dashed:
-                    look += f' stroke-dasharray="{4 * FINE} {2.5 * FINE:g}"'
-                key = f' data-curve="{number}"' if zoomable else ""
-                yield f'<path class="curve {mark.role}"{key} {look} transform="scale({1 / FINE})" d="{steps}"/>'
+            yield from _curve(mark, box, f' data-curve="{number}"' if zoomable else "")
         case Points():
             yield from _points(mark, box, f' data-curve="{number}"' if zoomable else "")
         case Rule(horizontal=True):
@@ -118,6 +112,25 @@ def _path(part: tuple[Real, Real], box: Box) -> str:
     steps = steps[:, (steps != 0).any(axis=0)]
     numbers = " ".join(map(str, steps.T.ravel().tolist())).replace(" -", "-")
     return f"M{places[0, 0]} {places[1, 0]}" + (f"l{numbers}" if numbers else "h0")
+
+
+def _curve(curve: Curve, box: Box, key: str) -> Iterator[str]:
+    if curve.band is not None:
+        yield f'<path class="area {curve.role}" d="{_area(curve, curve.band, box)}"/>'
+    steps = "".join(_path(part, box) for part in _segments(curve))
+    if steps:
+        look = f'stroke-width="{FINE * curve.width:g}"'
+        if curve.dashed:
+            look += f' stroke-dasharray="{4 * FINE} {2.5 * FINE:g}"'
+        yield f'<path class="curve {curve.role}"{key} {look} transform="scale({1 / FINE})" d="{steps}"/>'
+
+
+def _area(curve: Curve, half: Real, box: Box) -> str:
+    """Return the outline of the band about a curve."""
+    edges = [np.clip(box.down(curve.y + sign * half), box.top, box.bottom) for sign in (1, -1)]
+    across = box.across(curve.x)
+    corners = [*zip(across, edges[0], strict=True), *zip(across[::-1], edges[1][::-1], strict=True)]
+    return f"M{'L'.join(f'{x:.1f} {y:.1f}' for x, y in corners)}Z"
 
 
 def _points(points: Points, box: Box, key: str) -> Iterator[str]:

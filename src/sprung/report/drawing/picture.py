@@ -52,6 +52,9 @@ class Curve:
         Line width, dimensionless; 1 is the default.
     dashed
         Whether it is dashed.
+    band
+        Half-height of a shaded band about it, such as that of its 95 % intervals, in the unit of the axis, shape (point,); None
+        without.
     """
 
     x: Real
@@ -60,6 +63,7 @@ class Curve:
     label: str = ""
     width: float = 1.0
     dashed: bool = False
+    band: Real | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,7 @@ def role_styles() -> Iterator[str]:
     for role in get_args(Role):
         kinds = ", ".join(f".picture .{kind}.{role}" for kind in ("curve", "points", "rule", "bars"))
         yield f"{kinds} {{ stroke: var(--{role}); }}"
+        yield f".picture .area.{role} {{ fill: var(--{role}); }}"
 
 
 def standalone_style(halo: bool = True) -> str:

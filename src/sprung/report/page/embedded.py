@@ -78,8 +78,9 @@ def figure_json(picture: Picture) -> str:
                 }
                 if isinstance(mark, Points):
                     curve["points"] = True
-                    if mark.bars is not None:
-                        curve["bars"] = column_index(mark.bars, Axis("", 0, 1), False)
+                bars = mark.bars if isinstance(mark, Points) else mark.band
+                if bars is not None:
+                    curve["bars"] = column_index(bars, Axis("", 0, 1), False)
                 curves.append(curve)
         place = [round(value, 1) for value in (box.left, box.top, box.width, box.height)]
         unit = panel.y.label.rpartition(", ")[2] if panel.channel else panel.y.label

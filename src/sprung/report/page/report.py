@@ -109,6 +109,7 @@ def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[
             lambda: sections.characteristics(result),
         ),
         ("parameters", "Parameters", "parameters.html", lambda: sections.parameters(result)),
+        ("curves", "Force curves", "pictures.html", lambda: sections.curves(result)),
         ("geometry", "Geometry, sensors and loads", "geometry.html", lambda: sections.geometry(result)),
         ("known", "Known beforehand", "known.html", lambda: sections.known(result)),
         ("recordings", "Recordings", "recordings.html", lambda: sections.recordings(result, unfolded)),

@@ -15,11 +15,13 @@ from sprung.results import (
     FitReport,
     Result,
     characteristics_tables,
+    damper_tables,
     derived_table,
     modes_table,
     other_quantities,
     parameters_table,
     ratios_table,
+    sensors_table,
 )
 from sprung.tables import unit_text
 from sprung.uncertainty import Estimate, round_by_uncertainty
@@ -47,8 +49,9 @@ def result_view(result: Result) -> RenderableType:
         render_table(parameters_table(result.name, {**result.parameters, **other_quantities(result.derived)})),
         Text(),
     ]
-    if characteristics_tables(result.name, result.derived):
-        parts += [render_table(derived_table(result.name, result.derived)), Text()]
+    masses = [derived_table(result.name, result.derived)] if characteristics_tables(result.name, result.derived) else []
+    for table in (*masses, *damper_tables(result.curves)):
+        parts += [render_table(table), Text()]
     if profiles := _profiles(result):
         parts += [interval_table(profiles), Text()]
     if result.unidentifiable:
@@ -58,6 +61,9 @@ def result_view(result: Result) -> RenderableType:
         parts += [render_table(ratios_table(result.scale.per_total_mass)), Text()]
     for load, modes in result.modes.items():
         parts += [render_table(modes_table(load, modes)), Text()]
+    parts += _sensors(result)
+    if result.additional_terms:
+        parts += [hanging_text("", result.additional_terms), Text()]
     parts += [fit_line(result), Text()]
     if result.faults:
         parts += [fault_list(result.faults), Text()]
@@ -65,6 +71,11 @@ def result_view(result: Result) -> RenderableType:
     if result.next_step is not None:
         parts += [Text(), next_line(result.next_step)]
     return Group(*parts)
+
+
+def _sensors(result: Result) -> list[RenderableType]:
+    """Return the table of what was found of the sensors, as far as they are uncertain."""
+    return [render_table(sensors_table(result.sensors)), Text()] if result.sensors else []
 
 
 def _rejected_view(result: Result) -> RenderableType:

@@ -2,7 +2,7 @@
 
 from sprung.report.page.sections.drops import motions, recordings
 from sprung.report.page.sections.geometry import geometry
-from sprung.report.page.sections.numbers import characteristics, correlation, known, parameters
+from sprung.report.page.sections.numbers import characteristics, correlation, curves, known, parameters
 from sprung.report.page.sections.provenance import literature, next_step, settings, trace
 from sprung.report.page.sections.vibrations import amplitude, modes, spectra, stabilisation
 
@@ -10,6 +10,7 @@ __all__ = [
     "amplitude",
     "characteristics",
     "correlation",
+    "curves",
     "geometry",
     "known",
     "literature",

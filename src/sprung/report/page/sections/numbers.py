@@ -9,8 +9,18 @@ from markupsafe import Markup
 
 from sprung.report.page.sections.context import Context
 from sprung.report.page.summary import symbol_parts
+from sprung.report.pictures.curves import curve_pictures
 from sprung.report.pictures.parameters import half_width, limits_percent
-from sprung.results import Result, Setup, characteristics_tables, meaning_of, other_quantities, ratios_table
+from sprung.results import (
+    Result,
+    Setup,
+    characteristics_tables,
+    damper_tables,
+    meaning_of,
+    other_quantities,
+    ratios_table,
+    sensors_table,
+)
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
 
@@ -47,6 +57,27 @@ def parameters(result: Result) -> Context:
         "undetermined": result.unidentifiable,
         "ratios": ratios_table(result.scale.per_total_mass) if scale_free else None,
     }
+
+
+def curves(result: Result) -> Context | None:
+    """Return the force curves of dampers, springs and tyres."""
+    pictures = list(curve_pictures(result.curves).values())
+    text = (
+        "Force of each damper, spring and tyre, mean of left and right, with its 95 % band. Solid: the range that the drops "
+        "reached, its ends marked by rings. Dashed: beyond it, extrapolated by the model."
+    )
+    friction = [
+        f"{friction} at each {name.removeprefix('damper_')} wheel"
+        for name, curve in result.curves.items()
+        if (friction := curve.friction) is not None and friction.value is not None
+    ]
+    notes = (
+        [f"Dry friction acts beside the dampers and is not part of the curves: {', '.join(friction)}."]
+        if friction
+        else []
+    )
+    tables = damper_tables(result.curves)
+    return {"text": text, "pictures": pictures, "tables": tables, "notes": notes} if pictures else None
 
 
 def _parameter(name: str, estimate: Estimate, half: float) -> Context:
@@ -92,7 +123,13 @@ def known(result: Result) -> Context:
         rows.append((name, value, std or "exact", estimate, estimate_std, unit_text(prior.unit), difference))
     table = Table("Known beforehand", headers, tuple(rows), frozenset(headers[1:5]))
     heights = ", ".join(f"{key.replace('_', ' ')} {value:g} m" for key, value in result.setup.heights.items())
-    return {"known": table, "heights": heights, "loads": list(_loads(result.setup)), "sensors": _sensors(result.setup)}
+    return {
+        "known": table,
+        "heights": heights,
+        "loads": list(_loads(result.setup)),
+        "sensors": _sensors(result.setup),
+        "of_sensors": sensors_table(result.sensors) if result.sensors else None,
+    }
 
 
 def _loads(setup: Setup) -> Iterator[str]:
@@ -169,5 +206,5 @@ def _cell(value: float, same: bool) -> dict[str, str]:
 
 def _signed(value: float) -> str:
     # A correlation just below one must not be rounded to one, and zero has no sign.
-    text = f"{value:.3f}" if 0.995 <= abs(value) < 1 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
+    text = f"{value:.3f}" if 0.995 <= abs(value) < 1 - 1e-9 else f"{value + 0.0 if abs(value) >= 0.005 else 0.0:.2f}"
     return text.replace("-", "\N{MINUS SIGN}")

@@ -57,7 +57,12 @@ def settings(result: Result) -> Context:
         "forbidden": ", ".join(model.forbid) or None,
         "fall": None if model.fall is None else "yes" if model.fall else "no",
     }
+    ratios = (
+        f"{name} {ratio.value:g}{f' ± {ratio.std:g}' if ratio.std else ''}"
+        for name, ratio in setup.motion_ratio.items()
+    )
     pairs += [
+        ("motion ratios", ", ".join(ratios)),
         ("model in the campaign file", "; ".join(f"{key}: {value or 'left open'}" for key, value in stated.items())),
         ("options", "; ".join(f"{key}: {value}" for key, value in setup.options.items()) or "none"),
         ("software", ", ".join(f"{name} {number}" for name, number in setup.software.items())),

@@ -1,0 +1,163 @@
+"""Finite rotation: whether the recordings show effects of the second order in the angles, and how a load changes the geometry.
+
+A simulated vehicle of the linear model has neither, a real one both. They have no parameter of their own: the recordings decide
+by their likelihood, as about any term. What sensors read to second order follows from the fitted motion and is subtracted from
+the recordings.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from sprung.estimation import NEAR
+from sprung.preprocess import FreeDecay
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import fit_structure, start_values
+from sprung.selection.stepwise import select_linear_terms
+from sprung.selection.structure import ModelStructure
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import EMPTY, Heights, body_sinking, second_order_readings
+
+_WHEEL_HEIGHT = 0.32
+"""Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans
+are 0.28 to 0.37 m (ETRTO Standards Manual). It only counts for the height of loads above the wheels; the other assumption is
+that the loads are level with the centre of gravity."""
+
+_PASSES = 2
+"""Fits, each with the motion and the geometry of the one before; the second changes little."""
+
+_FIRST_ITERATIONS = 2
+"""Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
+
+
+class _Assumption(NamedTuple):
+    """What is assumed of a vehicle under a load."""
+
+    is_load_level: bool
+    """Whether loads are level with the centre of gravity, where no heights are stated."""
+    sinks: bool
+    """Whether the body rests lower on its wheels; not where it is levelled, or where a simulation keeps it level."""
+
+
+_ASSUMPTIONS = (
+    _Assumption(True, False),
+    _Assumption(True, True),
+    _Assumption(False, True),
+    _Assumption(False, False),
+)
+"""What the recordings decide by their likelihood, the plainest first; the first two where heights are stated."""
+
+
+def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+    """Return the search with second-order effects of rotation, if the recordings support them.
+
+    Parameters
+    ----------
+    search
+        Once the linear terms are decided.
+    plain
+        The structure without anything that the recordings brought into it: terms that made up for these effects are no longer
+        needed beside them, and others show.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    structure = search.structure
+    is_held = structure.campaign.heights.roll_axis_height is not None
+    if structure.is_time_stepped or is_held or any(decay.clocks for decay in search.decays):
+        return search
+    recorded = search.decays
+    plainest, *others = _ASSUMPTIONS[:2] if structure.campaign.heights.has_effect else _ASSUMPTIONS
+    first, assumption = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS), plainest
+    if first.fit.loglikelihood > search.fit.loglikelihood:
+        tried = [first, *(_corrected(search, recorded, one, passes=1, most=_FIRST_ITERATIONS) for one in others)]
+        likeliest = max(range(len(tried)), key=lambda i: tried[i].fit.loglikelihood)
+        first, assumption = tried[likeliest], (plainest, *others)[likeliest]
+    if first.gain_over(search) <= search.required_of_switch:
+        return search
+    turned = _corrected(first, recorded, assumption)
+    if plain.names != structure.names:
+        base = _with_geometry(replace(plain, carried_at=structure.carried_at), turned.fit.parameters, assumption)
+        again = select_linear_terms(replace(turned.refit(base), steps=search.steps))
+        turned = _corrected(again, recorded, assumption)
+    return turned if turned.gain_over(search) > search.required_of_switch else search
+
+
+def _corrected(
+    search: ModelSearch, recorded: Sequence[FreeDecay], assumption: _Assumption, passes: int = _PASSES, most: int = 100
+) -> ModelSearch:
+    """Subtract what the fitted motion adds to the recordings to second order, and fit again.
+
+    Parameters
+    ----------
+    search
+        With the motion.
+    recorded
+        The decays without any correction, which begin where those of the search do.
+    assumption
+        On what no recording tells by itself.
+    passes
+        How many fits, each with the motion of the one before.
+    most
+        Largest number of iterations of each fit.
+    """
+    loads = {load.name: load for load in search.structure.campaign.loads}
+    sensors = search.structure.campaign.sensors
+    for _ in range(passes):
+        fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
+        decays = []
+        for drop, decay in enumerate(recorded):
+            readings = second_order_readings(
+                structure.linear_models[decay.load],
+                structure.tracks,
+                structure.heights_of(decay.load),
+                loads[decay.load],
+                sensors,
+                fit.values[: len(structure.names)],  # without what was found of the sensors
+                fit.motion(drop, 0, decay.samples),
+                1 / decay.rate,
+            )
+            decays.append(replace(decay, values=decay.values - readings))
+        fitted = fit_structure(structure, decays, fit, NEAR, search.progress, most=most)
+        search = replace(search, structure=structure, fit=fitted, decays=tuple(decays))
+    return search
+
+
+def _with_geometry(
+    structure: ModelStructure, parameters: Mapping[str, float], assumption: _Assumption
+) -> ModelStructure:
+    """Return a structure with the heights that a fitted vehicle shows, and with the sinking of its body under each load."""
+    stated = structure.campaign.heights
+    own = start_values(structure, parameters)
+    assumed = None
+    if not stated.has_effect:
+        arm = own["w_h"] / (STANDARD_GRAVITY * own["m_s"]) if "w_h" in own else 0.0
+        centre = stated.cg_height or (_mean_load_height(structure) if assumption.is_load_level else None)
+        wheels = stated.wheel_height or (centre - arm if centre else _WHEEL_HEIGHT)
+        assumed = Heights(wheels + arm, wheels)
+    structure = replace(structure, assumed_heights=assumed, sinking={})
+    values = np.array([own[name] for name in structure.names])
+    if not assumption.sinks:
+        return structure
+    models = structure.linear_models
+    sinking = {
+        load: body_sinking(models[EMPTY.name], model, structure.tracks, values) for load, model in models.items()
+    }
+    return replace(structure, sinking=sinking)
+
+
+def _mean_load_height(structure: ModelStructure) -> float | None:
+    """Return the mean height of the items on the body above the ground, m; None without any."""
+    items = [
+        (item.mass, item.position[2])
+        for load in structure.campaign.loads
+        for item in load.items
+        if item.position is not None
+    ]
+    mass = sum(mass for mass, _ in items)
+    return sum(mass * height for mass, height in items) / mass if mass else None

@@ -1,0 +1,163 @@
+"""The search from the rich end: an ordinary vehicle that has every usual term, of which what is not needed is left out.
+
+A forward search from a model that lacks several terms goes astray: each term that it tries takes up some of what the others
+would explain. From a vehicle in which every usual term has its usual size the way to the optimum is short. Usual sizes are weak
+priors, so that a term of which the records say little keeps the size that it usually has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle, wald_test
+from sprung.progress import Step
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import fit_structure, start_values
+from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import TERMS
+
+_SPREADS: Mapping[str, float] = {
+    "m_s": 1.15,
+    "I_yy": 1.4,
+    "I_xx": 1.7,
+    "m_u": 1.5,
+    "k_s": 1.8,
+    "k_t": 1.7,
+    "c_s": 2.0,
+    "a": 1.25,
+    "b": 1.25,
+    "t_": 1.2,
+}
+"""Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
+name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
+
+_ITERATIONS, _ENOUGH = 30, 1.0
+"""Of the fit to the beginnings of the decays, at the most, and the expected gain at which it ends."""
+
+_ITERATIONS_OF_ALL, _ENOUGH_OF_ALL = 10, 1.0
+"""The same of the fit to all of the decays: what is not needed is left out and the rest fitted once more."""
+
+
+def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[str, UsualValue]]:
+    """Return an ordinary vehicle with the terms of a structure, each of its usual size.
+
+    Parameters
+    ----------
+    structure
+        The model.
+
+    Returns
+    -------
+    values
+        Parameters by name, SI.
+    usual
+        Usual values of all parameters that are not those of a load, with their spread.
+    """
+    own = usual_vehicle(VehicleSize.of(structure.known, structure.campaign.sensors))
+    plain = structure.with_terms(())
+    masses = {name: known.value for name, known in structure.known.items() if name in structure.names}
+    own = {name: own[name] for name in plain.names if name in own} | masses
+    values = start_values(structure, own)
+    for term in structure.terms:
+        usual_of = TERMS[term].usual
+        values |= (
+            {}
+            if usual_of is None
+            else {name: value for name, value in usual_of(own, structure).items() if name in values}
+        )
+    usual = {
+        name: UsualValue(values[name], spread)
+        for name in plain.names
+        for start, spread in _SPREADS.items()
+        if name.startswith(start)
+    }
+    return values, usual | usual_sizes(structure, values)
+
+
+def usual_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[str, UsualValue]:
+    """Return the usual values of the parameters of a structure's terms, where they are those of a vehicle's.
+
+    Parameters
+    ----------
+    structure
+        The model.
+    values
+        Parameters of a vehicle with terms of usual size, SI, by name.
+    """
+    return {
+        name: UsualValue(values[name], TERMS[term].spread)
+        for term in structure.terms
+        for name in TERMS[term].parameters(structure.tracks)
+        if values[name] > 0
+    }
+
+
+def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+    """Return the search from an ordinary vehicle with every usual term, without those that are not needed.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    plain
+        The structure without anything that the recordings brought into it.
+
+    Returns
+    -------
+    ModelSearch
+        Model and fit as given where the ordinary vehicle explains no more.
+    """
+    terms = tuple(name for name in plain.open_terms if TERMS[name].usual is not None)
+    if not terms or not search.is_misfit_large or any(decay.clocks for decay in search.decays):
+        return search
+    search.progress(Step("fitting an ordinary vehicle with every usual term"))
+    found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))
+    gain = found.gain_over(search)
+    if gain < sum(map(search.required, terms)):
+        against = "together they do not explain more than the model so far"
+        return search.recorded(dict.fromkeys(terms, gain), True, False, against)
+    return _without_unneeded(found)
+
+
+def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
+    """Fit the ordinary vehicle, first to the beginnings of the decays; usual values stay as priors of the terms alone."""
+    values, usual = ordinary_vehicle(rich)
+    at_start = fit_linear(
+        search.decays, rich.linear_models, rich.campaign.sensors, rich.known, start=values, usual=usual, most=0
+    )
+    first = fit_structure(
+        replace(rich, usual=usual),
+        search.decays,
+        at_start,
+        _ENOUGH,
+        search.progress,
+        beginning_only=True,
+        most=_ITERATIONS,
+    )
+    rich = replace(rich, usual=usual_sizes(rich, values))
+    fit = fit_structure(rich, search.decays, first, _ENOUGH_OF_ALL, search.progress, most=_ITERATIONS_OF_ALL)
+    return replace(search, structure=rich, fit=fit)
+
+
+def _without_unneeded(search: ModelSearch) -> ModelSearch:
+    """Leave out all terms that are not missed together, and fit what is left."""
+    tracks = search.structure.tracks
+    while True:
+        against = {term: search.veto(term) for term in search.selected}
+        gains = {
+            term: wald_test(search.fit, TERMS[term].neutral(tracks)) / search.overdispersion for term in search.selected
+        }
+        unneeded: list[str] = []
+        for term in sorted(gains, key=lambda term: gains[term] / search.required(term)):
+            together = [*unneeded, term]
+            neutral = [one for name in together for one in TERMS[name].neutral(tracks)]
+            lost = wald_test(search.fit, neutral) / search.overdispersion
+            if against[term] or lost < sum(map(search.required, together)):
+                unneeded = together
+        if not unneeded:
+            return search.recorded(gains, True, True)
+        for term in unneeded:
+            search = search.recorded({term: gains[term]}, True, False, against[term])
+        kept = tuple(term for term in search.structure.terms if term not in unneeded)
+        search = search.refit(search.structure.with_terms(kept))

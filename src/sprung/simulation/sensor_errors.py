@@ -1,0 +1,101 @@
+"""Deviations of sensors from what is stated of them: gain, tilt, place and delay, drawn from their standard uncertainties."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Rows, Sensor, Vehicle
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SensorErrors:
+    """What each sensor differs by from what is stated; the same in all drops.
+
+    Attributes
+    ----------
+    gain
+        Relative, shape (channel,).
+    tilt
+        Of its axis forward and left, rad, shape (channel, 2).
+    place
+        How much further forward and left it sits, m, shape (channel, 2).
+    delay
+        s, shape (channel,).
+    """
+
+    gain: Array
+    tilt: Array
+    place: Array
+    delay: Array
+
+    @classmethod
+    def drawn(cls, sensors: Sequence[Sensor], random: np.random.Generator) -> SensorErrors:
+        """Draw the deviations of sensors from normal distributions."""
+        gain, tilt, place, delay = np.array(
+            [(one.gain_std, np.radians(one.tilt_std), one.position_std, one.delay_std) for one in sensors]
+        ).T
+        number = len(sensors)
+        return cls(
+            gain * random.standard_normal(number),
+            tilt[:, None] * random.standard_normal((number, 2)),
+            place[:, None] * random.standard_normal((number, 2)),
+            delay * random.standard_normal(number),
+        )
+
+    def readings(
+        self, vehicle: Vehicle, sensors: Sequence[Sensor], acceleration: Array, displacement: Array, rate: float
+    ) -> Array:
+        """Return what the sensors read of a motion, without gravity at rest.
+
+        Parameters
+        ----------
+        vehicle
+            Whose motion it is.
+        sensors
+            As stated.
+        acceleration, displacement
+            Of the coordinates, SI, shape (coordinate, time).
+        rate
+            Samples per second.
+
+        Returns
+        -------
+        ndarray
+            m/s², positive up, shape (channel, time).
+        """
+        moved = [_moved(sensor, *place.tolist()) for sensor, place in zip(sensors, self.place, strict=True)]
+        parameters = vehicle.parameters
+        rows = Rows.of([sensor.row for sensor in moved], tuple(parameters)).at(list(parameters.values()))
+        readings = np.cos(np.linalg.norm(self.tilt, axis=1))[:, None] * (rows @ acceleration)
+        pitch, roll = STANDARD_GRAVITY * displacement[1:3]
+        for channel, (sensor, (forward, left)) in enumerate(zip(sensors, np.sin(self.tilt), strict=True)):
+            if sensor.position is not None:
+                # Nose down and left side up are positive: what is above the axis then moves forward and to the right.
+                height = 0.0 if vehicle.cg_height is None else sensor.position[2] - vehicle.cg_height
+                readings[channel] += forward * (height * acceleration[1] - pitch)
+                readings[channel] -= left * (height * acceleration[2] - roll)
+        readings *= 1 + self.gain[:, None]
+        return np.array([_delayed(*pair, rate) for pair in zip(readings, self.delay.tolist(), strict=True)])
+
+
+def _moved(sensor: Sensor, forward: float, left: float) -> Sensor:
+    if sensor.position is None:
+        return sensor
+    x, y, z = sensor.position
+    return replace(sensor, position=(x + forward, y + left, z))
+
+
+def _delayed(reading: Array, delay: float, rate: float) -> Array:
+    if delay == 0:
+        return reading
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415 (hardly ever needed)
+
+    time = np.arange(reading.size) / rate
+    return np.asarray(CubicSpline(time, reading)(np.maximum(time - delay, 0.0)), dtype=np.float64)

@@ -1,0 +1,121 @@
+"""Segments of motions, all followed side by side from predicted initial states (multiple shooting).
+
+A step of the program costs nearly the same for one motion as for many. Where the motions are known roughly, they are cut into
+segments, which are followed at once; Newton's method closes what they leave between them.
+
+References
+----------
+H. G. Bock, Springer Series in Chemical Physics 18 (1981) 102.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.vehicle.stepping import Stepper, Trajectory
+
+Array = NDArray[np.float64]
+
+_SEGMENTS = 16
+"""Of a recording: many make few steps of the program, until they exceed a processor's cache."""
+
+_MOST_PASSES = 9
+"""Passes through the segments at the most: more would take longer than following whole motions."""
+
+_CLOSED = 1e-10
+"""Gap between segments, as a part of the largest state, that is none."""
+
+
+class Prediction(NamedTuple):
+    """Motions that are known roughly.
+
+    Attributes
+    ----------
+    starts
+        State and memories at the start of each segment, SI and dimensionless, shape (drop, segment, start).
+    transitions
+        The end of each segment by its start, SI, shape (drop, segment, start, start).
+    """
+
+    starts: Array
+    transitions: Array
+
+
+def segments_of(steps: int, every: int) -> tuple[int, int]:
+    """Return how motions are cut into segments.
+
+    Parameters
+    ----------
+    steps
+        Of the motions.
+    every
+        Steps from one sample to the next.
+
+    Returns
+    -------
+    number, length
+        Number of segments, and steps of each, a multiple of those between samples.
+    """
+    samples = steps // every + 1
+    number = min(_SEGMENTS, samples)
+    return number, -(-samples // number) * every
+
+
+def integrate_near(
+    stepper: Stepper, states: Array, memories: Array, steps: int, every: int, near: Prediction
+) -> Trajectory:
+    """Integrate motions from their initial states, near to a prediction.
+
+    Parameters
+    ----------
+    stepper
+        What steps.
+    states, memories
+        Of each drop, SI, shapes (drop, state) and (drop, memory).
+    steps
+        How many.
+    every
+        Steps from one sample to the next.
+    near
+        The prediction.
+
+    Returns
+    -------
+    Trajectory
+        As from `Stepper.integrate`.
+    """
+    number, length = segments_of(steps, every)
+    slots, (kind, slot) = stepper.slots, stepper.places
+    starts, state = near.starts.copy(), states.shape[1]
+    starts[:, 0] = np.concatenate([states, memories], axis=1)
+    scale = np.maximum(np.abs(starts).max(axis=(0, 1)), np.finfo(float).tiny)
+
+    def by_drop(values: Array) -> Array:
+        """Return values (step, kind, slot · segment, column) as (drop, segment, step, column)."""
+        split = values.reshape(*values.shape[:2], slots.shape[1], number, values.shape[3])
+        return np.moveaxis(split, 0, 3)[kind, slot]
+
+    error = 1.0
+    for left in reversed(range(_MOST_PASSES)):
+        begin = starts[slots].reshape(len(slots), -1, starts.shape[2])
+        motions, kept = stepper.follow(begin[..., :state], begin[..., state:], length)
+        ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
+        changes = np.zeros_like(starts)
+        for segment in range(number - 1):
+            moved = near.transitions[:, segment] @ changes[:, segment, :, None]
+            changes[:, segment + 1] = ends[:, segment] - starts[:, segment + 1] + moved[..., 0]
+        previous, error = error, float(np.max(np.abs(changes) / scale))
+        if error <= _CLOSED:
+            whole, memory = (
+                np.swapaxes(np.concatenate(np.swapaxes(by_drop(values[:-1]), 0, 1), axis=1)[:, : steps + 1], 0, 1)
+                for values in (motions, kept)
+            )
+            return Trajectory(whole[..., :state], whole[..., state:-1], memory)
+        # Further passes reduce the error as this one did.
+        if not error * (error / previous) ** left <= _CLOSED:
+            break
+        starts = starts + changes
+    return stepper.integrate(states, memories, steps)

@@ -1,0 +1,135 @@
+"""The simulator of real cars, which shares no equation with the package, equals it where both have the same physics."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from real_campaigns import record
+from real_kinds import KINDS, NO_VEHICLE, draw_test
+from real_motion import BallastItem, Motion, Row, Rows, follow
+from real_outcomes import Outcome, examine
+from real_rotations import follow_turning
+from real_vehicle import BodyMode, Occupant, RealCar
+
+import sprung
+from sprung.vehicle import TABLE_1_CAR, Vehicle
+
+SIZES: dict[str, Any] = dict(TABLE_1_CAR.parameters)
+PLAIN = RealCar(**SIZES)
+ITEMS = (BallastItem(140, -1.1, 0.3), BallastItem(80, -2.2, -0.3, (3.0, 4.0)))
+LOAD = {
+    "name": "ballast",
+    "items": [{"mass": one.mass, "position": (one.x, one.y, 0.5), "inertia": one.inertia} for one in ITEMS],
+}
+DROPS = [{"load": "empty", "wheels": ("fl", "fr")}, {"load": "ballast", "wheels": ("fl", "rl")}]
+ROWS = (Row(PLAIN, (), ("fl", "fr"), release=0.1), Row(PLAIN, ITEMS, ("fl", "rl"), release=0.1))
+
+
+def difference(car: RealCar, vehicle: Vehicle, step: float) -> float:
+    """Return the largest difference of wheel accelerations over the largest acceleration."""
+    simulated = sprung.simulate(vehicle, loads=[LOAD], drops=DROPS, noise=0.0, rest=0.1, duration=0.15)
+    motion = follow([replace(row, car=car) for row in ROWS], 500.0, 0.25, step)
+    every = round(0.002 / motion.step)
+    theirs = np.array([one.values[4:] for one in simulated.recordings]) - 9.80665
+    ours = motion.acceleration[:, 4:8, ::every]
+    # At the release itself a block is gone at once here, and there.
+    return float(np.abs(ours - theirs)[:, :, 52:].max() / np.abs(theirs).max())
+
+
+def test_equals_simulate_for_the_plain_car() -> None:
+    # Landings are kinks: the error of one step falls with its third power on average, 1e-5 at 0.25 ms.
+    assert difference(PLAIN, TABLE_1_CAR, 2.5e-4) < 2e-5
+    assert difference(PLAIN, TABLE_1_CAR, 1e-4) < 4e-6
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs"),
+    [
+        ({"anti_roll": (9e3, 4e3)}, {"k_af": 9e3, "k_ar": 4e3}),
+        ({"rebound": (1.8, 2.2)}, {"r_f": 1.8, "r_r": 2.2}),
+        ({"progressive": (2.0, 3.0)}, {"p_f": 2.0, "p_r": 3.0}),
+        ({"friction": (60.0, 50.0), "presliding": (3e5, 2e5)}, {"F_f": 60.0, "F_r": 50.0, "s_f": 3e5, "s_r": 2e5}),
+    ],
+    ids=["anti-roll", "rebound", "progressive", "friction"],
+)
+def test_equals_simulate_for_laws_that_both_have(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
+    # Time stepping of nonlinear elements has errors of 1e-4 there; the noise is 2e-4 of the largest acceleration.
+    assert difference(replace(PLAIN, **ours), replace(TABLE_1_CAR, **theirs), 2.5e-4) < 3e-4
+
+
+def test_energy_is_conserved_without_dampers() -> None:
+    car = replace(
+        PLAIN, c_sf=1e-9, c_sr=1e-9, body_mode=BodyMode("twist", 12.0, damping=0.0), anti_roll=(5e3, 3e3),
+        occupants=(Occupant(-1.0, 0.4, damping=0.0),),
+    )  # fmt: skip
+    motion = follow([Row(car, ITEMS, ("fl", "rl"), release=0.1)], 500.0, 0.5, with_energy=True)
+    falling = motion.energy[0, 401:]
+    assert np.ptp(falling) < 1e-4 * (falling[0] - energy_at_rest(car))
+
+
+def energy_at_rest(car: RealCar) -> float:
+    system = Rows([Row(car, ITEMS)])
+    flat = np.zeros((1, 4))
+    return float(system.energy(system.rest(flat), flat)[0])
+
+
+def test_a_relaxed_branch_and_a_stiff_mount_change_nothing() -> None:
+    motions: list[Motion] = []
+    for car in (
+        PLAIN,
+        replace(PLAIN, mount=(60 * 17e3, 60 * 22e3), mount_damping=(1e6, 1e6)),
+        replace(PLAIN, zener=(0.2, 0.2), relaxation=(1e-3, 1e-3), c_sf=1500 - 3.4, c_sr=1500 - 4.4),
+    ):
+        motions.append(follow([replace(ROWS[0], car=car)], 500.0, 0.25))
+    plain, mounted, relaxed = (one.acceleration[0, 4:8, 500:] for one in motions)
+    assert np.abs(mounted - plain).max() < 5e-3 * np.abs(plain).max()  # c / (c + 1e6) of the travel
+    assert np.abs(relaxed - plain).max() < 5e-3 * np.abs(plain).max()  # a branch of 1 ms is a damper of k τ
+
+
+def test_damper_curve_is_inverted() -> None:
+    car = draw_test("usual", 3).car
+    system = Rows([Row(car)])
+    rates = np.array([[0.01, -0.3, 1.0, -2.0]])
+    pull = system.damper(rates) + system.mount_damping * rates
+    np.testing.assert_allclose(system.damper_rate(pull), rates, rtol=1e-12)
+    np.testing.assert_allclose(system.damper(rates)[0, 0], car.damper_force(rates[0, 0], 0), rtol=1e-12)
+
+
+def test_small_rotations_are_those_of_the_plane_equations() -> None:
+    test = draw_test("tall", 1)
+    rows = [Row(test.car, (), wheels, height=1e-5, release=0.1) for wheels in (("fl", "fr"), ("fl", "rl"))]
+    turning = follow_turning(rows, test.sensors, 0.5, 0.5, 500.0, 0.3)
+    flat = follow(rows, 500.0, 0.3, turning.step)
+    assert turning.readings is not None
+    for row in range(len(rows)):
+        ours = np.array([one.reading(test.car, flat, row, 0.5) for one in test.sensors])
+        # Second order in the angle of 1e-5 rad: 1e-9 m/s² of gravity and less.
+        np.testing.assert_allclose(turning.readings[row], ours, rtol=0, atol=3e-9)
+
+
+def test_a_campaign_of_every_kind() -> None:
+    tests = [draw_test(kind, 5) for kind in (*KINDS, *NO_VEHICLE)]
+    short = [replace(one, drops=one.drops[1:2]) for one in tests]
+    for test, (campaign, truth) in zip(short, record(short, 0.8), strict=True):
+        assert campaign.name == f"{test.kind} 5"
+        assert len(campaign.drops) == 1
+        values = campaign.recordings[0].values
+        assert values.shape == (8, 400)
+        assert np.abs(values[:, :190] - 9.81).max() < 0.5  # gravity, with gains of one per cent
+        assert 20 < np.abs(values[4:6]).max() < 300
+        assert 0.42 < truth.last_lift_off[0] < 0.7
+        # Nothing is thrown away that the recordings' noise would show.
+        assert values[:, :190].std(axis=1) == pytest.approx(0.02, rel=0.35)
+
+
+def test_what_fails_is_an_outcome() -> None:
+    ((campaign, truth),) = record([replace(draw_test("plain", 0), drops=draw_test("plain", 0).drops[:1])], 1.2)
+    failed = examine(campaign, truth, 30.0, extras=["no such term"])
+    assert isinstance(failed, Outcome)
+    assert failed.verdict == "failed"
+    assert "no such term" in failed.reason
+    late = examine(campaign, truth, 0.01)
+    assert (late.verdict, late.reason) == ("failed", "more than 0.01 s of processor time")

@@ -1,0 +1,111 @@
+"""A body that is not one rigid mass: twist, bending, and people on soft seats."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from numpy.typing import NDArray
+
+import sprung
+from sprung.simulation import drop_from_blocks, static_wheel_loads
+from sprung.vehicle import TABLE_1_CAR, Item, Load, Rows, Sensor, Vehicle, coordinates
+from sprung.vibration import compute_modes
+
+Array = NDArray[np.float64]
+
+
+def oscillator(names: tuple[str, str, str], mass: float, frequency: float, damping: float) -> dict[str, float]:
+    omega = 2 * np.pi * frequency
+    return dict(zip(names, (mass, mass * omega**2, 2 * damping * mass * omega), strict=True))
+
+
+def car_with(more: dict[str, float]) -> Vehicle:
+    return Vehicle.from_parameters(TABLE_1_CAR.parameters | more)
+
+
+TWISTS = car_with(oscillator(("I_w", "k_w", "c_w"), 40.0, 12.0, 0.02) | {"a_w": 0.1})
+BENDS = car_with(oscillator(("m_v", "k_v", "c_v"), 900.0, 14.0, 0.02) | {"b_v": 0.25, "p_v": 0.05})
+SEATED = car_with(oscillator(("m_o", "k_o", "c_o"), 150.0, 4.5, 0.3) | {"x_o": -1.2, "y_o": 0.2})
+CARS = pytest.mark.parametrize("car", [TWISTS, BENDS, SEATED], ids=["twist", "bending", "occupants"])
+
+BAGS = Load(
+    name="bags",
+    items=(
+        Item(mass=140.0, position=(-2.2, 0.1, 0.6), inertia=(5.0, 8.0)),
+        Item(mass=80.0, position=(-0.9, -0.4, 0.6)),
+    ),
+)
+
+
+def test_the_shapes_are_those_of_a_body_that_turns_and_bends_along_its_length() -> None:
+    """The angle of twist is linear along the body, the deflection by bending a parabola through the axles."""
+    car = Vehicle.from_parameters(TWISTS.parameters | {name: BENDS.parameters[name] for name in BENDS.parameters})
+    names, L = tuple(car.parameters), car.wheelbase
+    places = [(0.3, 0.5), (0.0, 0.7), (-L / 2, 0.6), (-L, -0.4), (-3.1, 0.2)]
+    sensors = [Sensor(channel=str(i), on="body", position=(x, y, 0.5)) for i, (x, y) in enumerate(places)]
+    rows = Rows.of([sensor.row for sensor in sensors], names).at(list(car.parameters.values()))
+    order = coordinates(names)
+    x, y = np.array(places).T
+    assert_allclose(rows[:, order.index("q_w")], y * (x + L / 2), atol=1e-12)
+    assert_allclose(rows[:, order.index("q_v")], (L / 2) ** 2 / 2 - (x + L / 2) ** 2 / 2, atol=1e-12)
+    # A pure twist strains springs by what the corners rise; the middle's rise by bending strains none.
+    K = car.matrices().K - np.diag([car.k_w * L**2 if name == "q_w" else 0.0 for name in order])
+    corners = [(car.k_sf, car.t_f), (car.k_sr, car.t_r)]
+    own = sum(2 * rate * (half or 0.0) ** 2 * (L / 2) ** 2 for rate, half in corners)
+    assert K[order.index("q_w"), order.index("q_w")] == pytest.approx(own)
+    assert K[order.index("q_v"), order.index("q_v")] == pytest.approx(car.k_v * (L**2 / 8) ** 2)
+
+
+def test_a_floating_body_swings_at_its_own_frequency() -> None:
+    soft = {"k_sf": 1e-3, "k_sr": 1e-3, "c_sf": 1e-3, "c_sr": 1e-3}
+    for car, name, frequency in ((TWISTS, "body twist", 12.0), (BENDS, "body bending", 14.0)):
+        floating = Vehicle.from_parameters(car.parameters | soft)
+        modes = {mode.name: mode for mode in compute_modes(floating.matrices(), coordinates(car.parameters))}
+        assert modes[name].frequency == pytest.approx(frequency, rel=1e-5)
+        assert modes[name].damping_ratio == pytest.approx(0.02, rel=1e-4)
+
+
+@CARS
+def test_at_rest_it_weighs_what_a_rigid_one_weighs(car: Vehicle) -> None:
+    stiff = {name: 1e9 for name in ("k_w", "k_v", "k_o") if name in car.parameters}
+    rigid = Vehicle.from_parameters(car.parameters | stiff)
+    assert_allclose(static_wheel_loads(rigid, BAGS), static_wheel_loads(TABLE_1_CAR, BAGS), rtol=1e-3)
+    assert static_wheel_loads(car, BAGS).sum() == pytest.approx(static_wheel_loads(TABLE_1_CAR, BAGS).sum())
+
+
+@CARS
+def test_a_rigid_one_is_the_paper_s(car: Vehicle) -> None:
+    stiff = {name: 1e10 for name in ("k_w", "k_v", "k_o") if name in car.parameters}
+    rigid = Vehicle.from_parameters(car.parameters | stiff | ({"c_o": 1e6} if "c_o" in car.parameters else {}))
+    ours, plain = (drop_from_blocks(one, wheels=("fl", "rr")).motion(0.002, 300) for one in (rigid, TABLE_1_CAR))
+    wheels = slice(3, 7)
+    assert_allclose(ours.displacement[wheels], plain.displacement[wheels], atol=2e-5)
+
+
+@CARS
+def test_without_noise_identification_returns_what_was_simulated(car: Vehicle) -> None:
+    result = sprung.identify(sprung.simulate(car, loads=[BAGS], noise=0.0), extras=car.extras)
+    for name, value in car.parameters.items():
+        assert result.parameters[name].value == pytest.approx(value, rel=1e-4, abs=1e-4)
+
+
+@CARS
+def test_it_is_estimated_within_its_errors(car: Vehicle) -> None:
+    result = sprung.identify(sprung.simulate(car, loads=[BAGS], noise=0.02, seed=1), extras=car.extras)
+    assert result.verdict.state == "accept"
+    for name, value in car.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - value) < 4 * found.std
+
+
+def test_people_on_seats_are_selected() -> None:
+    campaign = sprung.simulate(SEATED, loads=[BAGS], noise=0.02, seed=1)
+    assert sprung.identify(campaign).fit.model == ("occupants",)
+
+
+def test_an_infinite_modal_mass_is_none() -> None:
+    assert TABLE_1_CAR.extras == ()
+    assert replace(TABLE_1_CAR, I_w=40.0).extras == ("twist",)
