@@ -9,9 +9,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.assessment import estimate_model_error
 from sprung.display import shown
 from sprung.estimation import NEAR, FitResult, wald_test
-from sprung.preprocess import FreeDecay
+from sprung.preprocess import FreeDecay, estimate_sensor_noise
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.starts import fit_structure
@@ -161,25 +162,23 @@ class ModelSearch:
         return self.fit.overdispersion
 
     @cached_property
-    def _noise_at_rest(self) -> Real:
-        """Variance of each channel while the vehicle stood on its blocks, (m/s²)²; 0 where unknown; shape (channel,)."""
-        rests = [decay.rest.noise for decay in self.decays if decay.rest.noise.shape[1]]
-        variances = [np.nan_to_num(noise.var(axis=1)) for noise in rests] or [np.zeros_like(self.fit.noise)]
-        mean: Real = np.mean(variances, axis=0)
-        return mean
+    def _sensor_noise(self) -> Real:
+        """Variance of each channel by its noise at rest and its resolution, (m/s²)²; 0 where unknown; shape (channel,)."""
+        noise = estimate_sensor_noise(self.decays, self.fit.residual_moments)
+        return np.where(noise.samples > 0, noise.variance + noise.added, 0.0)
 
     @cached_property
     def has_model_error(self) -> bool:
-        """Whether the model leaves much more than the sensors' noise at rest."""
-        known = self._noise_at_rest > 0
-        ratio = self.fit.noise[known] ** 2 / self._noise_at_rest[known]
+        """Whether the model leaves much more than the noise of the sensors."""
+        known = self._sensor_noise > 0
+        ratio = self.fit.noise[known] ** 2 / self._sensor_noise[known]
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
 
-    @property
+    @cached_property
     def is_misfit_large(self) -> bool:
-        """Whether what is left is no noise, and enough of some channel's signal that the parameters cannot be trusted."""
-        excess = np.maximum(self.fit.noise**2 - self._noise_at_rest, 0.0) * self.fit.problem.signal_weights
-        return self.overdispersion > OVERDISPERSED and float(excess.max()) > UNEXPLAINED**2
+        """Whether the model error is so large a part of some channel's signal that the parameters cannot be trusted."""
+        model_error, _ = estimate_model_error(self.fit, self.decays)
+        return float(model_error.max()) > UNEXPLAINED
 
     @property
     def is_misfit_small(self) -> bool:
@@ -237,8 +236,8 @@ class ModelSearch:
 
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
         """Whether another fit leaves more than a part of this one's model error: then it lacks something else."""
-        before, after = (np.maximum(one.noise**2 - self._noise_at_rest, 0.0) for one in (self.fit, fit))
-        much = before > self._noise_at_rest
+        before, after = (np.maximum(one.noise**2 - self._sensor_noise, 0.0) for one in (self.fit, fit))
+        much = before > self._sensor_noise
         return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
     @property

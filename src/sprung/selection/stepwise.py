@@ -283,6 +283,8 @@ def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
         tried, gains = _without_unneeded(tried, search)
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
     against = tried.veto(term)
+    if search.is_misfit_small and tried.overdispersion > search.overdispersion:
+        against = against or "what is left is even less like noise with it"
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and tried.has_model_error:
         tried = select_linear_terms(tried, [other for other in _LINEAR if not TERMS[other].explains_all])
