@@ -95,7 +95,8 @@ def is_needed(fit: FitStatistics) -> bool:
     total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     # Falling tells nothing of the absolute scale: what is left of the uncertainties when the total mass is given.
     within = np.eye(len(fit.names)) - np.outer(scaling, gradient * fit.slopes / total)
-    errors = np.sqrt(np.diag(within @ fit.relative_covariance @ within.T)) * np.abs(fit.slopes)
+    variances = np.maximum(np.diag(within @ fit.relative_covariance @ within.T), 0.0)  # below 0 by rounding alone
+    errors = np.sqrt(variances) * np.abs(fit.slopes)
     sizes = np.array([fit.size(name) for name in fit.names])
     hopeless = np.abs(fit.undetermined - np.outer(scaling, scaling @ fit.undetermined) / (scaling @ scaling)).max(
         initial=0
