@@ -1,6 +1,7 @@
 """Time steps of vehicles with coordinates without mass: the rate of a damper behind its mount depends on its own force."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
@@ -18,7 +19,16 @@ from sprung.vehicle import (
 
 Array = NDArray[np.float64]
 
-RUBBER = {"k_df": 2.0e5, "k_dr": 2.4e5, "k_zf": 3000.0, "k_zr": 4500.0, "c_zf": 150.0, "c_zr": 290.0}
+RUBBER = {
+    "k_df": 2.0e5,
+    "k_dr": 2.4e5,
+    "c_df": 140.0,
+    "c_dr": 90.0,
+    "k_zf": 3000.0,
+    "k_zr": 4500.0,
+    "c_zf": 150.0,
+    "c_zr": 290.0,
+}
 CAR = Vehicle.from_parameters(TABLE_1_CAR.parameters | RUBBER)
 WITH_REBOUND = Vehicle.from_parameters(CAR.parameters | {"r_f": 1.8, "r_r": 2.4})
 WITH_FRICTION = Vehicle.from_parameters(
@@ -43,14 +53,16 @@ def rates_of_change(car: Vehicle, state: Array) -> Array:
     accelerations, relaxations = np.zeros(7), np.zeros(8)
     masses = (car.m_s, car.I_yy, car.I_xx, car.m_uf, car.m_uf, car.m_ur, car.m_ur)
     for i, (axle, side) in enumerate((("f", 1), ("f", -1), ("r", 1), ("r", -1))):
-        k_s, k_t, c_s, k_d, k_z, c_z, r, half = (
-            getattr(car, f"{name}{axle}") for name in ("k_s", "k_t", "c_s", "k_d", "k_z", "c_z", "r_", "t_")
+        k_s, k_t, c_s, k_d, c_d, k_z, c_z, r, half = (
+            getattr(car, f"{name}{axle}") for name in ("k_s", "k_t", "c_s", "k_d", "c_d", "k_z", "c_z", "r_", "t_")
         )
         lever = -car.a if axle == "f" else car.b
         travel = z + lever * theta + side * half * phi - wheels[i]
-        mount, branch = k_d * (travel - dampers[i]), k_z * (travel - branches[i])
-        relaxations[i], relaxations[4 + i] = mount / (c_s * (r if mount > 0 else 1.0)), branch / c_z
-        force = k_s * travel + mount + branch
+        speed = velocities[0] + lever * velocities[1] + side * half * velocities[2] - velocities[3 + i]
+        mount, branch = k_d * (travel - dampers[i]) + c_d * speed, k_z * (travel - branches[i])
+        damping = c_s * (r if mount > 0 else 1.0)
+        relaxations[i], relaxations[4 + i] = mount / (damping + c_d), branch / c_z
+        force = k_s * travel + damping * relaxations[i] + branch
         accelerations[:3] -= force * np.array([1.0, lever, side * half])
         accelerations[3 + i] += force - k_t * wheels[i]
     return np.concatenate([velocities, relaxations, accelerations / masses])
@@ -75,7 +87,9 @@ def test_rebound_behind_a_mount_is_that_of_newtons_equations() -> None:
     assert np.all(np.abs(found - there.y.T) < 5e-4 * np.abs(found).max(axis=0))
 
 
-def test_derivatives_are_those_of_the_steps_themselves() -> None:
+def test_derivatives_are_those_of_the_steps_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Forces are solved for to 1e-6 of the largest, which differences of them would show: here almost to rounding."""
+    monkeypatch.setattr("sprung.vehicle.stepping._SOLVED", 1e-10)
     car, steps, states, memories = WITH_FRICTION, 60, START[None], np.full((1, 4), 0.3)
     before = stepper(car, 0.001)
     values = before.values
@@ -93,4 +107,4 @@ def test_derivatives_are_those_of_the_steps_themselves() -> None:
             ends.append(np.concatenate([there.states, there.forces], axis=2))
         slope = (ends[0] - ends[1]) / (2e-6 * abs(value))
         scale = np.abs(slope).max(axis=(0, 1)) + 1e-9 * np.abs(slope).max()
-        assert np.all(np.abs(found[..., unknown] - slope) < 2e-3 * scale)
+        assert np.all(np.abs(found[..., unknown] - slope) < 3e-4 * scale)

@@ -13,7 +13,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.modal_solution import ModalSolution, differentiate_modes, differentiate_response, solve_modes
+from sprung.estimation.modal_solution import (
+    ModalSolution,
+    differentiate_modes,
+    differentiate_response,
+    solve_modes,
+    turns,
+)
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
 from sprung.estimation.records import RecordBatch, batch_records, in_order
@@ -26,9 +32,6 @@ Complex = NDArray[np.complex128]
 
 _UNBOUNDED = 100.0
 """Powers of e by which no motion grows within a record."""
-
-_BACKWARD = 30.0
-"""Powers of e by which a motion may grow on its way back in time: long before, it is no motion of a vehicle."""
 
 _DEFECTIVE = 300.0
 """Condition number of a pole from which two modes have all but met in one shape."""
@@ -254,8 +257,7 @@ class ClosedFormAt:
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
         motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
-        growth = np.exp(np.minimum(np.outer(np.arange(-before, 0) * step, poles[upper].real), _BACKWARD))
-        powers = growth * exponentials(-1j * poles[upper].imag * step, before + 1)[:0:-1]
+        powers = turns(np.outer(np.arange(-before, 0) * step, poles[upper]))
         motion[:, :before] = real_product(coefficients, powers)
         return motion
 

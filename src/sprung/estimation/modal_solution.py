@@ -20,6 +20,9 @@ Complex = NDArray[np.complex128]
 _CLOSE = 1e-6
 """Two poles are one where their difference turns by less than this over a record: their mode is then t e^{λt}."""
 
+_BACKWARD = 30.0
+"""Powers of e by which a motion may grow on its way back in time: before the start of a record, it is none of a vehicle."""
+
 
 @dataclass(frozen=True, eq=False)
 class ModalSolution:
@@ -100,7 +103,18 @@ def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolu
 
 def turns_of_delays(sensors: Readout, values: Real, poles: Complex) -> Complex:
     """Return by what a delay δ of each sensor turns its shape in each mode: e^{-λδ}, shape (..., channel, mode)."""
-    return np.asarray(np.exp(-poles[..., None, :] * sensors.delays(values)[..., None]))
+    return turns(poles[..., None, :] * -sensors.delays(values)[..., None])
+
+
+def turns(exponents: Complex) -> Complex:
+    """Return by what times turn shapes, e^{λt}; of a mode that dies long before the next sample, no more than can be told.
+
+    Parameters
+    ----------
+    exponents
+        λt.
+    """
+    return np.asarray(np.exp(np.minimum(exponents.real, _BACKWARD) + 1j * exponents.imag))
 
 
 def differentiate_modes(

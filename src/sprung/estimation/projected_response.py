@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.clock_delays import CONVERGED, MOST_STEPS, ClockDelays
-from sprung.estimation.modal_solution import ModalSolution
+from sprung.estimation.modal_solution import ModalSolution, turns
 from sprung.estimation.records import RecordBatch
 from sprung.vibration import exponential_gram, exponentials
 
@@ -123,7 +123,7 @@ class ExponentialSums:
     def _turned(self, delays: Real) -> ExponentialSums:
         """Return the sums with delays in the shapes; every record is a group then."""
         by_channel = (delays @ self.batch.clock_design.T)[:, :, None]
-        return replace(self, shapes=self.shapes * np.exp(self.poles[:, None] * by_channel))
+        return replace(self, shapes=self.shapes * turns(self.poles[:, None] * by_channel))
 
     def _clock_delays(self, response: ProjectedResponse, delays: Real) -> ClockDelays:
         sums, m = response.sums, response.modes
@@ -226,7 +226,7 @@ class ProjectedResponse:
             return derivatives
         batch = self.sums.batch
         delay = (self.clocks.values @ batch.clock_design.T)[:, :, None, None]
-        turn = np.exp(self.sums.poles[:, None, None] * delay)
+        turn = turns(self.sums.poles[:, None, None] * delay)
         shapes, secular = np.split(derivatives, 2, axis=-1)
         secular = secular * turn
         moved = shapes * turn + secular * (delay / batch.step[:, None, None, None])
