@@ -12,8 +12,10 @@ from dataclasses import replace
 
 from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle, wald_test
 from sprung.progress import Step
+from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values
+from sprung.selection.stepwise import select_further_terms
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 
@@ -113,15 +115,18 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))
-    gain = found.gain_over(search)
-    if gain < sum(map(search.required, terms)):
-        against = "together they do not explain more than the model so far"
+    gain = 0.0 if found is None else found.gain_over(search)
+    if found is None or gain < sum(map(search.required, terms)):
+        against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, gain), True, False, against)
-    return _without_unneeded(found)
+    return select_further_terms(_without_unneeded(found))
 
 
-def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
-    """Fit the ordinary vehicle, first to the beginnings of the decays; usual values stay as priors of the terms alone."""
+def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
+    """Fit the ordinary vehicle, first to the beginnings of the decays; None where it leaves too much of the misfit there.
+
+    Usual values stay as priors of the terms alone.
+    """
     values, usual = ordinary_vehicle(rich)
     at_start = fit_linear(
         search.decays, rich.linear_models, rich.campaign.sensors, rich.known, start=values, usual=usual, most=0
@@ -135,6 +140,8 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
         beginning_only=True,
         most=_ITERATIONS,
     )
+    if search.leaves_misfit(first, MISFIT_LEFT):
+        return None
     rich = replace(rich, usual=usual_sizes(rich, values))
     fit = fit_structure(rich, search.decays, first, _ENOUGH_OF_ALL, search.progress, most=_ITERATIONS_OF_ALL)
     return replace(search, structure=rich, fit=fit)

@@ -91,16 +91,10 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     search, ranked = _ranked(search, scores, 1.0)
     if not ranked:
         return search
-    # The best alone, with those that gain enough beside what the drops disagree, and all that may gain enough.
-    certain = [
-        term
-        for term in ranked
-        if scores[term][0] > search.required(term) * search.fit.disagreement or term == ranked[0]
-    ]
-    groups = [ranked[:1], *([certain] if len(certain) > 1 else []), *([ranked] if len(ranked) > len(certain) else [])]
     best, steps = search, search.steps
     for base in _bases(search, plain):
-        found = _with_nonlinear_terms(replace(base, steps=steps), groups)
+        found, accepted = _first_accepted(replace(base, steps=steps), [ranked[:1]])
+        found = select_further_terms(found) if accepted else found
         steps = found.steps
         best = found if found.delta_bic(search) > best.delta_bic(search) else best
         if best.structure.is_nonlinear and not best.has_model_error:
@@ -112,6 +106,32 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     gains = {step.extra: step.gain for step in search.steps if step.taken}
     gone = {term: gains[term] for term in search.selected if term not in best.selected}
     return select_gravity_leakage(best.recorded(gone, True, False, f"it is not needed beside {beside}"))
+
+
+def select_further_terms(search: ModelSearch) -> ModelSearch:
+    """Return the search after terms of any kind have been tried beside the nonlinear ones that it has.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    tried: set[str] = set()
+    for _ in range(_FURTHER_ROUNDS):
+        if not search.structure.is_nonlinear or search.is_misfit_small:
+            break
+        terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
+        _, scores = score_terms(search, terms)
+        promising = [term for term in terms if scores[term][0] > search.required(term) * search.overdispersion]
+        tried |= set(promising)
+        search, accepted = _first_accepted(search, [promising] if promising else [])
+        if not accepted:
+            break
+    return search
 
 
 def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
@@ -376,20 +396,6 @@ def _fit_nonlinear(search: ModelSearch, larger: ModelStructure) -> ModelSearch |
     if search.leaves_misfit(first, MISFIT_LEFT):
         return None
     return replace(search, fit=first).refit(larger)
-
-
-def _with_nonlinear_terms(base: ModelSearch, groups: Sequence[Sequence[str]]) -> ModelSearch:
-    """Fit groups of nonlinear terms beside a linear model until one is accepted; then look for more terms of any kind."""
-    found, accepted = _first_accepted(base, groups)
-    for _ in range(_FURTHER_ROUNDS):
-        if not accepted or not found.structure.is_nonlinear or found.is_misfit_small:
-            break
-        refused = {step.extra for step in found.steps[len(base.steps) :] if step.fitted and not step.taken}
-        terms = [term for term in found.open_terms(tuple(TERMS)) if term not in refused]
-        _, scores = score_terms(found, terms)
-        promising = [term for term in terms if scores[term][0] > found.required(term) * found.overdispersion]
-        found, accepted = _first_accepted(found, [promising] if promising else [])
-    return found
 
 
 def _bases(search: ModelSearch, plain: ModelStructure) -> Iterator[ModelSearch]:
