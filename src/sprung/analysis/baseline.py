@@ -27,6 +27,11 @@ from sprung.selection import (
 Real = NDArray[np.float64]
 
 
+_STEPPED = 1e-4
+"""Expected gain in log-likelihood at which a fit by time stepping has converged: a hundredth of a standard error. Forces are
+solved for to a part of their size, so the likelihood is no smoother."""
+
+
 def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
     """Fit the requested model as far as it is linear, and let it tell from where on all tyres are on the ground."""
     requested, structure = structures(run)
@@ -102,8 +107,10 @@ def fit_baseline_model(
 def from_contact(search: ModelSearch, most: int = MOST_STEPS) -> ModelSearch:
     """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again."""
 
+    enough = _STEPPED * search.overdispersion if search.structure.is_time_stepped else CONVERGED
+
     def refitted(decays: Sequence[FreeDecay], fit: FitResult, states: Real) -> FitResult:
-        return fit_structure(search.structure, decays, fit, CONVERGED, search.progress, states, most=most)
+        return fit_structure(search.structure, decays, fit, enough, search.progress, states, most=most)
 
     decays, fit = fit_from_contact(search.decays, search.structure.linear_models, search.fit, refitted)
     return replace(search, decays=decays, fit=fit)

@@ -20,7 +20,7 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, Readout, Vehicle, coordinates, evaluate_quantity
+from sprung.vehicle import WHEELS, Readout, Vehicle, state_variables, evaluate_quantity
 
 Real = NDArray[np.float64]
 
@@ -108,12 +108,13 @@ def _initial_states(
     campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]
 ) -> Real:
     """Return {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
-    states = optimum.states[:, : 2 * len(coordinates(optimum.names))].copy()
+    states = optimum.states[:, : len(state_variables(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **choice.heights.by_key)
     rows = Readout.of(campaign.sensors, optimum.names).at(optimum.values)
     for state, flight in zip(states, found, strict=True):
         if flight is not None:
-            state[:] = _start(flight, vehicle, campaign, rows)
+            # Coordinates without mass, whose velocities are no part of the state, come last.
+            state[:] = _start(flight, vehicle, campaign, rows)[: len(state)]
     return states
 
 

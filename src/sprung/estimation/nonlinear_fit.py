@@ -28,6 +28,9 @@ _COARSE, _FINE = 0.0025, 0.00101
 
 _MOST_STEPS = 100
 
+_ON_THE_WAY = 1.0
+"""Expected gain in log-likelihood at which a fit to the beginnings ends that is followed by one to the whole decays."""
+
 _RESTARTS = 2
 """Times that a fit starts again where the memory of a friction is impossible."""
 
@@ -95,7 +98,9 @@ def fit_nonlinear(
     known = {**known, **uncertainties_of(sensors)}
     steps, values = 0, expected_nuisances(known) | dict(start)
     stages = (
-        [([_beginning(decay) for decay in decays], max(enough, NEAR), _COARSE)] if beginning_only or not near else []
+        [([_beginning(decay) for decay in decays], max(enough, NEAR if beginning_only else _ON_THE_WAY), _COARSE)]
+        if beginning_only or not near
+        else []
     )
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))

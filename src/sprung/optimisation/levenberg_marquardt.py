@@ -129,7 +129,7 @@ def maximise(
         # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
         if equations.step(damping)[1] < tolerance and equations.step()[1] < tolerance:
             return Maximum(point, steps, converged=True)
-        found = _gaining_step(problem, point, equations, damping, longest_step)
+        found = _gaining_step(problem, point, equations, damping, longest_step, tolerance)
         if found is None:
             # Not even the shortest step gains: without noise rounding leaves no more.
             return Maximum(point, steps, converged=equations.step(_MOST_DAMPING)[1] < _STALLED)
@@ -143,7 +143,12 @@ def maximise(
 
 
 def _gaining_step(
-    problem: Maximisable[Point], point: Point, equations: NormalEquations, damping: float, longest: float
+    problem: Maximisable[Point],
+    point: Point,
+    equations: NormalEquations,
+    damping: float,
+    longest: float,
+    tolerance: float,
 ) -> tuple[Point, float, float] | None:
     """Return the point a step further that does not lose, the next damping and the expected gain; None if there is none.
 

@@ -26,6 +26,9 @@ MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.3
 """Part of the linear vehicle's model error that a nonlinear one may leave after its first steps and at its end: a term that
 leaves more is not the missing one, and its estimates are of no use."""
 
+LEAST_SHARE = 0.05
+"""Part of what is left to explain that a term has to explain: less than that is feigned by whatever else is wrong."""
+
 UNEXPLAINED = 0.02
 """Model error, as a part of a channel's signal, from which a vehicle with every usual term is fitted: what is slow is tried
 only where the model so far is of no use."""

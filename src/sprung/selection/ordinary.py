@@ -14,7 +14,7 @@ from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import fit_structure, start_values
+from sprung.selection.starts import start_values
 from sprung.selection.stepwise import select_further_terms
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
@@ -34,11 +34,11 @@ _SPREADS: Mapping[str, float] = {
 """Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
 name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
 
-_ITERATIONS, _ENOUGH = 30, 1.0
-"""Of the fit to the beginnings of the decays, at the most, and the expected gain at which it ends."""
+_ITERATIONS = 30
+"""Of the fit of the ordinary vehicle, at the most."""
 
-_ITERATIONS_OF_ALL, _ENOUGH_OF_ALL = 10, 1.0
-"""The same of the fit to all of the decays: what is not needed is left out and the rest fitted once more."""
+_HELD = 1.1
+"""Factor within which a parameter is held that means little where its term is small."""
 
 
 def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[str, UsualValue]]:
@@ -95,6 +95,19 @@ def usual_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[
     }
 
 
+def held_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[str, UsualValue]:
+    """Return the usual values of parameters that mean little where their term is small, with a narrow spread.
+
+    Parameters
+    ----------
+    structure, values
+        As for `usual_sizes`.
+    """
+    held = tuple(TERMS[term].held for term in structure.terms if TERMS[term].held)
+    usual = usual_sizes(structure, values)
+    return {name: UsualValue(value, _HELD) for name, (value, _) in usual.items() if name.startswith(held)}
+
+
 def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
     """Return the search from an ordinary vehicle with every usual term, without those that are not needed.
 
@@ -115,40 +128,30 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))
-    gain = 0.0 if found is None else found.gain_over(search)
-    if found is None or gain < sum(map(search.required, terms)):
+    if search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
-        return search.recorded(dict.fromkeys(terms, gain), True, False, against)
-    return select_further_terms(_without_unneeded(found))
+        return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
+    found = _without_unneeded(found)
+    return select_further_terms(found.refit(found.structure))
 
 
-def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
-    """Fit the ordinary vehicle, first to the beginnings of the decays; None where it leaves too much of the misfit there.
+def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
+    """Fit the ordinary vehicle to the beginnings of the decays; usual values stay as priors of the terms alone.
 
-    Usual values stay as priors of the terms alone.
+    What no term would need to gain does not matter yet.
     """
     values, usual = ordinary_vehicle(rich)
     at_start = fit_linear(
         search.decays, rich.linear_models, rich.campaign.sensors, rich.known, start=values, usual=usual, most=0
     )
-    first = fit_structure(
-        replace(rich, usual=usual),
-        search.decays,
-        at_start,
-        _ENOUGH,
-        search.progress,
-        beginning_only=True,
-        most=_ITERATIONS,
-    )
-    if search.leaves_misfit(first, MISFIT_LEFT):
-        return None
-    rich = replace(rich, usual=usual_sizes(rich, values))
-    fit = fit_structure(rich, search.decays, first, _ENOUGH_OF_ALL, search.progress, most=_ITERATIONS_OF_ALL)
-    return replace(search, structure=rich, fit=fit)
+    held = replace(rich, usual=usual | held_sizes(rich, values))
+    found = replace(search, structure=held, fit=at_start)
+    found = found.refit(held, _ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+    return replace(found, structure=replace(rich, usual=usual_sizes(rich, values)))
 
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:
-    """Leave out all terms that are not missed together, and fit what is left."""
+    """Leave out all terms that are not missed together, and fit what is left to the beginnings of the decays."""
     tracks = search.structure.tracks
     while True:
         against = {term: search.veto(term) for term in search.selected}
@@ -167,4 +170,4 @@ def _without_unneeded(search: ModelSearch) -> ModelSearch:
         for term in unneeded:
             search = search.recorded({term: gains[term]}, True, False, against[term])
         kept = tuple(term for term in search.structure.terms if term not in unneeded)
-        search = search.refit(search.structure.with_terms(kept))
+        search = search.refit(search.structure.with_terms(kept), _ITERATIONS, beginning_only=True)

@@ -14,7 +14,7 @@ from sprung.display import shown
 from sprung.estimation import NEAR, FitResult, wald_test
 from sprung.preprocess import FreeDecay, estimate_sensor_noise
 from sprung.progress import Progress, silent
-from sprung.selection.error_budget import MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
+from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import SEPARATE_TRACKS, TERMS
@@ -90,8 +90,9 @@ class ModelSearch:
         return float(sum(decay.usable.sum() * decay.samples for decay in self.decays))
 
     def required(self, term: str) -> float:
-        """Gain in twice the log-likelihood that is required of a term."""
-        return required_gain(len(TERMS[term].parameters(self.structure.tracks)), _HYPOTHESES, self.samples)
+        """Gain in twice the log-likelihood that is required of a term; where much is left to explain, a part of that."""
+        parameters = len(TERMS[term].parameters(self.structure.tracks))
+        return max(required_gain(parameters, _HYPOTHESES, self.samples), LEAST_SHARE * self._unexplained_gain)
 
     @property
     def required_of_switch(self) -> float:
@@ -143,7 +144,9 @@ class ModelSearch:
         more = [SelectionStep(term, gain, self.required(term), fitted, taken, against) for term, gain in gains.items()]
         return replace(self, steps=(*self.steps, *more))
 
-    def refit(self, structure: ModelStructure, most: int = 100) -> ModelSearch:
+    def refit(
+        self, structure: ModelStructure, most: int = 100, beginning_only: bool = False, enough: float | None = None
+    ) -> ModelSearch:
         """Fit another structure from here.
 
         Parameters
@@ -152,8 +155,16 @@ class ModelSearch:
             What is fitted.
         most
             Largest number of iterations.
+        beginning_only
+            Whether the beginnings of the decays are enough; for nonlinear structures.
+        enough
+            Expected gain in log-likelihood at which to stop; without it, a tenth of a standard error.
         """
-        fit = fit_structure(structure, self.decays, self.fit, NEAR, self.progress, most=most)
+        if enough is None:
+            enough = NEAR * (self.overdispersion if structure.is_time_stepped else 1.0)
+        fit = fit_structure(
+            structure, self.decays, self.fit, enough, self.progress, most=most, beginning_only=beginning_only
+        )
         return replace(self, structure=structure, fit=fit)
 
     @cached_property
@@ -173,6 +184,15 @@ class ModelSearch:
         known = self._sensor_noise > 0
         ratio = self.fit.noise[known] ** 2 / self._sensor_noise[known]
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
+
+    @cached_property
+    def _unexplained_gain(self) -> float:
+        """Gain in twice the log-likelihood, over the overdispersion, if only the noise of the sensors were left."""
+        if not self.has_model_error:
+            return 0.0
+        variance, _, samples = self.fit.residual_moments
+        ratio = np.maximum(variance, self._sensor_noise) / np.where(self._sensor_noise > 0, self._sensor_noise, np.inf)
+        return float(np.sum(samples * np.log(np.maximum(ratio, 1.0)))) / self.overdispersion
 
     @cached_property
     def is_misfit_large(self) -> bool:

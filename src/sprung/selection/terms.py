@@ -97,6 +97,9 @@ class ModelTerm:
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
     usual
         Values that its parameters usually have, of a term that most vehicles have.
+    held
+        First letters of parameters that mean little where the term is small: a search that may find it small holds them close
+        to their usual values.
     undefined
         Values of those parameters that have none where the term is absent.
     first
@@ -114,6 +117,7 @@ class ModelTerm:
     explains_all: bool = False
     resembles_others: bool = False
     usual: StartValues | None = None
+    held: str = ""
     undefined: StartValues | None = None
     first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
@@ -352,6 +356,7 @@ TERMS: Mapping[str, ModelTerm] = {
                 ),
                 again="{axle} ones by {0}, which relaxes in {1}",
             ),
+            held="c_z",
             undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
             first=lambda own, _: usual_rubber(own),
         ),
@@ -409,6 +414,7 @@ TERMS: Mapping[str, ModelTerm] = {
                 again="{0} at each {axle} wheel",
             ),
             resembles_others=True,
+            held="s_",
             undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
             first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
         ),
