@@ -27,7 +27,12 @@ def judged(made: Campaign) -> Verdict:
     fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
     drops = cross_validate_drops(optimum, fit, decays, channels, body_motions(fit, decays, made.sensors))
     return decide_verdict(
-        fit, estimate_model_error(fit, decays), to_estimates(fit, choice.known).parameters, channels, (), drops
+        fit,
+        estimate_model_error(fit.residual_moments, decays),
+        to_estimates(fit, choice.known).parameters,
+        channels,
+        (),
+        drops,
     )
 
 

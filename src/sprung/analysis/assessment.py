@@ -60,7 +60,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     looked_at = check_prepared(campaign, run.prepared._replace(decays=decays))
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, structure.known)
-    misfit = estimate_model_error(fit, decays)
+    misfit = estimate_model_error(fit.residual_moments, decays)
     motions = body_motions(statistics, decays, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     verdict = decide_verdict(

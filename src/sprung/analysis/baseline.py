@@ -106,7 +106,6 @@ def fit_baseline_model(
 
 def from_contact(search: ModelSearch, most: int = MOST_STEPS) -> ModelSearch:
     """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again."""
-
     enough = _STEPPED * search.overdispersion if search.structure.is_time_stepped else CONVERGED
 
     def refitted(decays: Sequence[FreeDecay], fit: FitResult, states: Real) -> FitResult:

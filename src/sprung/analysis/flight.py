@@ -20,7 +20,7 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, Readout, Vehicle, state_variables, evaluate_quantity
+from sprung.vehicle import WHEELS, Readout, Vehicle, evaluate_quantity, state_variables
 
 Real = NDArray[np.float64]
 

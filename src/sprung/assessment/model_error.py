@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FitStatistics
-from sprung.preprocess import FreeDecay, estimate_sensor_noise, pool_moments
+from sprung.preprocess import FreeDecay, Moments, estimate_sensor_noise, pool_moments
 
 Real = NDArray[np.float64]
 
@@ -16,13 +15,13 @@ _SIGNIFICANT = 4.0
 """Standard errors by which an excess must be real before it counts."""
 
 
-def estimate_model_error(fit: FitStatistics, decays: Sequence[FreeDecay]) -> tuple[Real, Real]:
+def estimate_model_error(residuals: Moments, decays: Sequence[FreeDecay]) -> tuple[Real, Real]:
     """Separate model error from noise in the residuals.
 
     Parameters
     ----------
-    fit
-        The fit.
+    residuals
+        Of a fit, from `pool_moments`.
     decays
         What was fitted.
 
@@ -40,9 +39,9 @@ def estimate_model_error(fit: FitStatistics, decays: Sequence[FreeDecay]) -> tup
     So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
-    variance, neighbour, samples = fit.residual_moments
+    variance, neighbour, samples = residuals
     signal, _, _ = pool_moments(decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays)
-    noise = estimate_sensor_noise(decays, (variance, neighbour, samples))
+    noise = estimate_sensor_noise(decays, residuals)
     known = noise.samples > 0
 
     # A sensor whose noise is below its resolution may show none at rest; in motion its steps make an error that is coloured

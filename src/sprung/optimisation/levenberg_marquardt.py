@@ -153,11 +153,13 @@ def _gaining_step(
     """Return the point a step further that does not lose, the next damping and the expected gain; None if there is none.
 
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
-    step loses, one more is tried from there (the watchdog).
+    step loses, one more is tried from there (the watchdog). No step is tried that would gain too little.
     """
     first = True
     while damping < _MOST_DAMPING:
         step, expected = equations.step(damping)
+        if not first and expected < tolerance:
+            return None
         tried, gain = problem.trial(point, _limited(step, longest))
         if gain >= 0:
             return tried, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected

@@ -197,7 +197,7 @@ class ModelSearch:
     @cached_property
     def is_misfit_large(self) -> bool:
         """Whether the model error is so large a part of some channel's signal that the parameters cannot be trusted."""
-        model_error, _ = estimate_model_error(self.fit, self.decays)
+        model_error, _ = estimate_model_error(self.fit.residual_moments, self.decays)
         return float(model_error.max()) > UNEXPLAINED
 
     @property
