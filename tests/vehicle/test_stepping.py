@@ -69,9 +69,12 @@ def some_states(drops: int, seed: int = 0) -> Array:
     return states
 
 
-def stepper(extras: tuple[str, ...], step: float, values: Array | None = None, ground: bool = False) -> Stepper:
-    models = [model_of(extras, load, ground) for load in (EMPTY, BALLAST)]
-    return Stepper.of(models, [step, step], np.array([0, 1]), values_of(extras)[1] if values is None else values)
+def stepper(
+    extras: tuple[str, ...], step: float, values: Array | None = None, ground: bool = False, pairs: int = 1
+) -> Stepper:
+    """Return what steps pairs of drops, of the empty vehicle and with ballast."""
+    models, kinds = [model_of(extras, load, ground) for load in (EMPTY, BALLAST)], np.tile([0, 1], pairs)
+    return Stepper.of(models, [step, step], kinds, values_of(extras)[1] if values is None else values)
 
 
 def test_without_any_force_the_steps_are_exact() -> None:
@@ -106,7 +109,7 @@ def test_a_load_pushes_with_its_weight() -> None:
     ],
 )  # fmt: skip
 def test_against_another_solver(extras: tuple[str, ...]) -> None:
-    """The same equations, written out and left to an implicit solver with a tight tolerance."""
+    """The same equations, written out and left to a solver of eighth order with a tight tolerance."""
     matrices, state, elements = CAR.matrices(), some_states(1, 3)[0], nonlinear_elements("separate", extras)
     names, values = values_of(extras)
     G = Rows.of([element.row for element in elements], names).at(values)
@@ -149,11 +152,11 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
         return np.concatenate([V, A, grown])
 
     memories = 4 if "friction" in extras else 0
-    step, steps = 0.0005, 1000
+    step, steps = 0.0005, 500
     trajectory = stepper(extras, step).integrate(np.array([state, state]), np.zeros((2, memories)), steps)
     there = solve_ivp(
-        slope, (0, step * steps), np.concatenate([state, np.zeros(memories)]), "Radau", rtol=1e-9, atol=1e-10,
-        t_eval=step * np.arange(0, steps + 1, 50), max_step=0.001,
+        slope, (0, step * steps), np.concatenate([state, np.zeros(memories)]), "DOP853", rtol=1e-9, atol=1e-10,
+        t_eval=step * np.arange(0, steps + 1, 50), max_step=0.002,
     )  # fmt: skip
     scale = np.abs(trajectory.states[:, 0]).max(axis=0)
     assert np.all(np.abs(trajectory.states[::50, 0] - there.y[:14].T) < 3e-4 * scale)
@@ -163,7 +166,7 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
 def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     extras = tuple(extra for extra in EXTRAS if extra not in (*LINEAR_EXTRAS, "bump-stop"))
     names, values = values_of(extras)
-    states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 140
+    states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 140 if ground else 120
     if ground:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
@@ -182,22 +185,27 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
         assert not np.any(trajectory.forces[-1, :, -4:] < 0)
 
     def moved(unknown: int, by: float) -> Array:
-        p, x, m = values.copy(), states.copy(), memories.copy()
-        if unknown < len(names):
-            p[unknown] += by
-        elif unknown < len(names) + 14:
-            x[:, unknown - len(names)] += by
-        else:
-            m[:, unknown - len(names) - 14] += by
-        there = stepper(extras, step, p, ground).integrate(x, m, steps)
+        p = values.copy()
+        p[unknown] += by
+        there = stepper(extras, step, p, ground).integrate(states, memories, steps)
         return np.concatenate([there.states, there.forces], axis=2)
 
-    for unknown in range(len(names) + 18):
-        size = 1e-6 * (abs(values[unknown]) if unknown < len(names) else 1.0)
-        slope = (moved(unknown, size) - moved(unknown, -size)) / (2 * size)
+    def check(unknown: int, ends: Array, size: float) -> None:
+        slope = (ends[0] - ends[1]) / (2 * size)
         scale = np.abs(slope).max(axis=(0, 1)) + 1e-9 * np.abs(slope).max()
         # In the step in which a wheel lands, the force at its end is put right only so often.
         assert np.all(np.abs(found[..., unknown] - slope) < (1e-2 if ground else 2e-3) * scale)
+
+    for unknown, value in enumerate(values):
+        size = 1e-6 * abs(value)
+        check(unknown, np.array([moved(unknown, size), moved(unknown, -size)]), size)
+    # Initial states and memories: all that are moved go side by side.
+    start, size = np.hstack([states, memories]), 1e-6
+    starts = (start + size * np.concatenate([np.eye(18), -np.eye(18)])[:, None]).reshape(72, 18)
+    there = stepper(extras, step, ground=ground, pairs=36).integrate(starts[:, :14], starts[:, 14:], steps)
+    ends = np.concatenate([there.states, there.forces], axis=2).reshape(steps + 1, 2, 18, 2, outputs)
+    for place in range(18):
+        check(len(names) + place, np.moveaxis(ends[:, :, place], 1, 0), size)
 
 
 def test_knots_of_a_damper_curve_leave_the_steps_of_second_order() -> None:
