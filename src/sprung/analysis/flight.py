@@ -20,7 +20,7 @@ from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_o
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, Readout, Vehicle, evaluate_quantity, state_variables
+from sprung.vehicle import WHEELS, Readout, Vehicle, evaluate_quantity, parameter_names, state_variables
 
 Real = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def _with_fall(run: Analysis, found: Sequence[Flight | None], progress: Progress
 
 
 def is_needed(fit: FitStatistics) -> bool:
-    """Whether the free decays leave a parameter so uncertain that the flight phase is needed.
+    """Whether the free decays leave a parameter of the paper's vehicle so uncertain that the flight phase is needed.
 
     Parameters
     ----------
@@ -101,7 +101,8 @@ def is_needed(fit: FitStatistics) -> bool:
     hopeless = np.abs(fit.undetermined - np.outer(scaling, scaling @ fit.undetermined) / (scaling @ scaling)).max(
         initial=0
     )
-    return bool(np.any(errors > NEEDED * sizes)) and hopeless < _UNDETERMINED
+    plain = np.isin(fit.names, [*parameter_names("shared"), *parameter_names("separate")])
+    return bool(np.any((errors > NEEDED * sizes)[plain])) and hopeless < _UNDETERMINED
 
 
 def _initial_states(

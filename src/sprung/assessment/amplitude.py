@@ -17,7 +17,16 @@ from sprung.assessment.mode_tracking import AmplitudeCurve, follow_mode
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.progress import Progress, counted, silent
-from sprung.vehicle import EMPTY, LinearModel, NonlinearModel, Sensor, Stepper, coordinates, free_decay
+from sprung.vehicle import (
+    EMPTY,
+    LinearModel,
+    NonlinearModel,
+    Sensor,
+    Stepper,
+    coordinates,
+    free_decay,
+    with_tyre_rates_at_rest,
+)
 from sprung.vibration import Mode, compute_modes
 
 Real = NDArray[np.float64]
@@ -96,7 +105,7 @@ def follow_modes(
         The underdamped modes of the body that the sensors determine, lowest first.
     """
     linear = model.linear if isinstance(model, NonlinearModel) else model
-    matrices = linear.matrices(fit.values)
+    matrices = linear.matrices(with_tyre_rates_at_rest(linear, fit.values))
     modes = [mode for mode in compute_modes(matrices, coordinates(linear.names)) if mode.pole.imag != 0]
     rows = body_rows(fit, sensors)
     determined = [motion for motion in motions if np.isfinite(motion.measured).all()]

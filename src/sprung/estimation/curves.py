@@ -71,15 +71,15 @@ class CurvePoint(NamedTuple):
 @shown
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class ForceCurve:
-    """The force of a damper against its velocity, or of a spring or tyre against its travel from rest.
+    """The force of a damper against its velocity, of a spring against its travel from rest, of a tyre against its deflection.
 
     Attributes
     ----------
     x
-        Velocity, m/s, or travel, m, positive in rebound, shape (point,); between these points the curve is straight
-        within 0.1 %.
+        Velocity, m/s, or travel, m, positive in rebound, shape (point,); a tyre's travel counts from where it first touches the
+        ground, and is negative. Between these points the curve is straight within 0.1 %.
     force, std
-        Force, N, positive in rebound and zero at rest, and its standard error, N, shape (point,).
+        Force, N, positive in rebound and zero where x is, and its standard error, N, shape (point,).
     x_unit, force_unit
         Their units.
     reached
@@ -152,7 +152,8 @@ def force_curves(
     """
     kinds = {name: CurveElements.of(name, linear, nonlinear) for name in FORCE_CURVES}
     kinds = {name: elements for name, elements in kinds.items() if elements.nonlinear}
-    reached = _reached(optimum, models, [row for elements in kinds.values() for row in elements.rows])
+    rows = [(row, elements.is_of_tyre) for elements in kinds.values() for row in elements.rows]
+    reached = _reached(optimum, models, rows)
     found = {}
     for name, elements in kinds.items():
         ranges = [next(reached) for _ in elements.rows]
@@ -169,6 +170,7 @@ def _curve(fit: FitStatistics, elements: CurveElements, reached: tuple[float, fl
     length = _EXTENSION * max(map(abs, reached))
     spacing = np.linspace(-1, 1, 2 * _DENSE + 1)
     x = np.union1d(length * spacing * np.abs(spacing), reached)
+    x = x[x <= 0] if elements.is_of_tyre else x
     inside = (x >= reached[0]) & (x <= reached[1])
     if not elements.is_nonlinear(fit.names, fit.values, x[inside]):
         return None
@@ -211,12 +213,16 @@ def _straight_between(x: Real, force: Real, std: Real, corners: Sequence[float])
 
 
 def _reached(
-    optimum: FitResult, models: Mapping[str, NonlinearModel], rows: Sequence[Row]
+    optimum: FitResult, models: Mapping[str, NonlinearModel], rows: Sequence[tuple[Row, bool]]
 ) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
-    """Yield the lowest and the highest travel, m, and rate, m/s, of each row in all drops."""
+    """Yield the lowest and the highest travel, m, and rate, m/s, of each row in all drops.
+
+    Rows come with whether their travel counts from the vehicle without gravity.
+    """
     if not rows:
         return
-    compiled = Rows.of(rows, optimum.names).at(optimum.values)
+    compiled = Rows.of([row for row, _ in rows], optimum.names).at(optimum.values)
+    weightless = np.array([is_weightless for _, is_weightless in rows])
     lowest, highest = np.full((2, len(rows)), np.inf), np.full((2, len(rows)), -np.inf)
     for drop, decay in enumerate(optimum.decays):
         motion = optimum.motion(drop, 0, decay.samples)
@@ -225,7 +231,8 @@ def _reached(
         # A coordinate without mass has no velocity in the state, and with a nonlinear law none that is linear in it.
         velocities = np.gradient(X, 1 / decay.rate, axis=1)
         velocities[: model.state_size - n] = motion[n : model.state_size]
-        both = np.stack([compiled @ X, compiled @ velocities])
+        offsets = weightless * (compiled @ model.empty_sag(optimum.values))
+        both = np.stack([compiled @ X + offsets[:, None], compiled @ velocities])
         lowest, highest = np.minimum(lowest, both.min(axis=2)), np.maximum(highest, both.max(axis=2))
     for limits in np.stack([lowest, highest]).transpose(2, 1, 0).tolist():
         yield tuple(limits[0]), tuple(limits[1])

@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
-from sprung.vehicle import COORDINATES, LinearModel, Readout, Sensor, coordinates
+from sprung.vehicle import (
+    COORDINATES,
+    LinearModel,
+    Readout,
+    Sensor,
+    coordinates,
+    differentiate_tyre_rates_at_rest,
+    with_tyre_rates_at_rest,
+)
 from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
 
 Real = NDArray[np.float64]
@@ -77,11 +85,17 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
     tuple of ModeEstimate
     """
     readout = Readout.of(sensors, fit.names)
-    modes = solve_modes(model, readout, fit.values)
-    slopes = differentiate_modes(model, readout, fit.values, modes, 1.0)[0] * fit.slopes[:, None]
+    values, by_parameter = (
+        with_tyre_rates_at_rest(model, fit.values),
+        differentiate_tyre_rates_at_rest(model, fit.values),
+    )
+    modes = solve_modes(model, readout, values)
+    slopes = by_parameter.T @ differentiate_modes(model, readout, values, modes, 1.0)[0] * fit.slopes[:, None]
     # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
     away = [
-        np.linalg.eigvals(model.matrices(fit.moved(way * direction)).state).astype(np.complex128)
+        np.linalg.eigvals(model.matrices(with_tyre_rates_at_rest(model, fit.moved(way * direction))).state).astype(
+            np.complex128
+        )
         for direction in fit.undetermined.T
         for way in (-1, 1)
     ]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.estimation import score_linear_term, score_linear_terms, score_nonlinear_terms, score_stepped_terms
+from sprung.preprocess import FreeDecay
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import neutral_values, start_variants, states_by_coordinates, stop_gaps, thinned
 from sprung.selection.terms import BUMP_STOP, TERMS
@@ -113,11 +114,24 @@ def _nonlinear_with_stops(search: ModelSearch, terms: Sequence[str]) -> tuple[Mo
 
 
 def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
-    """Score any terms at a nonlinear fit; the sizes to expect are not computed, and the typical ones are returned."""
+    """Score any terms at a nonlinear fit: those beside the same coordinates in one evaluation.
+
+    The sizes to expect are not computed, and the typical ones are returned.
+    """
+    alike = [term for term in terms if not TERMS[term].adds_coordinates]
+    groups = [alike, *([term] for term in terms if TERMS[term].adds_coordinates)]
+    decays, part = thinned(search.decays, _RATE, _DURATION)
+    gains = {
+        term: gain / part for group in groups if group for term, gain in _score_together(search, decays, group).items()
+    }
+    return {term: (gain, TERMS[term].typical) for term, gain in gains.items()}
+
+
+def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Sequence[str]) -> dict[str, float]:
+    """Score terms at a nonlinear fit in one evaluation of the model that has them all."""
     largest, own = search.with_terms(terms), search.fit.parameters
     separated = largest.tracks != search.structure.tracks
-    decays, part = thinned(search.decays, _RATE, _DURATION)
-    gains = score_stepped_terms(
+    return score_stepped_terms(
         decays,
         largest.nonlinear_models,
         search.structure.sensors,
@@ -128,4 +142,3 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
         candidates={term: [(name,) for name in TERMS[term].parameters(largest.tracks)] for term in terms},
         tilting=search.structure.gravity_leakage,
     )
-    return {term: (gain / part, TERMS[term].typical) for term, gain in gains.items()}

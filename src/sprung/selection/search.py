@@ -201,9 +201,14 @@ class ModelSearch:
         return float(model_error.max()) > UNEXPLAINED
 
     @property
+    def is_overdispersed(self) -> bool:
+        """Whether what is left is no noise."""
+        return self.overdispersion > OVERDISPERSED
+
+    @property
     def is_misfit_small(self) -> bool:
         """Whether what is left is no noise and yet small: any further term would seem to explain some of it."""
-        return self.overdispersion > OVERDISPERSED and not self.has_model_error
+        return self.is_overdispersed and not self.has_model_error
 
     def gain_over(self, other: ModelSearch) -> float:
         """Return the gain in twice the log-likelihood over another fit of the same decays, divided by the overdispersion.

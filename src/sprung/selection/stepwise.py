@@ -39,8 +39,11 @@ _ITERATIONS_OF_SWITCH = 1
 _ROUNDS = 2 * len(TERMS)
 """How many linear terms may be accepted one after the other; some are left out again."""
 
-_FURTHER_ROUNDS = 2
-"""How many times further terms are looked for once nonlinear ones are in the model."""
+_EXPLAINED = 0.7
+"""Part of a small misfit's overdispersion that a term may leave: any term seems to explain some of an error of another kind."""
+
+_FURTHER_ROUNDS, _TRIED_BESIDE = 4, 2
+"""How many times further terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
 
 
 def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> ModelSearch:
@@ -122,13 +125,14 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
     """
     tried: set[str] = set()
     for _ in range(_FURTHER_ROUNDS):
-        if not search.structure.is_nonlinear or search.is_misfit_small:
+        if not search.structure.is_nonlinear or not search.is_overdispersed:
             break
         terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
         _, scores = score_terms(search, terms)
-        promising = [term for term in terms if scores[term][0] > search.required(term) * search.overdispersion]
-        tried |= set(promising)
-        search, accepted = _first_accepted(search, [promising] if promising else [])
+        ratios = {term: scores[term][0] / (search.required(term) * search.overdispersion) for term in terms}
+        best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
+        tried |= set(best)
+        search, accepted = _first_accepted(search, [[term] for term in best])
         if not accepted:
             break
     return search
@@ -295,16 +299,17 @@ def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     if tried is None:
         return search.recorded(dict.fromkeys(group, 0.0), True, False)
     gain = tried.gain_over(search)
-    enough = gain > sum(map(search.required, group))
-    if not (enough and tried.fit.converged):
-        against = "the fit with it did not converge" if enough else ""
+    enough, against = gain > sum(map(search.required, group)), ""
+    if enough and not tried.fit.converged:
+        against = "the fit with it did not converge"
+    elif enough and search.is_misfit_small and tried.overdispersion > _EXPLAINED * search.overdispersion:
+        against = "what is left is no more like noise with it"
+    if against or not enough:
         return search.recorded(dict.fromkeys(group, gain), True, False, against)
     if larger.is_nonlinear:
         tried, gains = _without_unneeded(tried, search)
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
     against = tried.veto(term)
-    if search.is_misfit_small and tried.overdispersion > search.overdispersion:
-        against = against or "what is left is even less like noise with it"
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and tried.has_model_error:
         tried = select_linear_terms(tried, [other for other in _LINEAR if not TERMS[other].explains_all])

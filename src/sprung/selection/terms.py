@@ -49,7 +49,7 @@ _KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
 """m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the
 width of its rounding as a part of the velocity."""
 
-_REBOUND, _TYRE_DAMPING, _TYRE_GROWTH = 0.8, 0.06, 0.12
+_REBOUND, _TYRE_DAMPING, _TYRE_GROWTH = 0.8, 0.06, 0.2
 """Usual excess of rebound over compression damping, damping of a tyre over that of the damper, and growth of its rate."""
 
 _ALMOST_NO_ENGINE = 1e-5
@@ -492,7 +492,7 @@ TERMS: Mapping[str, ModelTerm] = {
             spread=2.0,
             negligible=0.01,
             description=TermDescription(
-                "{axle} tyres whose rate grows by {0} over 2 cm of compression",
+                "{axle} tyres whose rate grows by {0} over the first 2 cm of deflection",
                 ((lambda p, axle: 100 * _TYRE_STROKE * p[f"h_t{axle}"], "%"),),
                 again="{axle} ones by {0}",
             ),

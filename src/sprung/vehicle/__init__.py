@@ -56,6 +56,7 @@ from sprung.vehicle.segments import Prediction, integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
+from sprung.vehicle.tyre_rates import differentiate_tyre_rates_at_rest, with_tyre_rates_at_rest
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
@@ -120,6 +121,7 @@ __all__ = [
     "checked_record",
     "coordinates",
     "differentiate_motions",
+    "differentiate_tyre_rates_at_rest",
     "evaluate_quantity",
     "free_decay",
     "ground_contact_elements",
@@ -142,4 +144,5 @@ __all__ = [
     "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",
+    "with_tyre_rates_at_rest",
 ]

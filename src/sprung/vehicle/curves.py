@@ -1,7 +1,7 @@
 """Force curves: the force of everything on the row of a damper, a spring or a tyre, as a function of its rate or travel.
 
-A curve is the mean of both wheels of an axle, relative to rest. Hysteresis (:term:`dry friction <Dahl model>`) has no curve:
-its half-width is stated beside that of the damper.
+A curve is the mean of both wheels of an axle, relative to rest; that of a tyre to where it first touches the ground. Hysteresis
+(:term:`dry friction <Dahl model>`) has no curve: its half-width is stated beside that of the damper.
 """
 
 from __future__ import annotations
@@ -86,7 +86,8 @@ class CurveElements(NamedTuple):
         names, values
             Parameters of the vehicle, SI; values of shape (parameter,).
         x
-            Rate of a damper, m/s, or travel of a spring or tyre from rest, m, positive in rebound; shape (point,).
+            Rate of a damper, m/s, travel of a spring from rest, or height of a tyre above first touch, m, positive in rebound;
+            shape (point,).
 
         Returns
         -------
@@ -104,6 +105,11 @@ class CurveElements(NamedTuple):
             else:
                 force += element.coefficient * element.factor * x
         return force / len(self.rows), gradient / len(self.rows)
+
+    @property
+    def is_of_tyre(self) -> bool:
+        """Whether the travel counts from where a tyre first touches the ground."""
+        return any(element.weightless for element in self.nonlinear)
 
     def is_nonlinear(self, names: Sequence[str], values: Array, x: Array) -> bool:
         """Whether a nonlinear law acts at any of some arguments.

@@ -197,7 +197,7 @@ def nonlinear_elements(
             elements.append(NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), spring))
         if "tyre-curve" in extras:
             tyre = kinematics.wheel(station)
-            elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre))
+            elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre, weightless=True))
     return tuple(elements)
 
 

@@ -218,6 +218,14 @@ def _progressive_derivatives(parameters: Array, given: ElementInput) -> tuple[Ar
     return force, np.zeros_like(force)
 
 
+def _tyre_curve(parameters: Array, given: ElementInput) -> ElementForce:
+    return _progressive(parameters, given._replace(travel=np.minimum(given.travel, 0.0)))
+
+
+def _tyre_curve_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    return _progressive_derivatives(parameters, given._replace(travel=np.minimum(given.travel, 0.0)))
+
+
 def _air_ratio(strain: Array) -> tuple[Array, Array]:
     """Return the mean rate of an air spring between rest and a strain, over that at rest, less one; and its derivative.
 
@@ -321,8 +329,10 @@ AIR = ForceLaw("air", False, _air, _air_derivatives)
 column, 1/m, and rate k at rest, N/m; the force is k h/n (1 - (1 + x/h)⁻ⁿ) with the exponent n = 1.3, positive in extension
 (Wong, Theory of Ground Vehicles, 2008, section 7.3)."""
 
-TYRE_CURVE = ForceLaw("tyre-curve", False, _progressive, _progressive_derivatives)
-"""Tyre whose rate grows with its deflection: as a progressive spring."""
+TYRE_CURVE = ForceLaw("tyre-curve", False, _tyre_curve, _tyre_curve_derivatives)
+"""What the growth of its rate adds to the force of a tyre: growth h with deflection, as a part of the rate per metre, and rate
+k where it first touches the ground, N/m; the travel is the height of the wheel above there. The whole tyre has the force
+k d (1 + h d/2) at the deflection d."""
 
 BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives)
 """Bump stop: stiffness, N/m, and the compression at which it is met, m, from the empty vehicle at rest."""

@@ -232,6 +232,12 @@ class NonlinearModel:
         weight = self.load.matrices(values).M @ self.linear.heave * self.gravity
         return -self.linear.matrices(values).deflection(weight)
 
+    def empty_sag(self, values: Array) -> Array:
+        """Return the static deflection of the empty vehicle by its weight, without the nonlinear elements: X, (coordinate,)."""
+        loaded, load = self.linear.matrices(values), self.load.matrices(values)
+        empty = Matrices(*(whole - part for whole, part in zip(loaded, load, strict=True)))
+        return -empty.deflection(empty.M @ self.linear.heave * self.gravity)
+
     def travel_offsets(self, values: Array) -> tuple[Array, Array]:
         """Return the travel of each row where the empty vehicle rests, m, and its derivatives.
 

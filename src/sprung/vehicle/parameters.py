@@ -209,10 +209,10 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
         "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
         "h_tf": Parameter(
-            "1/m", "growth of the front tyre rate with compression, as a part of it per metre", False, False, True
+            "1/m", "growth of the front tyre rate with deflection, as a part of k_tf per metre", False, False, True
         ),
         "h_tr": Parameter(
-            "1/m", "growth of the rear tyre rate with compression, as a part of it per metre", False, False, True
+            "1/m", "growth of the rear tyre rate with deflection, as a part of k_tr per metre", False, False, True
         ),
         "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
         "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),

@@ -14,6 +14,7 @@ from sprung.vehicle.heights import Heights
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices
 from sprung.vehicle.parameters import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, parameter_names, parameters_of_term
+from sprung.vehicle.tyre_rates import with_tyre_rates_at_rest
 
 
 @shown
@@ -353,7 +354,7 @@ class Vehicle:
         return LinearModel.of(elements, tuple(self.parameters))
 
     def matrices(self, load: Load = EMPTY) -> Matrices:
-        """Return mass, damping and stiffness matrices.
+        """Return mass, damping and stiffness matrices; of nonlinear springs and tyres as they are at rest.
 
         Parameters
         ----------
@@ -365,4 +366,5 @@ class Vehicle:
         Matrices
             M, C and K, each of shape (7, 7), SI: eq. (2) of the paper.
         """
-        return self.model(load).matrices(list(self.parameters.values()))
+        model = self.model(load)
+        return model.matrices(with_tyre_rates_at_rest(model, list(self.parameters.values())))

@@ -36,7 +36,7 @@ _FIGURES = (
     _Figure("damper", "Dampers", "velocity (rebound positive), m/s", "force, N", 1.0, 1.0),
     # Springs and tyres are drawn as they are tested: compression to the right, load upwards.
     _Figure("spring", "Springs", "compression from rest, mm", "load above rest, N", 1e3, -1.0),
-    _Figure("tyre", "Tyres", "compression from rest, mm", "load above rest, N", 1e3, -1.0),
+    _Figure("tyre", "Tyres", "deflection, mm", "load, N", 1e3, -1.0),
 )
 
 
