@@ -27,9 +27,9 @@ from sprung.selection import (
 Real = NDArray[np.float64]
 
 
-_STEPPED = 1e-4
-"""Expected gain in log-likelihood at which a fit by time stepping has converged: a hundredth of a standard error. Forces are
-solved for to a part of their size, so the likelihood is no smoother."""
+_STEPPED = 1e-3
+"""Expected gain in log-likelihood at which a fit by time stepping has converged: a twentieth of a standard error, of which
+the last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
 
 
 def fit_baseline(run: Analysis, progress: Progress) -> Analysis:

@@ -9,7 +9,7 @@ from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
 from sprung.analysis.settling import settle_corrections
 from sprung.campaign import Campaign
-from sprung.estimation import NEAR
+from sprung.estimation import NEAR, FitResult
 from sprung.faults import (
     Consistency,
     FaultIsolation,
@@ -21,8 +21,17 @@ from sprung.faults import (
     reference_noise,
     residual_table,
 )
+from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
-from sprung.selection import SEPARATE_TRACKS, TERMS, ModelSearch, fit_structure, needed_terms, score_terms
+from sprung.selection import (
+    SEPARATE_TRACKS,
+    TERMS,
+    ModelSearch,
+    ModelStructure,
+    fit_structure,
+    needed_terms,
+    score_terms,
+)
 
 _MOST = 0.5
 """Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
@@ -129,14 +138,21 @@ def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, 
         decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
         if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
             run = replace(run, fits=run.fits + 1)
-            isolation = FaultIsolation.of(larger, decays)
+            isolation = _isolation_of(larger, decays, run.fit)
             if not isolation.base.is_explained:
                 return run, isolation
             if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, isolation.base.fit, decays)):
                 larger = linear
     if larger.names == structure.names:
         return run, FaultIsolation.of(structure, run.decays, run.fit)
-    return replace(run, fits=run.fits + 1), FaultIsolation.of(larger, run.decays)
+    return replace(run, fits=run.fits + 1), _isolation_of(larger, run.decays, run.fit)
+
+
+def _isolation_of(structure: ModelStructure, decays: Sequence[FreeDecay], before: FitResult) -> FaultIsolation:
+    """Fit a model to decays from nothing, or from a fit where it has coordinates that only a fitted vehicle shows."""
+    if structure.needs_start:
+        return FaultIsolation.of(structure, decays, fit_structure(structure, decays, before, NEAR, silent))
+    return FaultIsolation.of(structure, decays)
 
 
 def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:

@@ -223,9 +223,10 @@ def _maximise(
             break
         restarted = replace(problem, objective=objective.with_states(states))
         found = restarted.maximise(best.point.u, None, tolerance, CLOSE_BY, most)
-        if problem.cost(found.point) >= problem.cost(best.point):
-            break
-        best = found._replace(steps=best.steps + found.steps)
+        gain = problem.cost(best.point) - problem.cost(found.point)
+        best = found._replace(steps=best.steps + found.steps) if gain > 0 else best
+        if gain < _ON_THE_WAY:
+            break  # it went back to where it came from
     return best
 
 

@@ -213,6 +213,7 @@ class FaultIsolation:
         campaign, before = correction.of_campaign(self.campaign), self.base.structure
         decays = correction.of_decays(campaign, self.decays)
         structure = replace(choose_structure(campaign, before.tracks, before.terms), carried_at=before.carried_at)
+        start = self.base.fit if start is None and structure.needs_start else start
         candidate = _candidate(structure, self.recordings, decays, _fitted(structure, decays, start, most))
         is_same = correction.samples is None and not correction.corners
         noise = self.noise if is_same else candidate.noise.of_present(candidate.table, self.noise)

@@ -43,7 +43,7 @@ _EXPLAINED = 0.7
 """Part of a small misfit's overdispersion that a term may leave: any term seems to explain some of an error of another kind."""
 
 _FURTHER_ROUNDS, _TRIED_BESIDE = 4, 2
-"""How many times further terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
+"""How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
 
 
 def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> ModelSearch:
@@ -64,7 +64,7 @@ def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> 
         terms = search.open_terms(among)
         search, scores = score_terms(search, terms)
         search, ranked = _ranked(search, scores, _WORTH_A_FIT / search.fit.disagreement)
-        search, accepted = _first_accepted(search, [[term] for term in ranked])
+        search, accepted = _first_accepted(search, [[term] for term in ranked], among)
         if not accepted:
             break
     return search
@@ -276,18 +276,23 @@ def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSe
     return search, sorted(priority, key=lambda term: (first[term], priority[term]), reverse=True)
 
 
-def _first_accepted(search: ModelSearch, groups: Sequence[Sequence[str]]) -> tuple[ModelSearch, bool]:
+def _first_accepted(
+    search: ModelSearch, groups: Sequence[Sequence[str]], among: Sequence[str] = _LINEAR
+) -> tuple[ModelSearch, bool]:
     """Fit groups of terms one after the other until one is accepted; and say whether one was."""
     for group in groups:
-        tried = _with_group(search, group)
+        tried = _with_group(search, group, among)
         if tried.structure.names != search.structure.names:
             return tried, True
         search = tried
     return search, False
 
 
-def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
-    """Fit terms together, and leave out again what is not needed; without any of them where they gain too little."""
+def _with_group(search: ModelSearch, group: Sequence[str], among: Sequence[str]) -> ModelSearch:
+    """Fit terms together, and leave out again what is not needed; without any of them where they gain too little.
+
+    One that resembles many a fault has to explain the whole misfit, alone or with others of the linear terms among which it is.
+    """
     larger, term = search.with_terms(group), group[0]
     if larger.is_nonlinear:
         tried = _fit_nonlinear(search, larger)
@@ -312,7 +317,10 @@ def _with_group(search: ModelSearch, group: Sequence[str]) -> ModelSearch:
     against = tried.veto(term)
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and tried.has_model_error:
-        tried = select_linear_terms(tried, [other for other in _LINEAR if not TERMS[other].explains_all])
+        # Beside it a second one of its kind is looked for, a bending body beside people on seats, say; beside both, none.
+        is_second = len(among) < len(_LINEAR)
+        others = [other for other in among if other != term and not (is_second and TERMS[other].explains_all)]
+        tried = select_linear_terms(tried, others)
         against = "it does not explain the whole misfit" if tried.has_model_error else ""
     if against:
         return search.recorded({term: gain}, True, False, against)

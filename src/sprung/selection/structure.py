@@ -11,6 +11,7 @@ from sprung.errors import Problems, did_you_mean
 from sprung.estimation import USUAL_MOUNTING, Mounting, UsualValue, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
+    COORDINATES,
     EXTRAS,
     LINEAR_EXTRAS,
     CarriedAt,
@@ -20,6 +21,7 @@ from sprung.vehicle import (
     NonlinearModel,
     Sensor,
     Tracks,
+    coordinates,
     ground_contact_elements,
     nonlinear_elements,
     parameter_names,
@@ -152,6 +154,11 @@ class ModelStructure:
     def is_time_stepped(self) -> bool:
         """Whether its motion has to be computed by time stepping."""
         return self.is_nonlinear or self.unilateral_tyres
+
+    @property
+    def needs_start(self) -> bool:
+        """Whether it has coordinates that only a vehicle which is fitted already shows: no fit begins from nothing."""
+        return not {*coordinates(self.names)} <= {*COORDINATES, "z_e"}
 
     @property
     def linear_terms(self) -> tuple[str, ...]:
