@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.objective import HasClockDelays, ObjectiveAt
+from sprung.estimation.objective import HasClockDelays, HasWindows, ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
 from sprung.estimation.problem import EstimationProblem, Iterate
 from sprung.preprocess import FreeDecay, Moments, pool_moments
@@ -150,9 +150,18 @@ class FitResult:
         return birge_ratio(*self.problem.by_drop(self.iterate))
 
     @cached_property
+    def disagreement_in_time(self) -> float:
+        """Factor by which large and small motions that contradict each other inflate variances; 1 where not significantly."""
+        match self.iterate.at:
+            case HasWindows() as at:
+                return birge_ratio(*self.problem.in_null_space(self.iterate, *at.by_window))
+            case _:
+                return 1.0
+
+    @cached_property
     def overdispersion(self) -> float:
-        """Factor on every variance: the larger of the two, 1 where neither is significant."""
-        return max(float(self.autocorrelation_inflation.max()), self.disagreement)
+        """Factor on every variance: the largest of the three, 1 where none is significant."""
+        return max(float(self.autocorrelation_inflation.max()), self.disagreement, self.disagreement_in_time)
 
     @property
     def drop_corrections(self) -> tuple[Real, NDArray[np.int64]]:

@@ -141,6 +141,15 @@ class HasClockDelays(Protocol):
 
 
 @runtime_checkable
+class HasWindows(Protocol):
+    """An objective that is a sum over windows of time as well as over drops."""
+
+    @property
+    def by_window(self) -> tuple[Real, Real]:
+        """Gradient and information of each window; shapes (window, parameter) and (window, parameter, parameter)."""
+
+
+@runtime_checkable
 class HasModalResponse(Protocol):
     """An objective that has modal coordinates, in which changes of the response are sums of exponentials."""
 

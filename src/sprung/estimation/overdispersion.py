@@ -1,6 +1,7 @@
 """Overdispersion: by how much variances exceed those of independent samples of the right model.
 
-Two statistics show it without any other model: the autocorrelation of residuals, and the disagreement of drops.
+Three statistics show it without any other model: the autocorrelation of residuals, the disagreement of drops, and that of large
+and small motions.
 """
 
 from __future__ import annotations
@@ -70,25 +71,25 @@ def autocorrelation_inflation(
 
 
 def birge_ratio(scores: Real, informations: Real) -> float:
-    """Return the square of the :term:`Birge ratio`: by how much the drops differ from each other beyond their noise.
+    """Return the square of the :term:`Birge ratio`: by how much parts of the records differ from each other beyond their noise.
 
     Parameters
     ----------
     scores
-        Gradient of the log-likelihood of each drop at the joint optimum, in free directions; shape (drop, direction).
+        Gradient of the log-likelihood of each part at the joint optimum, in free directions; shape (part, direction).
     informations
-        Fisher information of each drop in the same directions; shape (drop, direction, direction).
+        Fisher information of each part in the same directions; shape (part, direction, direction).
 
     Returns
     -------
     float
-        Birge's ratio, squared: each drop's own correction to the joint estimate, in units of its own uncertainty, squared
-        and averaged (Birge, Phys. Rev. 40 (1932) 207). 1 where the excess is not significant, or with too few drops.
+        Birge's ratio, squared: each part's own correction to the joint estimate, in units of its own uncertainty, squared
+        and averaged (Birge, Phys. Rev. 40 (1932) 207). 1 where the excess is not significant, or with too few parts.
 
     Notes
     -----
-    A model error that is the same in every drop goes unseen here; one that depends on how far or which way the vehicle
-    moved, as geometry and friction do, does not.
+    Where the parts are drops, a model error shows that depends on which way the vehicle moved, and one that is the same in every
+    drop goes unseen. Where they are windows of time, an error shows that depends on how far or how fast it moved.
     """
     squares, directions = drop_corrections(scores, informations)
     freedom = int(directions.sum()) - scores.shape[1]

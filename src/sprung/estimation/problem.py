@@ -227,9 +227,12 @@ class EstimationProblem:
 
     def by_drop(self, iterate: Iterate) -> tuple[Real, Real]:
         """Gradient and information of each drop in the null space of the constraints."""
+        return self.in_null_space(iterate, *iterate.at.by_drop)
+
+    def in_null_space(self, iterate: Iterate, gradients: Real, informations: Real) -> tuple[Real, Real]:
+        """Return gradients and informations, the first axis of which is parts of the records, in the null space of the constraints."""
         null_space = self.priors.null_space(iterate.u)
         basis = null_space * self.priors.coordinates.derivatives(iterate.u)[:, None]
-        gradients, informations = iterate.at.by_drop
         return gradients @ basis, basis.T @ informations @ basis
 
     def normal_equations(self, iterate: Iterate) -> NormalEquations:

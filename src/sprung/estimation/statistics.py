@@ -22,7 +22,7 @@ from sprung.vehicle import PARAMETERS, LinearModel, Sensor, is_of_sensor
 
 Real = NDArray[np.float64]
 
-Inflater = Literal["nothing", "coloured residuals", "drops that disagree"]
+Inflater = Literal["nothing", "coloured residuals", "drops that disagree", "large and small motions that disagree"]
 """What shows that the records have less information than white residuals would."""
 
 _BEYOND_DOUBT = 1e4
@@ -232,9 +232,21 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
         converged=fit.converged,
         starts_agreeing=fit.starts_agreeing,
         starts=fit.starts,
-        inflated_by="nothing" if inflation == 1 else "coloured residuals" if is_coloured else "drops that disagree",
+        inflated_by=_inflater(fit),
         most_coloured=int(by_channel.argmax()) if is_coloured else None,
     )
+
+
+def _inflater(fit: FitResult) -> Inflater:
+    """Return what inflates the variances of a fit most."""
+    if fit.overdispersion == 1:
+        return "nothing"
+    by_reason: dict[Inflater, float] = {
+        "coloured residuals": float(fit.autocorrelation_inflation.max()),
+        "drops that disagree": fit.disagreement,
+        "large and small motions that disagree": fit.disagreement_in_time,
+    }
+    return max(by_reason, key=lambda reason: by_reason[reason])
 
 
 def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:

@@ -40,8 +40,19 @@ _MEMORY_STD = 1.0
 _MOST_MEMORY = 1.15
 """Memory that no friction has: it slides at one, and noise adds little."""
 
-_WITHOUT_WEIGHTS = ("_acceleration_rows", "_inputs", "_accelerations", "_residuals", "residual_sums", "_linearised")
+_WITHOUT_WEIGHTS = (
+    "_acceleration_rows",
+    "_inputs",
+    "_accelerations",
+    "_residuals",
+    "residual_sums",
+    "_linearised",
+    "_products",
+)
 """Cached properties of a `TimeSteppingAt` that do not depend on the weights."""
+
+_FIRST_WINDOW, _WINDOWS = 0.05, 8
+"""Length of the first window of time, s, and how many there are: the motion dies, and each is twice as long as the one before."""
 
 _STATE_STEPS, _STATE_GAIN = 20, 1e-2
 """Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
@@ -375,17 +386,18 @@ class TimeSteppingAt:
         """Twice the negative log-likelihood of the initial states under their prior."""
         return float(np.sum((self.begin / self.objective.prior_std) ** 2))
 
-    @property
+    @cached_property
     def _products(self) -> Real:
         """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
 
         Shape (drop, channel, unknown + 1, unknown + 1); what offsets explain is subtracted.
         """
-        return self._linearised[0]
+        products: Real = self._linearised[0].sum(axis=0)
+        return products
 
     @cached_property
     def _linearised(self) -> tuple[Real, Real, Real]:
-        """The products, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
+        """The products by window, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
         objective = self.objective
         S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
         channels, shared = len(S), objective.sensors.shared
@@ -419,8 +431,11 @@ class TimeSteppingAt:
             columns = np.empty((channels, samples, readings.shape[2] + 1))
             columns[..., :-1] = np.swapaxes(readings - readings.mean(axis=0), 0, 1)
             columns[..., -1] = self._residuals[drop, :, :samples]
-            products.append(np.swapaxes(columns, 1, 2) @ columns)
-        return np.array(products) * objective.channel_weights[:, :, None, None], found.starts, found.transitions
+            ends = (objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
+            windows = np.split(columns, np.minimum(ends, samples), axis=1)
+            products.append([np.swapaxes(window, 1, 2) @ window for window in windows])
+        by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
+        return by_window, found.starts, found.transitions
 
     @cached_property
     def _normal_equations(self) -> tuple[Real, Real]:
@@ -437,6 +452,19 @@ class TimeSteppingAt:
     def by_drop(self) -> tuple[Real, Real]:
         """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
         information, gradient, _ = eliminate(*self._normal_equations, len(self.values))
+        return gradient, information
+
+    @cached_property
+    def by_window(self) -> tuple[Real, Real]:
+        """Gradient and information of each window of time; shapes (window, parameter) and (window, parameter, parameter)."""
+        parameters = len(self.values)
+        whole = self._normal_equations[0]
+        # What a change of the parameters is in a drop whose initial state follows it.
+        following = -np.linalg.solve(whole[:, parameters:, parameters:], whole[:, parameters:, :parameters])
+        change = np.concatenate([np.tile(np.eye(parameters), (len(whole), 1, 1)), following], axis=1)
+        products = np.einsum("c,wdcij->wdij", self.weights, self._linearised[0], optimize=True)
+        gradient = np.einsum("dup,wdu->wp", change, products[..., :-1, -1], optimize=True)
+        information = np.einsum("dup,wduv,dvq->wpq", change, products[..., :-1, :-1], change, optimize=True)
         return gradient, information
 
     @property

@@ -70,8 +70,8 @@ _REFERENCES = (
     ),
     Reference(
         "Birge, R. T.: The Calculation of Errors by the Method of Least Squares. Phys. Rev. 40 (1932) 207.",
-        "Birge ratio: larger uncertainties, because the drops disagree by more than their noise",
-        lambda result: result.fit.inflated_by == "drops that disagree",
+        "Birge ratio: larger uncertainties, because parts of the recordings disagree by more than their noise",
+        lambda result: "disagree" in result.fit.inflated_by,
     ),
     Reference(
         "Flyvbjerg, H. and Petersen, H. G.: Error Estimates on Averages of Correlated Data. J. Chem. Phys. 91 (1989) 461.",

@@ -164,6 +164,8 @@ def _inflation_reason(fit: FitReport) -> str:
             return f": the residuals are autocorrelated, most in {fit.most_coloured}"
         case "drops that disagree":
             return ": the drops disagree by more than their noise"
+        case "large and small motions that disagree":
+            return ": large and small motions disagree by more than their noise"
         case _:
             return ""
 
