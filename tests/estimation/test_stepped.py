@@ -18,6 +18,7 @@ from sprung.estimation import (
     score_stepped_terms,
     wald_test,
 )
+from sprung.estimation.objective import HasWindows
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -164,3 +165,25 @@ def test_a_friction_that_went_astray_begins_anew_without_a_jolt(
     pulls = [matrices.K @ one[:7, 0] + matrices.C @ one[7:14, 0] + G.T @ (forces * one[14:, 0]) for one in begun]
     np.testing.assert_allclose(pulls[1], pulls[0], rtol=1e-9, atol=1e-6)
     assert restarted.without_impossible_memories(values, restarted.at(values, weights).states) is None
+
+
+def test_windows_of_time_add_up(decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult) -> None:
+    """Gradient and information of all windows are those of the whole; where the model is right, no window disagrees."""
+    larger = plain.with_terms(("rebound",))
+    found = fit_nonlinear(
+        decays,
+        larger.nonlinear_models,
+        plain.sensors,
+        plain.known,
+        start=optimum.parameters | {"r_f": 1.0, "r_r": 1.0},
+        states=optimum.states,
+    )
+    at = found.iterate.at
+    assert isinstance(at, HasWindows)
+    gradients, informations = at.by_window
+    scale = np.sqrt(np.diag(at.information))
+    np.testing.assert_allclose(gradients.sum(axis=0) / scale, at.gradient / scale, atol=0.05)
+    np.testing.assert_allclose(
+        informations.sum(axis=0) / np.outer(scale, scale), at.information / np.outer(scale, scale), atol=1e-6
+    )
+    assert found.disagreement_in_time < 2

@@ -88,7 +88,7 @@ def birge_ratio(scores: Real, informations: Real) -> float:
 
     Notes
     -----
-    Where the parts are drops, a model error shows that depends on which way the vehicle moved, and one that is the same in every
+    Where the parts are drops, a model error shows that depends on which way the vehicle moved; one that is the same in every
     drop goes unseen. Where they are windows of time, an error shows that depends on how far or how fast it moved.
     """
     squares, directions = drop_corrections(scores, informations)

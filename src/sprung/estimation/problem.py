@@ -230,7 +230,7 @@ class EstimationProblem:
         return self.in_null_space(iterate, *iterate.at.by_drop)
 
     def in_null_space(self, iterate: Iterate, gradients: Real, informations: Real) -> tuple[Real, Real]:
-        """Return gradients and informations, the first axis of which is parts of the records, in the null space of the constraints."""
+        """Return gradients and informations of parts of the records in the null space of the constraints."""
         null_space = self.priors.null_space(iterate.u)
         basis = null_space * self.priors.coordinates.derivatives(iterate.u)[:, None]
         return gradients @ basis, basis.T @ informations @ basis

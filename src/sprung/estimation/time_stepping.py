@@ -52,7 +52,7 @@ _WITHOUT_WEIGHTS = (
 """Cached properties of a `TimeSteppingAt` that do not depend on the weights."""
 
 _FIRST_WINDOW, _WINDOWS = 0.05, 8
-"""Length of the first window of time, s, and how many there are: the motion dies, and each is twice as long as the one before."""
+"""Length of the first window of time, s, and how many there are, each twice as long as the one before."""
 
 _STATE_STEPS, _STATE_GAIN = 20, 1e-2
 """Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""

@@ -176,7 +176,7 @@ class ModelSearch:
     def _sensor_noise(self) -> Real:
         """Variance of each channel by its noise at rest and its resolution, (m/s²)²; 0 where unknown; shape (channel,).
 
-        Slow motion at rest, of a vehicle that still swings on its blocks, is no noise: what neighbouring samples share is left out.
+        A vehicle may still swing on its blocks: what neighbouring samples share at rest is left out.
         """
         noise = estimate_sensor_noise(self.decays, self.fit.residual_moments)
         white = np.clip(noise.variance - noise.neighbour, 0.0, noise.variance)

@@ -49,7 +49,18 @@ def with_tyre_rates_at_rest(model: LinearModel, values: Sequence[float] | Array)
 
 
 def differentiate_tyre_rates_at_rest(model: LinearModel, values: Array) -> Array:
-    """Return the derivatives of `with_tyre_rates_at_rest` by the parameters, shape (parameter, parameter)."""
+    """Return the derivatives of the parameters at rest by those at first touch.
+
+    Parameters
+    ----------
+    model, values
+        As for `with_tyre_rates_at_rest`.
+
+    Returns
+    -------
+    ndarray
+        Of each parameter in SI by each, shape (parameter, parameter).
+    """
     steps = _NUDGE * np.maximum(np.abs(values), _NUDGE)
     if "h_tf" not in model.names:
         return np.eye(len(values))
