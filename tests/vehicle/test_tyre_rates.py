@@ -63,8 +63,8 @@ def test_they_are_identified_from_drops_in_which_they_leave_the_ground() -> None
         assert found.value is not None
         assert found.std is not None
         assert abs(found.value - truth) < 4 * found.std, name
-    assert abs(result.parameters["k_tf"].value / CAR.k_tf - 1) < 0.02
+        assert not name.startswith("k_t") or abs(found.value / truth - 1) < 0.02
     assert result.curves["tyre_front"].reached[1] <= 0
     deflection = -0.02
-    force, truth = result.curves["tyre_front"].at(deflection), CAR.k_tf * deflection * (1 - GROWTH * deflection / 2)
-    assert force.force == pytest.approx(truth, abs=4 * force.std)
+    force, std = result.curves["tyre_front"].at(deflection)
+    assert abs(force - CAR.k_tf * deflection * (1 - GROWTH * deflection / 2)) < 4 * std
