@@ -66,5 +66,6 @@ def test_they_are_identified_from_drops_in_which_they_leave_the_ground() -> None
         assert not name.startswith("k_t") or abs(found.value / truth - 1) < 0.02
     assert result.curves["tyre_front"].reached[1] <= 0
     deflection = -0.02
-    force, std = result.curves["tyre_front"].at(deflection)
-    assert abs(force - CAR.k_tf * deflection * (1 - GROWTH * deflection / 2)) < 4 * std
+    point = result.curves["tyre_front"].at(deflection)
+    error = float(point.force) - CAR.k_tf * deflection * (1 - GROWTH * deflection / 2)
+    assert abs(error) < 4 * float(point.std)
