@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle, wald_test
 from sprung.progress import Step
-from sprung.selection.error_budget import MISFIT_LEFT
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_values
 from sprung.selection.stepwise import select_further_terms
@@ -34,8 +34,8 @@ _SPREADS: Mapping[str, float] = {
 """Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
 name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
 
-_ITERATIONS = 30
-"""Of the fit of the ordinary vehicle, at the most."""
+_FIRST_ITERATIONS, _ITERATIONS = 8, 22
+"""Of the fit of the ordinary vehicle: after the first it has to have explained some of the misfit, and then at the most."""
 
 _HELD = 1.1
 """Factor within which a parameter is held that means little where its term is small."""
@@ -128,17 +128,17 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))
-    if search.leaves_misfit(found.fit, MISFIT_LEFT):
+    if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
     return select_further_terms(found.refit(found.structure))
 
 
-def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
-    """Fit the ordinary vehicle to the beginnings of the decays; usual values stay as priors of the terms alone.
+def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
+    """Fit the ordinary vehicle to the beginnings of the decays; None where it leaves too much of the misfit at first.
 
-    What no term would need to gain does not matter yet.
+    Usual values stay as priors of the terms alone. What no term would need to gain does not matter yet.
     """
     values, usual = ordinary_vehicle(rich)
     at_start = fit_linear(
@@ -146,7 +146,11 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
     )
     held = replace(rich, usual=usual | held_sizes(rich, values))
     found = replace(search, structure=held, fit=at_start)
-    found = found.refit(held, _ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+    found = found.refit(held, _FIRST_ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+    if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
+        return None
+    if not found.fit.converged:
+        found = found.refit(held, _ITERATIONS, beginning_only=True, enough=search.required_of_switch)
     return replace(found, structure=replace(rich, usual=usual_sizes(rich, values)))
 
 
