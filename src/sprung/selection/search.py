@@ -89,10 +89,13 @@ class ModelSearch:
         """Number of samples that are fitted, all channels together."""
         return float(sum(decay.usable.sum() * decay.samples for decay in self.decays))
 
+    def significant(self, term: str) -> float:
+        """Gain in twice the log-likelihood from which a term is significant: what a score test has to promise."""
+        return required_gain(len(TERMS[term].parameters(self.structure.tracks)), _HYPOTHESES, self.samples)
+
     def required(self, term: str) -> float:
         """Gain in twice the log-likelihood that is required of a term; where much is left to explain, a part of that."""
-        parameters = len(TERMS[term].parameters(self.structure.tracks))
-        return max(required_gain(parameters, _HYPOTHESES, self.samples), LEAST_SHARE * self._unexplained_gain)
+        return max(self.significant(term), LEAST_SHARE * self._unexplained_gain)
 
     @property
     def required_of_switch(self) -> float:

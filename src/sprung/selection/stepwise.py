@@ -14,7 +14,7 @@ import numpy as np
 
 from sprung.estimation import NEAR, fit_linear, wald_test
 from sprung.progress import Step
-from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST, MISFIT_LEFT_BY_ALL
 from sprung.selection.scoring import Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
@@ -264,7 +264,7 @@ def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSe
     """
     priority: dict[str, float] = {}
     for term, (gain, size) in scores.items():
-        row, required = TERMS[term], search.required(term)
+        row, required = TERMS[term], search.significant(term)
         promising = gain * weight > required
         if promising and (row.is_linear or size >= row.negligible):
             priority[term] = (gain - row.implausibility(size) * search.fit.disagreement) / required
@@ -298,7 +298,7 @@ def _with_group(search: ModelSearch, group: Sequence[str], among: Sequence[str])
         tried = _fit_nonlinear(search, larger)
     else:
         first, expected = _first_step(search, term)
-        if expected < search.required(term):
+        if expected < search.significant(term):
             return search.recorded({term: expected}, False, False)
         tried = _fit_linear(first, term)
     if tried is None:
@@ -316,12 +316,12 @@ def _with_group(search: ModelSearch, group: Sequence[str], among: Sequence[str])
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
     against = tried.veto(term)
     tried = tried.recorded({term: gain}, True, True)
-    if not against and TERMS[term].explains_all and tried.has_model_error:
+    if not against and TERMS[term].explains_all and search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL):
         # Beside it a second one of its kind is looked for, a bending body beside people on seats, say; beside both, none.
         is_second = len(among) < len(_LINEAR)
         others = [other for other in among if other != term and not (is_second and TERMS[other].explains_all)]
         tried = select_linear_terms(tried, others)
-        against = "it does not explain the whole misfit" if tried.has_model_error else ""
+        against = "it does not explain the whole misfit" if search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL) else ""
     if against:
         return search.recorded({term: gain}, True, False, against)
     return _without_unneeded(tried, search, keep=term)[0]
@@ -390,7 +390,7 @@ def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
     larger = search.with_terms([term])
     begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
     ends = [search.refit(larger)] if begins else []
-    if term == ENGINE and (search.has_model_error or not ends):
+    if term == ENGINE and not larger.needs_start and (search.has_model_error or not ends):
         sensors, known = larger.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
