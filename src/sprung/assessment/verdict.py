@@ -35,6 +35,9 @@ CONTRADICTION = 4.0
 """Standard uncertainties by which a known quantity may miss what the recordings say."""
 
 
+BEYOND_DOUBT = 10.0
+"""The same where the model does not explain the recordings either: then its parameters are of no use."""
+
 SLIGHTEST = 0.0005
 """Error of a prediction, as a part of a drop's signal, that is not reported."""
 
@@ -101,10 +104,12 @@ def decide_verdict(
     worst = int(np.argmax(relative))
     size = float(relative[worst])
     unexplained = list(_unexplained(size, float(over_noise[worst]), channels[worst]))
-    reject = [*(unexplained if size > UNUSABLE else ()), *_no_fit(fit, parameters)]
+    contradicted = max(map(abs, fit.contradictions.values()), default=0.0) > BEYOND_DOUBT
+    is_unusable = size > UNUSABLE or (size > EXPLAINED and contradicted)
+    reject = [*(unexplained if is_unusable else ()), *_no_fit(fit, parameters)]
     doubt = [
         *suspected,
-        *(unexplained if size <= UNUSABLE else ()),
+        *(() if is_unusable else unexplained),
         *_contradictions(fit),
         *_unpredicted(drops),
     ]

@@ -27,7 +27,7 @@ MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.3
 leaves more is not the missing one, and its estimates are of no use."""
 
 MISFIT_LEFT_BY_ALL = 0.05
-"""The same of a linear term that resembles many a fault: what it leaves is geometry of the second order, say, that is tried later."""
+"""The same of a linear term that resembles many a fault: it may leave geometry of second order, say, that is tried later."""
 
 LEAST_SHARE = 0.05
 """Part of what is left to explain that a term has to explain: less than that is feigned by whatever else is wrong."""

@@ -267,8 +267,13 @@ class ModelSearch:
         return [name for name, at in places.items() if not (seen[at] and variance[at] < 1)]
 
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
-        """Whether another fit leaves more than a part of this one's model error: then it lacks something else."""
-        before, after = (np.maximum(one.noise**2 - self._sensor_noise, 0.0) for one in (self.fit, fit))
+        """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there."""
+        lengths = [residual.shape[1] for residual in fit.residuals]
+        own = [residual[:, :length] for residual, length in zip(self.fit.residuals, lengths, strict=True)]
+        before, after = (
+            np.maximum(np.nanmean(np.concatenate(residuals, axis=1) ** 2, axis=1) - self._sensor_noise, 0.0)
+            for residuals in (own, fit.residuals)
+        )
         much = before > self._sensor_noise
         return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
 
