@@ -449,19 +449,22 @@ class TimeSteppingAt:
         return information, gradient
 
     @cached_property
+    def _eliminated(self) -> tuple[Real, Real, Real]:
+        """Information and gradient of each drop without its initial state, and how that follows the parameters."""
+        return eliminate(*self._normal_equations, len(self.values))
+
+    @property
     def by_drop(self) -> tuple[Real, Real]:
         """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
-        information, gradient, _ = eliminate(*self._normal_equations, len(self.values))
+        information, gradient, _ = self._eliminated
         return gradient, information
 
     @cached_property
     def by_window(self) -> tuple[Real, Real]:
         """Gradient and information of each window of time; shapes (window, parameter) and (window, parameter, parameter)."""
-        parameters = len(self.values)
-        whole = self._normal_equations[0]
+        response = self._eliminated[2]
         # What a change of the parameters is in a drop whose initial state follows it.
-        following = -np.linalg.solve(whole[:, parameters:, parameters:], whole[:, parameters:, :parameters])
-        change = np.concatenate([np.tile(np.eye(parameters), (len(whole), 1, 1)), following], axis=1)
+        change = np.concatenate([np.tile(np.eye(len(self.values)), (len(response), 1, 1)), response], axis=1)
         products = np.einsum("c,wdcij->wdij", self.weights, self._linearised[0], optimize=True)
         gradient = np.einsum("dup,wdu->wp", change, products[..., :-1, -1], optimize=True)
         information = np.einsum("dup,wduv,dvq->wpq", change, products[..., :-1, :-1], change, optimize=True)

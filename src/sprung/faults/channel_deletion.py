@@ -116,7 +116,7 @@ class ChannelDeletion:
         """
         for kind in CHANNEL_HYPOTHESES:
             for hypothesis in kind(self.prediction):
-                own = [score for score in scores if (score.kind, score.where) == (hypothesis.code, self.name)]
+                own = self.scores_of(hypothesis, scores)
                 if own and hypothesis.correction is not None and hypothesis.stated:
                     numbers = improved(hypothesis.code, hypothesis.stated, own)
                     if not hypothesis.allows(numbers):
@@ -132,6 +132,11 @@ class ChannelDeletion:
                         is_beyond_prior=own[0].is_beyond_prior,
                         required=own[0].required,
                     )
+
+    def scores_of(self, hypothesis: ChannelHypothesis, scores: Sequence[FaultScore]) -> list[FaultScore]:
+        """Return the scores of the numbers of a hypothesis about the channel, in their order."""
+        kind = hypothesis.code, self.name
+        return sorted((score for score in scores if (score.kind, score.where) == kind), key=lambda score: score.axis)
 
     def _left_out(self, hypothesis: ChannelHypothesis) -> Hypothesis:
         fault = with_action(hypothesis.fault((), ()), "it is left out")
@@ -222,7 +227,7 @@ class ChannelCorrection(Hypothesis):
         if self.score_gain > 0 and not explains:
             return None, fits  # the score test was made too far away
         while numbers:
-            scores = self._own(candidate.scores)
+            scores = deletion.scores_of(hypothesis, candidate.scores)
             if all(score.gain < _CONVERGED for score in scores):
                 break
             numbers = improved(hypothesis.code, numbers, scores)
@@ -265,18 +270,13 @@ class ChannelCorrection(Hypothesis):
         tuple or None
             None where it has no numbers, or where they are there already.
         """
-        code, own = self.hypothesis.code, self._own(scores) if self.numbers else []
+        code, own = self.hypothesis.code, self.deletion.scores_of(self.hypothesis, scores) if self.numbers else []
         if all(score.gain < _CONVERGED for score in own):
             return None
         numbers = improved(code, self.numbers, own)
         stds = tuple(score.std for score in own)
         better = ChannelCorrection.of(self.deletion, self.hypothesis, self.correct, numbers, stds, self.candidate)
         return better, self.correct(_change(code, self.numbers, numbers))
-
-    def _own(self, scores: Sequence[FaultScore]) -> list[FaultScore]:
-        """Return the scores of the numbers, in their order."""
-        kind = self.hypothesis.code, self.deletion.name
-        return sorted((score for score in scores if (score.kind, score.where) == kind), key=lambda score: score.axis)
 
 
 def _change(code: str, before: Numbers, after: Numbers) -> Numbers:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle, wald_test
+from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.search import ModelSearch
@@ -63,11 +63,8 @@ def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[
     values = start_values(structure, own)
     for term in structure.terms:
         usual_of = TERMS[term].usual
-        values |= (
-            {}
-            if usual_of is None
-            else {name: value for name, value in usual_of(own, structure).items() if name in values}
-        )
+        if usual_of is not None:
+            values |= {name: value for name, value in usual_of(own, structure).items() if name in values}
     usual = {
         name: UsualValue(values[name], spread)
         for name in plain.names
@@ -142,7 +139,7 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | No
     """
     values, usual = ordinary_vehicle(rich)
     at_start = fit_linear(
-        search.decays, rich.linear_models, rich.campaign.sensors, rich.known, start=values, usual=usual, most=0
+        search.decays, rich.linear_models, rich.sensors, rich.known, start=values, usual=usual, most=0
     )
     held = replace(rich, usual=usual | held_sizes(rich, values))
     found = replace(search, structure=held, fit=at_start)
@@ -156,18 +153,13 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | No
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:
     """Leave out all terms that are not missed together, and fit what is left to the beginnings of the decays."""
-    tracks = search.structure.tracks
     while True:
         against = {term: search.veto(term) for term in search.selected}
-        gains = {
-            term: wald_test(search.fit, TERMS[term].neutral(tracks)) / search.overdispersion for term in search.selected
-        }
+        gains = {term: search.wald_gain(term) for term in search.selected}
         unneeded: list[str] = []
         for term in sorted(gains, key=lambda term: gains[term] / search.required(term)):
             together = [*unneeded, term]
-            neutral = [one for name in together for one in TERMS[name].neutral(tracks)]
-            lost = wald_test(search.fit, neutral) / search.overdispersion
-            if against[term] or lost < sum(map(search.required, together)):
+            if against[term] or search.wald_gain(*together) < sum(map(search.required, together)):
                 unneeded = together
         if not unneeded:
             return search.recorded(gains, True, True)

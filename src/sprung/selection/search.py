@@ -241,6 +241,17 @@ class ModelSearch:
         more = len(self.structure.names) - len(other.structure.names)
         return self.gain_over(other) - more * float(np.log(self.samples))
 
+    def wald_gain(self, *terms: str) -> float:
+        """Return what twice the log-likelihood would lose without some terms, by a Wald test, divided by the overdispersion.
+
+        Parameters
+        ----------
+        terms
+            Of the model.
+        """
+        neutral = [value for term in terms for value in TERMS[term].neutral(self.structure.tracks)]
+        return wald_test(self.fit, neutral) / self.overdispersion
+
     def veto(self, term: str) -> str:
         """Reason against a term of the model, whatever it gains; empty where there is none."""
         row, parameters = TERMS[term], self.fit.parameters

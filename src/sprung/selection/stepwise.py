@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from sprung.estimation import NEAR, fit_linear, wald_test
+from sprung.estimation import NEAR, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST, MISFIT_LEFT_BY_ALL
 from sprung.selection.scoring import Scores, score_terms
@@ -64,7 +64,7 @@ def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> 
         terms = search.open_terms(among)
         search, scores = score_terms(search, terms)
         search, ranked = _ranked(search, scores, _WORTH_A_FIT / search.fit.disagreement)
-        search, accepted = _first_accepted(search, [[term] for term in ranked], among)
+        search, accepted = _first_accepted(search, ranked, among)
         if not accepted:
             break
     return search
@@ -96,7 +96,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         return search
     best, steps = search, search.steps
     for base in _bases(search, plain):
-        found, accepted = _first_accepted(replace(base, steps=steps), [ranked[:1]])
+        found, accepted = _first_accepted(replace(base, steps=steps), ranked[:1])
         found = select_further_terms(found) if accepted else found
         steps = found.steps
         best = found if found.delta_bic(search) > best.delta_bic(search) else best
@@ -132,7 +132,7 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         ratios = {term: scores[term][0] / (search.required(term) * search.overdispersion) for term in terms}
         best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
         tried |= set(best)
-        search, accepted = _first_accepted(search, [[term] for term in best])
+        search, accepted = _first_accepted(search, best)
         if not accepted:
             break
     return search
@@ -238,7 +238,7 @@ def needed_terms(search: ModelSearch) -> dict[str, float]:
     dict
         By term, what twice the log-likelihood would lose without it (Wald test), divided by the overdispersion.
     """
-    gains = {term: _lost_without(search, term) for term in search.selected if not search.veto(term)}
+    gains = {term: search.wald_gain(term) for term in search.selected if not search.veto(term)}
     return {term: gain for term, gain in gains.items() if gain > search.required(term)}
 
 
@@ -277,23 +277,23 @@ def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSe
 
 
 def _first_accepted(
-    search: ModelSearch, groups: Sequence[Sequence[str]], among: Sequence[str] = _LINEAR
+    search: ModelSearch, terms: Sequence[str], among: Sequence[str] = _LINEAR
 ) -> tuple[ModelSearch, bool]:
-    """Fit groups of terms one after the other until one is accepted; and say whether one was."""
-    for group in groups:
-        tried = _with_group(search, group, among)
+    """Fit terms one after the other until one is accepted; and say whether one was."""
+    for term in terms:
+        tried = _with_term(search, term, among)
         if tried.structure.names != search.structure.names:
             return tried, True
         search = tried
     return search, False
 
 
-def _with_group(search: ModelSearch, group: Sequence[str], among: Sequence[str]) -> ModelSearch:
-    """Fit terms together, and leave out again what is not needed; without any of them where they gain too little.
+def _with_term(search: ModelSearch, term: str, among: Sequence[str]) -> ModelSearch:
+    """Fit a term, and leave out again what is not needed; without it where it gains too little.
 
     One that resembles many a fault has to explain the whole misfit, alone or with others of the linear terms among which it is.
     """
-    larger, term = search.with_terms(group), group[0]
+    larger = search.with_terms([term])
     if larger.is_nonlinear:
         tried = _fit_nonlinear(search, larger)
     else:
@@ -302,15 +302,15 @@ def _with_group(search: ModelSearch, group: Sequence[str], among: Sequence[str])
             return search.recorded({term: expected}, False, False)
         tried = _fit_linear(first, term)
     if tried is None:
-        return search.recorded(dict.fromkeys(group, 0.0), True, False)
+        return search.recorded({term: 0.0}, True, False)
     gain = tried.gain_over(search)
-    enough, against = gain > sum(map(search.required, group)), ""
+    enough, against = gain > search.required(term), ""
     if enough and not tried.fit.converged:
         against = "the fit with it did not converge"
     elif enough and search.is_misfit_small and tried.overdispersion > _EXPLAINED * search.overdispersion:
         against = "what is left is no more like noise with it"
     if against or not enough:
-        return search.recorded(dict.fromkeys(group, gain), True, False, against)
+        return search.recorded({term: gain}, True, False, against)
     if larger.is_nonlinear:
         tried, gains = _without_unneeded(tried, search)
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
@@ -353,7 +353,7 @@ def _without_unneeded(
         against = {term: tried.veto(term) for term in tried.selected if term != keep}
         if not against:
             break
-        gains = {term: 0.0 if reason else _lost_without(tried, term) for term, reason in against.items()}
+        gains = {term: 0.0 if reason else tried.wald_gain(term) for term, reason in against.items()}
         least = min(gains, key=lambda term: gains[term] / tried.required(term))
         if gains[least] > tried.required(least):
             return tried, gains
@@ -374,11 +374,6 @@ def _first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:
     first = search.refit(search.with_terms([term]), most=1)
     gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + _WORTH_A_FIT * first.fit.remaining_gain
     return first, gain / first.fit.disagreement
-
-
-def _lost_without(search: ModelSearch, term: str) -> float:
-    """Loss of twice the log-likelihood without a term, by a Wald test, divided by the overdispersion."""
-    return wald_test(search.fit, TERMS[term].neutral(search.structure.tracks)) / search.overdispersion
 
 
 def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
