@@ -109,3 +109,20 @@ def test_people_on_seats_are_selected() -> None:
 def test_an_infinite_modal_mass_is_none() -> None:
     assert TABLE_1_CAR.extras == ()
     assert replace(TABLE_1_CAR, I_w=40.0).extras == ("twist",)
+
+
+def test_people_who_move_with_the_body_are_a_part_of_it() -> None:
+    """In any motion of the rigid body the kinetic energy is that of the vehicle without seats: I_xx includes people."""
+    place = {"m_o": 150.0, "x_o": -1.2, "y_o": 0.1}
+    seated = Vehicle.from_parameters(TABLE_1_CAR.parameters | place)
+    heave, pitch, roll = 0.7, 0.3, -0.4
+    body = np.array([heave, pitch, roll, 0.1, 0.2, 0.3, 0.4])
+    # z_o is the mean of both seats, dz_o half their difference: 0.37 m left and right of their middle.
+    people = [heave - pitch * (seated.a + place["x_o"]) + roll * place["y_o"], 0.37 * roll]
+    whole = np.array([*body, *people])
+    assert whole @ seated.matrices().M @ whole == pytest.approx(body @ TABLE_1_CAR.matrices().M @ body, rel=1e-12)
+    np.testing.assert_allclose(
+        seated.matrices().K @ [*body[:3], *(0, 0, 0, 0), *people],
+        [*TABLE_1_CAR.matrices().K @ [*body[:3], 0, 0, 0, 0], 0, 0],
+        atol=1e-9 * seated.k_o,
+    )

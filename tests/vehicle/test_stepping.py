@@ -28,6 +28,7 @@ from sprung.vehicle import (
     parse_record,
     segments_of,
     seven_degrees_of_freedom,
+    stiffened_air_springs,
 )
 from sprung.vehicle.force_laws import (
     AIR,
@@ -48,7 +49,7 @@ CAR = Vehicle.from_parameters(
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
     | {"k_bf": 3e4, "k_br": 2e4, "x_bf": 0.01, "x_br": 0.015}
     | {"v_kf": 0.1, "v_kr": 0.15, "q_f": 0.4, "q_r": 0.6, "e_f": 6.0, "e_r": 4.0, "h_tf": 6.0, "h_tr": 4.0}
-    | {"w_kf": 0.03, "w_kr": 0.02}
+    | {"w_kf": 0.03, "w_kr": 0.02, "e_lf": 5.0, "e_lr": 7.0, "g_f": 60.0, "g_r": 80.0}
 )
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
@@ -61,7 +62,9 @@ def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
 def model_of(extras: tuple[str, ...], load: Load = EMPTY, ground: bool = False) -> NonlinearModel:
     names, _ = values_of(extras)
     forces = nonlinear_elements("separate", extras) + (ground_contact_elements(extras) if ground else ())
-    return NonlinearModel.of(seven_degrees_of_freedom("separate", extras), forces, names, load)
+    elements = seven_degrees_of_freedom("separate", extras)
+    elements += stiffened_air_springs(load.mass_at_wheels(CAR.wheelbase), "separate", extras)
+    return NonlinearModel.of(elements, forces, names, load)
 
 
 def linear_part(load: Load = EMPTY) -> Matrices:

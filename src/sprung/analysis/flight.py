@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.clocks import use_clock_flights
 from sprung.campaign import Campaign
-from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of
+from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of, weigh_statements
 from sprung.preprocess import Flight, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
@@ -72,6 +72,7 @@ def _with_fall(run: Analysis, found: Sequence[Flight | None], progress: Progress
     search = select_gravity_leakage(ModelSearch(structure, other, decays, run.model.steps, progress))
     if not search.fit.converged or np.any(search.fit.noise > _NO_WORSE * fit.noise):
         return None
+    search = replace(search, fit=weigh_statements(search.fit))
     now = uncertainty_of(search.fit)
     estimated = np.sqrt(np.diag(statistics.covariance)) > 0
     ratios = np.sqrt(np.diag(now.covariance)[estimated] / np.diag(statistics.covariance)[estimated])

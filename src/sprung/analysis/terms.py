@@ -7,7 +7,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms, select_from_ordinary_vehicle
+from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms
 from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
@@ -47,9 +47,6 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
             plain, carried_at=found.carried_at, assumed_heights=found.assumed_heights, sinking=found.sinking
         )
         search = select_nonlinear(before, plain)
-        rich = select_from_ordinary_vehicle(search, plain)
-        is_better = rich.delta_bic(search) > 0
-        search = rich if is_better else replace(search, steps=rich.steps)
     if search.structure.is_nonlinear:
         search = from_contact(search)
     return _with_search(run, run.model, search, "select_nonlinear_terms")

@@ -6,7 +6,7 @@ from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear
+from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
@@ -95,4 +95,5 @@ __all__ = [
     "usual_rubber",
     "usual_vehicle",
     "wald_test",
+    "weigh_statements",
 ]

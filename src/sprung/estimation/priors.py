@@ -226,11 +226,17 @@ class PriorsAndConstraints:
         return right[rank:].T
 
 
+_SIZES = {"N/(m kg)": 100.0}
+"""Sizes of parameters that are the same for vehicles of all sizes: a rate over what it carries is that of 1.6 Hz, squared."""
+
+
 def _reference(name: str, typical: Mapping[str, float]) -> float:
     """Scale of a parameter's coordinate, SI; 1 for those that are fitted by their logarithms."""
     parameter = PARAMETERS[name]
-    if parameter.positive or not parameter.scales:
+    if parameter.positive:
         return 1.0
+    if not parameter.scales:
+        return _SIZES.get(parameter.unit, 1.0)
     stiffness = typical["k_sf"]
     sizes = {
         "N": _TRAVEL * stiffness,

@@ -108,10 +108,13 @@ class EstimationProblem:
         The likelihood of the records.
     priors
         What is known beforehand, and the coordinates.
+    overdispersion
+        Of the records, by which they count less than they would by their samples; 1 as long as nothing is known of it.
     """
 
     objective: Objective
     priors: PriorsAndConstraints
+    overdispersion: float = 1.0
 
     @cached_property
     def _observations(self) -> Real:
@@ -169,7 +172,8 @@ class EstimationProblem:
             return np.inf
         residual, _ = self.priors.residuals(iterate.u)
         variance = self.noise_variance(sums, at.leverage if leverage is None else leverage)
-        return float(self._observations @ np.log(variance) + residual @ residual) + at.penalty
+        of_records = float(self._observations @ np.log(variance)) + at.penalty
+        return of_records / self.overdispersion + float(residual @ residual)
 
     def start(self, u: Real) -> Iterate:
         """Return the first iterate, with the noise that the residuals show there."""
@@ -195,7 +199,8 @@ class EstimationProblem:
         information, gradient, null_space
             Shapes (direction, direction), (direction,) and (parameter, direction).
         """
-        return self.joint_system(iterate, iterate.at.information / inflation, iterate.at.gradient / inflation)
+        less = inflation * self.overdispersion
+        return self.joint_system(iterate, iterate.at.information / less, iterate.at.gradient / less)
 
     def joint_system(self, iterate: Iterate, information: Real, gradient: Real) -> tuple[Real, Real, Real]:
         """Return the same with further unknowns behind the parameters.

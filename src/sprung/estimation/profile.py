@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.priors import PriorsAndConstraints
 from sprung.estimation.problem import CLOSE_BY, EstimationProblem, Iterate
 from sprung.estimation.statistics import FitStatistics
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue
@@ -81,7 +80,7 @@ def _interval_end(fit: FitResult, statistics: FitStatistics, name: str, side: fl
 
     None where the likelihood never falls enough, however far the quantity moves that way.
     """
-    problem, scale = _with_inflated_priors(fit, statistics.inflation), _scale(fit, name)
+    problem, scale = replace(fit.problem, overdispersion=statistics.inflation), _scale(fit, name)
     direction, std = _direction(statistics, name, scale)
     inner = ProfilePoint(0.0, fit.iterate.u, -NORMAL_95)
     outer: ProfilePoint | None = None
@@ -89,7 +88,7 @@ def _interval_end(fit: FitResult, statistics: FitStatistics, name: str, side: fl
     for _ in range(_EVALUATIONS):
         near = inner.u + np.clip(slope * (move - inner.move), -_LONGEST, _LONGEST)
         held = _maximise_holding(problem, name, _moved(fit, name, scale, move), near)
-        fall = np.inf if held is None else _fall(problem, fit, held) / statistics.inflation
+        fall = np.inf if held is None else _fall(problem, fit, held)
         point = ProfilePoint(move, inner.u if held is None else held.u, max(fall, 0.0) ** 0.5 - NORMAL_95)
         if abs(point.excess) < _PRECISE * NORMAL_95:
             return _moved(fit, name, scale, move)
@@ -144,25 +143,6 @@ def _direction(statistics: FitStatistics, name: str, scale: float) -> tuple[Real
     together = statistics.relative_covariance @ derivative
     variance = float(derivative @ together)
     return together / variance, variance**0.5
-
-
-def _with_inflated_priors(fit: FitResult, inflation: float) -> EstimationProblem:
-    """Return the problem in which priors weigh as much beside the records as in the fit's covariance.
-
-    There the records count for less by the inflation; here, where they count whole, priors count for more. They are moved
-    nearer to the optimum by as much, so that it stays the optimum.
-    """
-    priors, u = fit.problem.priors, fit.iterate.u
-
-    def inflated(name: str, known: KnownValue) -> KnownValue:
-        found, _ = evaluate_quantity(name, fit.names, priors.coordinates.values(u))
-        return KnownValue(found + (known.value - found) / inflation, known.std / inflation**0.5)
-
-    statements = {
-        name: known if known.is_exact or inflation == 1 else inflated(name, known)
-        for name, known in priors.statements.items()
-    }
-    return replace(fit.problem, priors=PriorsAndConstraints(priors.coordinates, statements))
 
 
 def _maximise_holding(problem: EstimationProblem, name: str, value: float, near: Real) -> Iterate | None:

@@ -35,6 +35,7 @@ from sprung.vehicle import (
     is_nuisance,
     parameter_names,
     seven_degrees_of_freedom,
+    stiffened_air_springs,
     uncertainties_of,
 )
 
@@ -175,10 +176,15 @@ class MeasurementSetup:
         sampling = rate or self.rate
         names = {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
-        heights = self.vehicle.heights
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights, self.vehicle.wheelbase)
+        heights, wheelbase = self.vehicle.heights, self.vehicle.wheelbase
+        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights, wheelbase)
         models = {
-            name: LinearModel.of(elements + load.elements(heights, self.names), self.names)
+            name: LinearModel.of(
+                elements
+                + stiffened_air_springs(load.mass_at_wheels(wheelbase), self.tracks, self.extras, wheelbase)
+                + load.elements(heights, self.names),
+                self.names,
+            )
             for load, name in names.items()
         }
         objective = ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names))

@@ -3,7 +3,7 @@
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
-from sprung.selection.ordinary import select_from_ordinary_vehicle
+from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
@@ -14,7 +14,6 @@ from sprung.selection.stepwise import (
     needed_terms,
     select_gravity_leakage,
     select_linear_terms,
-    select_nonlinear_terms,
     select_roll_axis_height,
 )
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -41,7 +40,6 @@ __all__ = [
     "required_gain",
     "score_terms",
     "select_finite_rotation",
-    "select_from_ordinary_vehicle",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_nonlinear_terms",

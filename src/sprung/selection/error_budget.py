@@ -22,9 +22,9 @@ MODEL_ERROR = 0.2
 """Variance beyond the sensors' noise at rest, as a part of it, from which the model has errors that its terms have to explain.
 The variance of 100 samples at rest has a standard error of 0.14 of itself; eight channels are averaged."""
 
-MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.3
-"""Part of the linear vehicle's model error that a nonlinear one may leave after its first steps and at its end: a term that
-leaves more is not the missing one, and its estimates are of no use."""
+MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.1
+"""Part of the linear vehicle's model error that a nonlinear one may leave in the beginnings of the decays after its first steps
+and at its end: a term that leaves more is not the missing one, or not the only one, and its estimates are of no use."""
 
 MISFIT_LEFT_BY_ALL = 0.05
 """The same of a linear term that resembles many a fault: it may leave geometry of second order, say, that is tried later."""

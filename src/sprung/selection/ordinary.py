@@ -121,7 +121,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         Model and fit as given where the ordinary vehicle explains no more.
     """
     terms = tuple(name for name in plain.open_terms if TERMS[name].usual is not None)
-    if not terms or not search.is_misfit_large or any(decay.clocks for decay in search.decays):
+    if not terms:
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))

@@ -262,6 +262,8 @@ class ModelSearch:
         undetermined = self._undetermined(row.parameters(self.structure.tracks))
         if undetermined:
             return f"the recordings do not determine {', '.join(undetermined)}"
+        if elsewhere := row.is_elsewhere(parameters):
+            return elsewhere
         size = abs(row.size(parameters))
         if size < row.negligible:
             return f"its effect of {100 * size:.2g} % is negligible"

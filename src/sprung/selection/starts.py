@@ -17,6 +17,8 @@ from sprung.vehicle import (
     NEUTRAL,
     LinearModel,
     Rows,
+    coordinates,
+    heave,
     is_nuisance,
     nonlinear_elements,
     state_variables,
@@ -72,7 +74,7 @@ def start_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[st
 
 
 def states_by_coordinates(states: Real, before: Sequence[str], names: Sequence[str]) -> Real:
-    """Return initial states by the coordinates of another structure; a new engine moves as the body does.
+    """Return initial states by the coordinates of another structure; new masses rise as the body does.
 
     Parameters
     ----------
@@ -83,8 +85,10 @@ def states_by_coordinates(states: Real, before: Sequence[str], names: Sequence[s
     """
     own, new = state_variables(before), state_variables(names)
     x, memories = np.split(states, [len(own)], axis=1)
-    chosen = [own.index(variable) if variable in own else own.index(("z_s", variable[1])) for variable in new]
-    return np.hstack([x[:, chosen], memories])
+    rises = dict(zip(coordinates(names), heave(names), strict=True))
+    with_body = {variable: rises[variable[0]] * x[:, own.index(("z_s", variable[1]))] for variable in new}
+    by_variable = with_body | dict(zip(own, x.T, strict=True))
+    return np.column_stack([*(by_variable[variable] for variable in new), memories])
 
 
 def fit_structure(

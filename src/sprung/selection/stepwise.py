@@ -7,12 +7,12 @@ one by one, as their fits are quick; nonlinear ones together, as their fits are 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from sprung.estimation import NEAR, fit_linear
+from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST, MISFIT_LEFT_BY_ALL
 from sprung.selection.scoring import Scores, score_terms
@@ -63,52 +63,11 @@ def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> 
     for _ in range(_ROUNDS):
         terms = search.open_terms(among)
         search, scores = score_terms(search, terms)
-        search, ranked = _ranked(search, scores, _WORTH_A_FIT / search.fit.disagreement)
-        search, accepted = _first_accepted(search, ranked, among)
+        search, ranked = rank_terms(search, scores, _WORTH_A_FIT / search.fit.disagreement)
+        search, accepted = accept_first(search, ranked, among)
         if not accepted:
             break
     return search
-
-
-def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
-    """Return the search after nonlinear terms have been tried.
-
-    Parameters
-    ----------
-    search
-        Once the linear terms are decided.
-    plain
-        The structure without anything that the recordings brought into it: linear terms that took up some of a nonlinear
-        motion are no base to start from.
-
-    Returns
-    -------
-    ModelSearch
-    """
-    nonlinear = [term for term in TERMS if term not in _LINEAR]
-    terms = search.open_terms(nonlinear)
-    if not terms or any(decay.clocks for decay in search.decays):
-        return search
-    search.progress(Step(f"scoring {', '.join(terms)}"))
-    search, scores = score_terms(search, terms)
-    search, ranked = _ranked(search, scores, 1.0)
-    if not ranked:
-        return search
-    best, steps = search, search.steps
-    for base in _bases(search, plain):
-        found, accepted = _first_accepted(replace(base, steps=steps), ranked[:1])
-        found = select_further_terms(found) if accepted else found
-        steps = found.steps
-        best = found if found.delta_bic(search) > best.delta_bic(search) else best
-        if best.structure.is_nonlinear and not best.has_model_error:
-            break
-    if not best.structure.is_nonlinear:
-        return replace(search, steps=steps)
-    best = replace(best, steps=steps)
-    beside = ", ".join(term for term in best.selected if not TERMS[term].is_linear)
-    gains = {step.extra: step.gain for step in search.steps if step.taken}
-    gone = {term: gains[term] for term in search.selected if term not in best.selected}
-    return select_gravity_leakage(best.recorded(gone, True, False, f"it is not needed beside {beside}"))
 
 
 def select_further_terms(search: ModelSearch) -> ModelSearch:
@@ -132,7 +91,7 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         ratios = {term: scores[term][0] / (search.required(term) * search.overdispersion) for term in terms}
         best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
         tried |= set(best)
-        search, accepted = _first_accepted(search, best)
+        search, accepted = accept_first(search, best)
         if not accepted:
             break
     return search
@@ -242,7 +201,7 @@ def needed_terms(search: ModelSearch) -> dict[str, float]:
     return {term: gain for term, gain in gains.items() if gain > search.required(term)}
 
 
-def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
+def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
     """Rank the terms that are worth a fit, and record the others.
 
     Parameters
@@ -276,31 +235,44 @@ def _ranked(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSe
     return search, sorted(priority, key=lambda term: (first[term], priority[term]), reverse=True)
 
 
-def _first_accepted(
-    search: ModelSearch, terms: Sequence[str], among: Sequence[str] = _LINEAR
-) -> tuple[ModelSearch, bool]:
+def accept_first(search: ModelSearch, terms: Sequence[str], among: Sequence[str] = _LINEAR) -> tuple[ModelSearch, bool]:
     """Fit terms one after the other until one is accepted; and say whether one was."""
     for term in terms:
-        tried = _with_term(search, term, among)
+        tried = try_term(search, term, among)
         if tried.structure.names != search.structure.names:
             return tried, True
         search = tried
     return search, False
 
 
-def _with_term(search: ModelSearch, term: str, among: Sequence[str]) -> ModelSearch:
+def try_term(
+    search: ModelSearch, term: str, among: Sequence[str] = _LINEAR, first: FitResult | None = None
+) -> ModelSearch:
     """Fit a term, and leave out again what is not needed; without it where it gains too little.
 
-    One that resembles many a fault has to explain the whole misfit, alone or with others of the linear terms among which it is.
+    Parameters
+    ----------
+    search
+        The present model.
+    term
+        To be tried.
+    among
+        Linear terms beside which one that resembles many a fault may explain the whole misfit, as it has to.
+    first
+        The first steps of the fit of a nonlinear one, if they are taken already.
+
+    Returns
+    -------
+    ModelSearch
     """
     larger = search.with_terms([term])
     if larger.is_nonlinear:
-        tried = _fit_nonlinear(search, larger)
+        tried = _fit_nonlinear(search, larger, first or begin_nonlinear_fit(search, larger))
     else:
-        first, expected = _first_step(search, term)
+        stepped, expected = _first_step(search, term)
         if expected < search.significant(term):
             return search.recorded({term: expected}, False, False)
-        tried = _fit_linear(first, term)
+        tried = _fit_linear(stepped, term)
     if tried is None:
         return search.recorded({term: 0.0}, True, False)
     gain = tried.gain_over(search)
@@ -392,11 +364,15 @@ def _fit_linear(search: ModelSearch, term: str) -> ModelSearch:
     return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))
 
 
-def _fit_nonlinear(search: ModelSearch, larger: ModelStructure) -> ModelSearch | None:
-    """Fit a nonlinear model, first to the beginnings of the decays; None where it leaves too much of the misfit."""
-    first = fit_structure(
+def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResult:
+    """Take the first steps of the fit of a nonlinear model to the beginnings of the decays."""
+    return fit_structure(
         larger, search.decays, search.fit, NEAR, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
     )
+
+
+def _fit_nonlinear(search: ModelSearch, larger: ModelStructure, first: FitResult) -> ModelSearch | None:
+    """Fit a nonlinear model whose fit has begun; None where it leaves too much of the misfit."""
     if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
         return None
     if not first.converged:
@@ -404,15 +380,3 @@ def _fit_nonlinear(search: ModelSearch, larger: ModelStructure) -> ModelSearch |
     if search.leaves_misfit(first, MISFIT_LEFT):
         return None
     return replace(search, fit=first).refit(larger)
-
-
-def _bases(search: ModelSearch, plain: ModelStructure) -> Iterator[ModelSearch]:
-    """Yield linear models beside which nonlinear terms are tried, the simplest first."""
-    plain = replace(plain, stop_gap=search.structure.stop_gap, engine_mounting=search.structure.engine_mounting)
-    simplest = search if plain.names == search.structure.names else search.refit(plain)
-    yield simplest
-    if plain.names != search.structure.names:
-        yield search
-    gains = [step.gain > step.asked for step in search.steps if step.extra == ENGINE and step.fitted and not step.taken]
-    if any(gains):
-        yield fit_term(simplest, ENGINE)

@@ -18,6 +18,7 @@ from sprung.vehicle import (
     Element,
     Heights,
     LinearModel,
+    Load,
     NonlinearModel,
     Sensor,
     Tracks,
@@ -27,6 +28,7 @@ from sprung.vehicle import (
     parameter_names,
     parameters_of_term,
     seven_degrees_of_freedom,
+    stiffened_air_springs,
 )
 
 _SEPARATE = ("t_f1", "t_f2", "t_r1", "t_r2")
@@ -123,7 +125,7 @@ class ModelStructure:
         """Linear equations of motion by load name, without nonlinear forces."""
         return {
             load.name: LinearModel.of(
-                self._elements(load.name) + load.elements(self.heights_of(load.name), self.names), self.names
+                self._elements(load) + load.elements(self.heights_of(load.name), self.names), self.names
             )
             for load in self.campaign.loads
         }
@@ -135,15 +137,15 @@ class ModelStructure:
             ground_contact_elements(self.terms) if self.unilateral_tyres else ()
         )
         return {
-            load.name: NonlinearModel.of(
-                self._elements(load.name), forces, self.names, load, self.heights_of(load.name)
-            )
+            load.name: NonlinearModel.of(self._elements(load), forces, self.names, load, self.heights_of(load.name))
             for load in self.campaign.loads
         }
 
-    def _elements(self, load: str) -> tuple[Element, ...]:
+    def _elements(self, load: Load) -> tuple[Element, ...]:
         """Return the linear elements of the vehicle, as it stands under a load."""
-        return seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load), self.wheelbase)
+        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load.name), self.wheelbase)
+        at_wheels = load.mass_at_wheels(self.wheelbase)
+        return elements + stiffened_air_springs(at_wheels, self.tracks, self.terms, self.wheelbase)
 
     @property
     def is_nonlinear(self) -> bool:

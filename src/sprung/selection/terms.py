@@ -75,6 +75,11 @@ _RIGID = 1e5
 """Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
 
 
+def natural_frequency(rate: float, mass: float) -> float:
+    """Return the undamped natural frequency of a mass on a spring, or of a modal mass, Hz; rate and mass in SI."""
+    return float(np.sqrt(rate / mass) / (2 * np.pi))
+
+
 @dataclass(frozen=True)
 class ModelTerm:
     """One term that the model may have.
@@ -106,6 +111,10 @@ class ModelTerm:
         Values with which a fit begins instead of the neutral ones.
     equal_tracks
         Parameters that are equal to another one where the term is absent.
+    resonator
+        Names of rate and mass of a part that vibrates by itself; empty where there is none.
+    band
+        Lowest and highest natural frequency that such a part has, Hz: another one is something else.
     """
 
     name: str
@@ -121,6 +130,8 @@ class ModelTerm:
     undefined: StartValues | None = None
     first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
+    resonator: tuple[str, str] | tuple[()] = ()
+    band: tuple[float, float] = (0.0, np.inf)
 
     @property
     def is_linear(self) -> bool:
@@ -167,6 +178,19 @@ class ModelTerm:
         about = {name: PARAMETERS[name] for name in self.parameters(tracks)}
         return tuple(name for name, one in about.items() if not (one.positive or one.signed))
 
+    def is_elsewhere(self, values: Values) -> str:
+        """Return the reason against a part that vibrates at a frequency at which it never does; empty where it may.
+
+        Parameters
+        ----------
+        values
+            Of the vehicle that has it, SI.
+        """
+        if not self.resonator:
+            return ""
+        own, (lowest, highest) = natural_frequency(*(values[name] for name in self.resonator)), self.band
+        return "" if lowest <= own <= highest else f"at {own:.1f} Hz it would be something else"
+
     def implausibility(self, size: float) -> float:
         """Minus twice the logarithm of the prior density of a size, 0 at the usual one.
 
@@ -204,11 +228,6 @@ def _gravity(values: Values) -> float:
 def _roll_rate(values: Values) -> float:
     """Roll stiffness of the springs of both axles, N m."""
     return 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
-
-
-def _own_frequency(stiffness: float, mass: float) -> float:
-    """Natural frequency of a modal mass, Hz."""
-    return float(np.sqrt(stiffness / mass) / (2 * np.pi))
 
 
 def _usual_twist(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
@@ -321,6 +340,8 @@ TERMS: Mapping[str, ModelTerm] = {
             explains_all=True,
             undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
             first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
+            resonator=("k_e", "m_e"),
+            band=(5.5, 30.0),
         ),
         ModelTerm(
             "damper-mount",
@@ -368,7 +389,7 @@ TERMS: Mapping[str, ModelTerm] = {
             negligible=0.004,
             description=TermDescription(
                 "a body that twists at {0}",
-                ((lambda p, _: _own_frequency(p["k_w"], p["I_w"]), "Hz"),),
+                ((lambda p, _: natural_frequency(p["k_w"], p["I_w"]), "Hz"),),
                 neutral=None,
             ),
             explains_all=True,
@@ -383,7 +404,7 @@ TERMS: Mapping[str, ModelTerm] = {
             negligible=0.0015,
             description=TermDescription(
                 "a body that bends at {0}",
-                ((lambda p, _: _own_frequency(p["k_v"], p["m_v"]), "Hz"),),
+                ((lambda p, _: natural_frequency(p["k_v"], p["m_v"]), "Hz"),),
                 neutral=None,
             ),
             explains_all=True,
@@ -400,6 +421,8 @@ TERMS: Mapping[str, ModelTerm] = {
             explains_all=True,
             undefined=lambda own, structure: _usual_occupants(own, structure, _ALMOST_NO_ENGINE),
             first=_usual_occupants,
+            resonator=("k_o", "m_o"),
+            band=(2.0, 7.5),
         ),
         ModelTerm(
             FRICTION,
@@ -481,6 +504,18 @@ TERMS: Mapping[str, ModelTerm] = {
             description=TermDescription(
                 "{axle} air springs with a column of {1}",
                 ((lambda p, axle: p[f"e_{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"e_{axle}"], "mm")),
+                again="{axle} ones with a column of {1}",
+            ),
+        ),
+        ModelTerm(
+            "levelled-air",
+            _of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"e_l{axle}"]),
+            typical=0.6,
+            spread=1.6,
+            negligible=0.02,
+            description=TermDescription(
+                "{axle} air springs, levelled under every load, with a column of {1}",
+                ((lambda p, axle: p[f"e_l{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"e_l{axle}"], "mm")),
                 again="{axle} ones with a column of {1}",
             ),
         ),

@@ -29,6 +29,7 @@ from sprung.vehicle import (
     ground_contact_elements,
     nonlinear_elements,
     seven_degrees_of_freedom,
+    stiffened_air_springs,
 )
 
 Array = NDArray[np.float64]
@@ -135,7 +136,14 @@ def _models(
     elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights, vehicle.wheelbase)
     nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase), *contact]
     names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
-    models = [NonlinearModel.of(elements, nonlinear, names, load, vehicle.heights, gravity) for load in different]
+    stiffened = [
+        stiffened_air_springs(load.mass_at_wheels(vehicle.wheelbase), vehicle.tracks, vehicle.extras, vehicle.wheelbase)
+        for load in different
+    ]
+    models = [
+        NonlinearModel.of(elements + further, nonlinear, names, load, vehicle.heights, gravity)
+        for load, further in zip(different, stiffened, strict=True)
+    ]
     order = [load.name for load in different]
     return models, np.array([order.index(load.name) for load in loads])
 

@@ -22,11 +22,12 @@ from sprung.vehicle.elements import (
     half_distances,
     nonlinear_elements,
     seven_degrees_of_freedom,
+    stiffened_air_springs,
 )
 from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, state_variables
+from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, heave, state_variables
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
@@ -126,6 +127,7 @@ __all__ = [
     "free_decay",
     "ground_contact_elements",
     "half_distances",
+    "heave",
     "highest_derivatives",
     "integrate_near",
     "is_nuisance",
@@ -141,6 +143,7 @@ __all__ = [
     "seven_degrees_of_freedom",
     "state_matrix",
     "state_variables",
+    "stiffened_air_springs",
     "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",

@@ -109,7 +109,7 @@ class CurveElements(NamedTuple):
     @property
     def is_of_tyre(self) -> bool:
         """Whether the travel counts from where a tyre first touches the ground."""
-        return any(element.weightless for element in self.nonlinear)
+        return any(element.origin == "weightless" for element in self.nonlinear)
 
     def is_nonlinear(self, names: Sequence[str], values: Array, x: Array) -> bool:
         """Whether a nonlinear law acts at any of some arguments.

@@ -33,6 +33,10 @@ LinearLaw = Literal["mass", "damper", "spring"]
 Tracks = Literal["shared", "separate"]
 """Whether springs and dampers of an axle share their half-distance."""
 
+Origin = Literal["empty", "loaded", "weightless"]
+"""Position from which the travel of an element counts: where the empty or the loaded vehicle rests, or where the empty vehicle
+would be without gravity."""
+
 LINEAR_EXTRAS = (
     "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount", "zener",
     "twist", "bending", "occupants",
@@ -40,7 +44,8 @@ LINEAR_EXTRAS = (
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (
-    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "rounded-knee", "progressive", "air", "bump-stop", "tyre-curve",
+    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "rounded-knee", "progressive", "air", "levelled-air", "bump-stop",
+    "tyre-curve",
 )  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
@@ -81,14 +86,14 @@ class NonlinearElement:
         Names of the law's parameters, in its order.
     row
         Its travel, on which its force acts.
-    weightless
-        Whether the travel counts from the empty vehicle without gravity, not from its rest position.
+    origin
+        From which position the travel counts.
     """
 
     law: ForceLaw
     parameters: tuple[str, ...]
     row: Row
-    weightless: bool = False
+    origin: Origin = "empty"
 
 
 def half_distances(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
@@ -193,11 +198,13 @@ def nonlinear_elements(
             elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
         if "air" in extras:
             elements.append(NonlinearElement(AIR, (f"e_{axle}", f"k_s{axle}"), spring))
+        if "levelled-air" in extras:
+            elements.append(NonlinearElement(AIR, (f"e_l{axle}", f"k_s{axle}"), spring, origin="loaded"))
         if "bump-stop" in extras:
             elements.append(NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), spring))
         if "tyre-curve" in extras:
             tyre = kinematics.wheel(station)
-            elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre, weightless=True))
+            elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre, origin="weightless"))
     return tuple(elements)
 
 
@@ -216,8 +223,36 @@ def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElem
     damping = "tyre-damping" in extras
     return tuple(
         NonlinearElement(
-            GROUND, (f"k_t{station[0]}", f"c_t{station[0]}")[: 1 + damping], kinematics.wheel(station), weightless=True
+            GROUND,
+            (f"k_t{station[0]}", f"c_t{station[0]}")[: 1 + damping],
+            kinematics.wheel(station),
+            origin="weightless",
         )
+        for station in kinematics.WHEELS
+    )
+
+
+def stiffened_air_springs(
+    load: tuple[float, float], tracks: Tracks = "shared", extras: Collection[str] = (), wheelbase: float = 0.0
+) -> tuple[Element, ...]:
+    """Return what a load adds to the rates of air springs that a valve levels: their pressure carries it.
+
+    Parameters
+    ----------
+    load
+        What each front and each rear wheel carries of it, kg.
+    tracks, extras, wheelbase
+        As for `nonlinear_elements`.
+
+    Returns
+    -------
+    tuple of Element
+    """
+    if "levelled-air" not in extras:
+        return ()
+    travel = _travels(tracks, extras, wheelbase)
+    return tuple(
+        Element("spring", f"g_{station[0]}", travel(station, "spring"), load["fr".index(station[0])])
         for station in kinematics.WHEELS
     )
 
@@ -276,7 +311,8 @@ def _elements_of_the_body(extras: Collection[str], wheelbase: float) -> Iterator
     if "engine" in extras:
         yield from _attached_mass("e", kinematics.engine_bay(), kinematics.engine())
     if "occupants" in extras:
-        yield from _attached_mass("o", kinematics.seats(), kinematics.occupants())
+        for side in (1.0, -1.0):
+            yield from _attached_mass("o", kinematics.seats(side, wheelbase), kinematics.occupants(side), 0.5)
     # Modal masses and rates are those for the angle between the axles and for the rise of the middle.
     for term, mass, index, row, size in (
         ("twist", "I_w", "w", kinematics.twist(), wheelbase**2),
@@ -288,15 +324,15 @@ def _elements_of_the_body(extras: Collection[str], wheelbase: float) -> Iterator
             yield Element("damper", f"c_{index}", row, size)
 
 
-def _attached_mass(index: str, below: Row, own: Row) -> Iterator[Element]:
-    """Yield the elements of a mass on a spring and a damper of its own.
+def _attached_mass(index: str, below: Row, own: Row, part: float = 1.0) -> Iterator[Element]:
+    """Yield the elements of a mass on a spring and a damper of its own, or of a part of them.
 
     The sprung mass and its inertias include it: it is taken off the body, where it is attached, and moves by itself.
     """
-    yield Element("mass", f"m_{index}", below, -1.0)
-    yield Element("mass", f"m_{index}", own)
-    yield Element("spring", f"k_{index}", below - own)
-    yield Element("damper", f"c_{index}", below - own)
+    yield Element("mass", f"m_{index}", below, -part)
+    yield Element("mass", f"m_{index}", own, part)
+    yield Element("spring", f"k_{index}", below - own, part)
+    yield Element("damper", f"c_{index}", below - own, part)
 
 
 def _axle_elements(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Iterator[Element]:

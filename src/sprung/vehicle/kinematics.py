@@ -2,10 +2,12 @@
 
 Coordinates are the paper's, X = [z_s, θ, φ, z_uA, z_uB, z_uC, z_uD]: sprung-mass bounce, pitch (positive nose down),
 roll (positive left side up), then the wheels A front left, B front right, C rear left, D rear right. A vehicle that has
-more than the paper's has further ones: first those that move a mass, as z_e of an engine on its mounts, then those without
-mass, as the travel of a damper behind a rubber mount. A body that is not rigid has its twist q_w, rad/m, and its bending
-q_v, 1/m: at x forward of the front axle and y left of the centreline it rises by y (x + L/2) q_w - x (x + L)/2 q_v with the
-wheelbase L = a + b. So θ and z_s are those of the line through both axles, and φ is the roll in the middle between them.
+more than the paper's has further ones: first those that move a mass, as z_e of an engine on its mounts, or the mean z_o and
+half the difference dz_o of people on the left and on the right; then those without mass, as the travel of a damper behind
+a rubber mount.
+A body that is not rigid has its twist q_w, rad/m, and its bending q_v, 1/m: at x forward of the front axle and y left of
+the centreline it rises by y (x + L/2) q_w - x (x + L)/2 q_v with the wheelbase L = a + b. So θ and z_s are those of the
+line through both axles, and φ is the roll in the middle between them.
 
 A row g has the displacement g·X. Every row is affine in the geometric parameters (a, b and the half-distances), so a row is its
 constant part and one slope per parameter; derivatives with respect to geometry need nothing else.
@@ -38,7 +40,7 @@ WHEELS_AT = slice(3, 7)
 _LETTERS = "ABCD"
 """Letters of the wheel stations in the paper."""
 
-_WITH_MASS: Mapping[str, tuple[str, ...]] = {"m_e": ("z_e",), "m_o": ("z_o",), "I_w": ("q_w",), "m_v": ("q_v",)}
+_WITH_MASS: Mapping[str, tuple[str, ...]] = {"m_e": ("z_e",), "m_o": ("z_o", "dz_o"), "I_w": ("q_w",), "m_v": ("q_v",)}
 """By parameter: the coordinates with mass that a vehicle with it has beside the paper's."""
 
 _WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
@@ -46,6 +48,10 @@ _WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
     "k_zf": ("x_zA", "x_zB", "x_zC", "x_zD"),
 }
 """By parameter: the coordinates without mass, likewise: travels of dampers that a spring connects, at each wheel."""
+
+_BESIDE, _RISE_AT_SEATS = 0.37, 0.9
+"""Half-distance of two people beside each other, m, and what the body under their seats rises as it bends, over the rise of its
+middle: 0.75 to 1 in the middle half of the wheelbase."""
 
 _RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e", "z_o"})
 """Coordinates that are vertical displacements over the ground."""
@@ -143,7 +149,18 @@ def state_variables(names: Collection[str]) -> tuple[tuple[str, int], ...]:
 
 
 def heave(names: Collection[str]) -> tuple[float, ...]:
-    """Return a unit of heave, everything moving up alike, in the coordinates of a vehicle; `names` are its parameters."""
+    """Return a unit of heave, everything moving up alike, in the coordinates of a vehicle.
+
+    Parameters
+    ----------
+    names
+        Its parameters.
+
+    Returns
+    -------
+    tuple of float
+        1 for a vertical displacement over the ground, else 0.
+    """
     return tuple(float(name in _RISES_IN_HEAVE) for name in coordinates(names))
 
 
@@ -172,16 +189,6 @@ def pitch(wheelbase: float = 0.0) -> Row:
 def roll() -> Row:
     """Mean roll angle of the body, rad."""
     return Row({"phi": 1.0}, {"a_w": {"q_w": 1.0}})
-
-
-def pitch_at(x: float) -> Row:
-    """Pitch angle of the body at x forward of the front axle, rad."""
-    return Row({"theta": 1.0, "q_v": x}, {"a": {"q_v": 0.5}, "b": {"q_v": 0.5}})
-
-
-def roll_at(x: float) -> Row:
-    """Roll angle of the body at x forward of the front axle, rad."""
-    return Row({"phi": 1.0, "q_w": x}, {"a": {"q_w": 0.5}, "b": {"q_w": 0.5}})
 
 
 def twist() -> Row:
@@ -292,14 +299,25 @@ def engine_bay() -> Row:
     return Row({"z_s": 1.0}, {"a": {"theta": -1.0}, "x_e": {"theta": -1.0}})
 
 
-def occupants() -> Row:
-    """Vertical displacement of people on soft seats."""
-    return Row({"z_o": 1.0})
+def occupants(side: float) -> Row:
+    """Vertical displacement of people on soft seats: 1 those on the left, -1 those on the right."""
+    return Row({"z_o": 1.0, "dz_o": side})
 
 
-def seats() -> Row:
-    """Vertical displacement of the body under the seats, x_o forward of the front axle and y_o left of the centreline."""
-    return Row({"z_s": 1.0}, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, "y_o": {"phi": 1.0}})
+def seats(side: float, wheelbase: float = 0.0) -> Row:
+    """Vertical displacement of the body under the seats of the left (1) or of the right (-1).
+
+    They are side by side; their middle is x_o forward of the front axle and y_o left of the centreline.
+
+    Parameters
+    ----------
+    side
+        1 for the left, -1 for the right.
+    wheelbase
+        Of a body that bends, m: seats are between the axles, where it rises by most of what its middle does.
+    """
+    constant = {"z_s": 1.0, "phi": side * _BESIDE, "q_v": _RISE_AT_SEATS * sag(wheelbase)}
+    return Row(constant, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, "y_o": {"phi": 1.0}})
 
 
 def on_axle(station: Wheel, share: str) -> Row:

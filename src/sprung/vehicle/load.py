@@ -84,7 +84,8 @@ class Item:
         elif self.position is not None:
             x, y, z = self.position
             yield Element("mass", mass, kinematics.body_point(x, y))
-            arms, rows = heights.item_arms(z), (kinematics.roll_at(x), kinematics.pitch_at(x))
+            # How far its own inertia follows a floor that bends or twists under it, nobody knows: it turns with the body.
+            arms, rows = heights.item_arms(z), (kinematics.roll(), kinematics.pitch())
             for row, own, arm in zip(rows, self.inertia, arms, strict=True):
                 yield Element("mass", own, row)
                 if not heights.is_free:
@@ -171,6 +172,20 @@ class Load:
         if self.added is not None:
             return self.added.mass + 2 * (self.added.m_uf + self.added.m_ur)
         return sum(item.mass for item in self.items)
+
+    def mass_at_wheels(self, wheelbase: float) -> tuple[float, float]:
+        """Return what each front and each rear wheel carries of what is on the body, kg; totals are shared equally.
+
+        Parameters
+        ----------
+        wheelbase
+            m.
+        """
+        if self.added is not None:
+            return self.added.mass / 4, self.added.mass / 4
+        rear = sum(-item.mass * item.position[0] / wheelbase for item in self.items if item.position is not None)
+        body = sum(item.mass for item in self.items if item.position is not None)
+        return (body - rear) / 2, rear / 2
 
     @property
     def uncertain_masses(self) -> dict[str, KnownValue]:

@@ -61,14 +61,16 @@ class NonlinearForces(NamedTuple):
         Elements by law.
     memory_rows
         Row of each memory, shape (memory,).
-    weightless
-        1 for rows whose travel counts from the empty vehicle without gravity, else 0; dimensionless, shape (row,).
+    weightless, levelled
+        1 for rows whose travel counts from the empty vehicle without gravity, and from where the loaded one rests, else 0;
+        dimensionless, shape (row,).
     """
 
     rows: Rows
     laws: tuple[CompiledLaw, ...]
     memory_rows: Index
     weightless: Array
+    levelled: Array
 
     @classmethod
     def of(cls, elements: Sequence[NonlinearElement], names: Sequence[str]) -> NonlinearForces:
@@ -76,13 +78,13 @@ class NonlinearForces(NamedTuple):
         by_law: dict[str, list[NonlinearElement]] = {}
         for element in elements:
             by_law.setdefault(element.law.name, []).append(element)
-        distinct: dict[tuple[bytes, bool], NonlinearElement] = {}
+        distinct: dict[tuple[bytes, str], NonlinearElement] = {}
         laws, memory_rows = [], list[int]()
         for alike in by_law.values():
             at = []
             for element in alike:
                 compiled = Rows.of([element.row], names)
-                key = ((compiled.affine + 0.0).tobytes(), element.weightless)
+                key = ((compiled.affine + 0.0).tobytes(), element.origin)
                 distinct.setdefault(key, element)
                 at.append(list(distinct).index(key))
             law, first = alike[0].law, len(memory_rows)
@@ -90,8 +92,11 @@ class NonlinearForces(NamedTuple):
             positions = np.array([[names.index(name) for name in element.parameters] for element in alike]).T
             laws.append(CompiledLaw(law, _adjacent(at), slice(first, len(memory_rows)), positions))
         rows = Rows.of([element.row for element in distinct.values()], names)
-        weightless = np.array([float(element.weightless) for element in distinct.values()])
-        return cls(rows, tuple(laws), np.array(memory_rows, dtype=np.int64), weightless)
+        weightless, levelled = (
+            np.array([float(element.origin == origin) for element in distinct.values()])
+            for origin in ("weightless", "loaded")
+        )
+        return cls(rows, tuple(laws), np.array(memory_rows, dtype=np.int64), weightless, levelled)
 
     @property
     def number(self) -> int:
@@ -244,7 +249,7 @@ class NonlinearModel:
         Returns
         -------
         offsets
-            Zero but for rows whose travel counts from the vehicle without gravity; shape (row,).
+            Zero but for rows whose travel counts from elsewhere; shape (row,).
         slopes
             By each parameter, shape (row, parameter).
         """
@@ -257,8 +262,20 @@ class NonlinearModel:
         empty, gravity = Matrices(M, C, K), self.linear.heave * self.gravity
         sag = -empty.deflection(M @ gravity)
         sag_slopes = -empty.deflection((dM @ gravity + dK @ sag).T)
-        G, row_slopes, weightless = self.forces.rows.at(values), self.forces.rows.slopes, self.forces.weightless
-        return weightless * (G @ sag), weightless[:, None] * (row_slopes @ sag + G @ sag_slopes)
+        G, row_slopes, forces = self.forces.rows.at(values), self.forces.rows.slopes, self.forces
+        offsets = forces.weightless * (G @ sag)
+        slopes = forces.weightless[:, None] * (row_slopes @ sag + G @ sag_slopes)
+        if forces.levelled.any():
+            rest, rest_slopes = self._rest(values)
+            offsets -= forces.levelled * (G @ rest)
+            slopes -= forces.levelled[:, None] * (row_slopes @ rest + G @ rest_slopes)
+        return offsets, slopes
+
+    def _rest(self, values: Array) -> tuple[Array, Array]:
+        """Return `sag`, and its derivatives by each parameter, shape (coordinate, parameter)."""
+        loaded, gravity, sag = self.linear.matrices(values), self.linear.heave * self.gravity, self.sag(values)
+        change = self.load.slopes(values).M @ gravity + self.linear.slopes(values).K @ sag
+        return sag, -loaded.deflection(change.T)
 
     def accelerations(self, values: Array) -> tuple[Array, Array]:
         """Return the highest derivatives as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.

@@ -208,6 +208,14 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         ),
         "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
         "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
+        "e_lf": Parameter("1/m", "the same of front springs that a valve levels under every load", False, False),
+        "e_lr": Parameter("1/m", "the same of rear springs that a valve levels under every load", False, False),
+        "g_f": Parameter(
+            "N/(m kg)", "growth of the rate of a levelled front spring per mass that it carries", False, False
+        ),
+        "g_r": Parameter(
+            "N/(m kg)", "growth of the rate of a levelled rear spring per mass that it carries", False, False
+        ),
         "h_tf": Parameter(
             "1/m", "growth of the front tyre rate with deflection, as a part of k_tf per metre", False, False, True
         ),
@@ -238,6 +246,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "rounded-knee": ("w_kf", "w_kr"),
     "progressive": ("p_f", "p_r"),
     "air": ("e_f", "e_r"),
+    "levelled-air": ("e_lf", "e_lr", "g_f", "g_r"),
     "tyre-curve": ("h_tf", "h_tr"),
     "bump-stop": ("k_bf", "k_br", "x_bf", "x_br"),
     "asymmetry": ("y_s", "d_ksf", "d_ksr", "d_ktf", "d_ktr", "d_csf", "d_csr"),

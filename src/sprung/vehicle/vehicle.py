@@ -9,7 +9,7 @@ from typing import Any
 
 from sprung.display import shown
 from sprung.errors import Problems, did_you_mean
-from sprung.vehicle.elements import Tracks, seven_degrees_of_freedom
+from sprung.vehicle.elements import Tracks, seven_degrees_of_freedom, stiffened_air_springs
 from sprung.vehicle.heights import Heights
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices
@@ -54,6 +54,8 @@ class Vehicle:
         Growth of the spring rates with compression, as a part of them per metre.
     e_f, e_r
         One over the effective height of the air column of a spring, 1/m.
+    e_lf, e_lr, g_f, g_r
+        The same of springs that a valve levels under every load, and the growth of their rate with what they carry, N/(m kg).
     h_tf, h_tr
         Growth of the tyre rates with compression, as a part of them per metre.
     k_bf, k_br, x_bf, x_br
@@ -146,6 +148,10 @@ class Vehicle:
     p_r: float = 0.0
     e_f: float = 0.0
     e_r: float = 0.0
+    e_lf: float = 0.0
+    e_lr: float = 0.0
+    g_f: float = 0.0
+    g_r: float = 0.0
     h_tf: float = 0.0
     h_tr: float = 0.0
     k_bf: float = 0.0
@@ -350,6 +356,7 @@ class Vehicle:
             What is on it.
         """
         elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights, self.wheelbase)
+        elements += stiffened_air_springs(load.mass_at_wheels(self.wheelbase), self.tracks, self.extras, self.wheelbase)
         elements += load.elements(self.heights)
         return LinearModel.of(elements, tuple(self.parameters))
 

@@ -29,7 +29,7 @@ _TRAMP = {
     ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
 }
 
-_ALONE = {"z_e": "engine bounce", "z_o": "seat bounce", "q_w": "body twist", "q_v": "body bending"}
+_ALONE = {"z_e": "engine bounce", "z_o": "seat bounce", "dz_o": "seat roll", "q_w": "body twist", "q_v": "body bending"}
 """By coordinate: the name of the mode in which it moves by itself."""
 
 _TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)
