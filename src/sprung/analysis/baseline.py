@@ -106,7 +106,10 @@ def fit_baseline_model(
 
 def from_contact(search: ModelSearch, most: int = MOST_STEPS) -> ModelSearch:
     """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again."""
-    enough = _STEPPED * search.overdispersion if search.structure.is_time_stepped else CONVERGED
+    enough = CONVERGED
+    if search.structure.is_time_stepped:
+        # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
+        enough = _STEPPED if search.overdispersion == 1 else NEAR * search.overdispersion
 
     def refitted(decays: Sequence[FreeDecay], fit: FitResult, states: Real) -> FitResult:
         return fit_structure(search.structure, decays, fit, enough, search.progress, states, most=most)

@@ -31,9 +31,6 @@ _MOST_STEPS = 100
 _ON_THE_WAY = 1.0
 """Expected gain in log-likelihood at which a fit to the beginnings ends that is followed by one to the whole decays."""
 
-_RESTARTS = 2
-"""Times that a fit starts again where the memory of a friction is impossible."""
-
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
 
@@ -109,7 +106,13 @@ def fit_nonlinear(
             part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
         )
         problem = _problem(objective, known, values, usual)
-        found = _maximise(problem, objective, values, tolerance, most, FAR if usual else CLOSE_BY)
+        start_damping = FAR if usual else CLOSE_BY
+        if tolerance >= _ON_THE_WAY or beginning_only:
+            # What is found on the way of the memories of friction is used by no one.
+            u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
+            found = problem.maximise(u, None, tolerance, start_damping, most)
+        else:
+            found = _maximise(problem, objective, values, tolerance, most, start_damping)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.
@@ -213,21 +216,17 @@ def _maximise(
     most: int,
     damping: float,
 ) -> Maximum[Iterate]:
-    """Maximise, and once more without impossible memories of friction, as long as that is more likely."""
+    """Maximise, and once more from there without impossible memories of friction."""
     priors = problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
     best = problem.maximise(u, None, tolerance, damping, most)
-    for _ in range(_RESTARTS):
-        states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
-        if states is None:
-            break
-        restarted = replace(problem, objective=objective.with_states(states))
-        found = restarted.maximise(best.point.u, None, tolerance, CLOSE_BY, most)
-        gain = problem.cost(best.point) - problem.cost(found.point)
-        best = found._replace(steps=best.steps + found.steps) if gain > 0 else best
-        if gain < _ON_THE_WAY:
-            break  # it went back to where it came from
-    return best
+    states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
+    if states is None:
+        return best
+    restarted = replace(problem, objective=objective.with_states(states))
+    found = restarted.maximise(best.point.u, None, tolerance, CLOSE_BY, most)
+    is_better = problem.cost(found.point) < problem.cost(best.point)
+    return found._replace(steps=best.steps + found.steps) if is_better else best
 
 
 def _beginning(decay: FreeDecay) -> FreeDecay:

@@ -161,10 +161,11 @@ class ModelSearch:
         beginning_only
             Whether the beginnings of the decays are enough; for nonlinear structures.
         enough
-            Expected gain in log-likelihood at which to stop; without it, a tenth of a standard error.
+            Expected gain in log-likelihood at which to stop; without it, a tenth of a standard error, or one where motions are
+            stepped: a term has to gain many times as much.
         """
         if enough is None:
-            enough = NEAR * (self.overdispersion if structure.is_time_stepped else 1.0)
+            enough = self.overdispersion if structure.is_time_stepped else NEAR
         fit = fit_structure(
             structure, self.decays, self.fit, enough, self.progress, most=most, beginning_only=beginning_only
         )
@@ -262,8 +263,8 @@ class ModelSearch:
         undetermined = self._undetermined(row.parameters(self.structure.tracks))
         if undetermined:
             return f"the recordings do not determine {', '.join(undetermined)}"
-        if elsewhere := row.is_elsewhere(parameters):
-            return elsewhere
+        if row.is_something_else(parameters):
+            return "nothing of its kind vibrates or relaxes like that"
         size = abs(row.size(parameters))
         if size < row.negligible:
             return f"its effect of {100 * size:.2g} % is negligible"

@@ -88,7 +88,13 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
             break
         terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
         _, scores = score_terms(search, terms)
-        ratios = {term: scores[term][0] / (search.required(term) * search.overdispersion) for term in terms}
+        ratios = {
+            # Where a term that refines another is neutral it does nothing to first order: its score says nothing.
+            term: np.inf
+            if TERMS[term].refines in search.structure.terms
+            else scores[term][0] / (search.required(term) * search.overdispersion)
+            for term in terms
+        }
         best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
         tried |= set(best)
         search, accepted = accept_first(search, best)
@@ -377,6 +383,6 @@ def _fit_nonlinear(search: ModelSearch, larger: ModelStructure, first: FitResult
         return None
     if not first.converged:
         first = fit_structure(larger, search.decays, first, NEAR, search.progress, beginning_only=True)
-    if search.leaves_misfit(first, MISFIT_LEFT):
+    if not search.structure.is_nonlinear and search.leaves_misfit(first, MISFIT_LEFT):
         return None
     return replace(search, fit=first).refit(larger)

@@ -8,7 +8,7 @@ the term out moves no other parameter by more than about one percent (tests/sele
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,6 +71,11 @@ _ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
 _ALMOST_NONE = 0.01
 """Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
 
+_MOST_LOSS = 0.008
+"""s: damping of a rubber mount over its rate, at the most. With more, a damper behind a mount moves as one beside a Zener
+branch:
+their forces are the same function of frequency."""
+
 _RIGID = 1e5
 """Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
 
@@ -98,6 +103,8 @@ class ModelTerm:
         Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
     explains_all
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
+    refines
+        Term without which it is nothing, and whose law it changes.
     resembles_others
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
     usual
@@ -111,10 +118,11 @@ class ModelTerm:
         Values with which a fit begins instead of the neutral ones.
     equal_tracks
         Parameters that are equal to another one where the term is absent.
-    resonator
-        Names of rate and mass of a part that vibrates by itself; empty where there is none.
+    character
+        What tells it from other things that move alike: a natural frequency, Hz, or relaxation times, s; None where nothing
+        does.
     band
-        Lowest and highest natural frequency that such a part has, Hz: another one is something else.
+        Lowest and highest value that its character has.
     """
 
     name: str
@@ -124,13 +132,14 @@ class ModelTerm:
     negligible: float
     description: TermDescription
     explains_all: bool = False
+    refines: str = ""
     resembles_others: bool = False
     usual: StartValues | None = None
     held: str = ""
     undefined: StartValues | None = None
     first: StartValues | None = None
     equal_tracks: tuple[tuple[str, str], ...] = ()
-    resonator: tuple[str, str] | tuple[()] = ()
+    character: Callable[[Values], Sequence[float]] | None = None
     band: tuple[float, float] = (0.0, np.inf)
 
     @property
@@ -178,18 +187,18 @@ class ModelTerm:
         about = {name: PARAMETERS[name] for name in self.parameters(tracks)}
         return tuple(name for name, one in about.items() if not (one.positive or one.signed))
 
-    def is_elsewhere(self, values: Values) -> str:
-        """Return the reason against a part that vibrates at a frequency at which it never does; empty where it may.
+    def is_something_else(self, values: Values) -> bool:
+        """Whether a part vibrates or relaxes as none of its kind does.
 
         Parameters
         ----------
         values
             Of the vehicle that has it, SI.
         """
-        if not self.resonator:
-            return ""
-        own, (lowest, highest) = natural_frequency(*(values[name] for name in self.resonator)), self.band
-        return "" if lowest <= own <= highest else f"at {own:.1f} Hz it would be something else"
+        if self.character is None:
+            return False
+        lowest, highest = self.band
+        return not all(lowest <= one <= highest for one in self.character(values))
 
     def implausibility(self, size: float) -> float:
         """Minus twice the logarithm of the prior density of a size, 0 at the usual one.
@@ -340,7 +349,7 @@ TERMS: Mapping[str, ModelTerm] = {
             explains_all=True,
             undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
             first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
-            resonator=("k_e", "m_e"),
+            character=lambda p: [natural_frequency(p["k_e"], p["m_e"])],
             band=(5.5, 30.0),
         ),
         ModelTerm(
@@ -361,6 +370,8 @@ TERMS: Mapping[str, ModelTerm] = {
                 **dict.fromkeys(("c_df", "c_dr"), 0.0),
             },
             first=lambda own, _: usual_rubber(own),
+            character=lambda p: [p[f"c_d{axle}"] / p[f"k_d{axle}"] for axle in "fr"],
+            band=(-np.inf, _MOST_LOSS),
         ),
         ModelTerm(
             "zener",
@@ -421,7 +432,7 @@ TERMS: Mapping[str, ModelTerm] = {
             explains_all=True,
             undefined=lambda own, structure: _usual_occupants(own, structure, _ALMOST_NO_ENGINE),
             first=_usual_occupants,
-            resonator=("k_o", "m_o"),
+            character=lambda p: [natural_frequency(p["k_o"], p["m_o"])],
             band=(2.0, 7.5),
         ),
         ModelTerm(
@@ -481,6 +492,7 @@ TERMS: Mapping[str, ModelTerm] = {
                 ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
                 again="{axle} ones over {0}",
             ),
+            refines="damper-curve",
             first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
         ),
         ModelTerm(
