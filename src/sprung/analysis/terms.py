@@ -7,7 +7,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms
+from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body
 from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
@@ -16,7 +16,7 @@ from sprung.selection import select_nonlinear_terms as select_nonlinear
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     """Select the terms that the matrices M, C and K hold."""
     before = run.model
-    search = select_linear(replace(before, progress=progress))
+    search = select_linear(select_flexible_body(replace(before, progress=progress)))
     if search.structure.names != before.structure.names:
         search = from_contact(search)
     return _with_search(run, before, search, "select_linear_terms")

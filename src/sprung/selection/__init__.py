@@ -4,6 +4,7 @@ from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
 from sprung.selection.nonlinear import select_nonlinear_terms
+from sprung.selection.ordinary import select_flexible_body
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
@@ -40,6 +41,7 @@ __all__ = [
     "required_gain",
     "score_terms",
     "select_finite_rotation",
+    "select_flexible_body",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_nonlinear_terms",

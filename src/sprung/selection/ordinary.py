@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from sprung.estimation import UsualValue, VehicleSize, fit_linear, usual_vehicle
+from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import start_values
+from sprung.selection.starts import start_values, start_variants
 from sprung.selection.stepwise import select_further_terms
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import TERMS
+from sprung.selection.terms import BENDING, TERMS, TWIST
 
 _SPREADS: Mapping[str, float] = {
     "m_s": 1.15,
@@ -103,6 +103,47 @@ def held_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[s
     held = tuple(TERMS[term].held for term in structure.terms if TERMS[term].held)
     usual = usual_sizes(structure, values)
     return {name: UsualValue(value, _HELD) for name, (value, _) in usual.items() if name.startswith(held)}
+
+
+def select_flexible_body(search: ModelSearch) -> ModelSearch:
+    """Return the search with a body that twists or bends, if that explains what a rigid one leaves.
+
+    A rigid body that has to explain a flexible one ends anywhere: no score test there shows what is missing. From an ordinary
+    vehicle with it the way is short.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit, linear.
+
+    Returns
+    -------
+    ModelSearch
+        Model and fit as given where neither explains it.
+    """
+    if not search.is_misfit_large:
+        return search
+    found: dict[str, ModelSearch] = {}
+    for term in search.open_terms((TWIST, BENDING)):
+        search.progress(Step(f"fitting an ordinary vehicle with {term}"))
+        larger = search.with_terms([term])
+        ends = [_fit_from_ordinary(search, variant) for variant in start_variants(term, larger, search.fit.parameters)]
+        found[term] = max(ends, key=lambda end: end.fit.loglikelihood)
+    for term, tried in sorted(found.items(), key=lambda item: -item[1].fit.loglikelihood):
+        gain = tried.gain_over(search)
+        if search.leaves_misfit(tried.fit, MISFIT_LEFT) or tried.veto(term) or gain < search.required(term):
+            search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
+        else:
+            return replace(tried, steps=search.steps).recorded({term: gain}, True, True)
+    return search
+
+
+def _fit_from_ordinary(search: ModelSearch, structure: ModelStructure) -> ModelSearch:
+    """Fit a linear structure from an ordinary vehicle that has it."""
+    values, _ = ordinary_vehicle(structure)
+    models, sensors, known = structure.linear_models, structure.sensors, structure.known
+    fit = fit_linear(search.decays, models, sensors, known, start=values, enough=NEAR, most=_ITERATIONS)
+    return replace(search, structure=structure, fit=fit.after(search.fit))
 
 
 def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
