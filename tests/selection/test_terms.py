@@ -7,6 +7,7 @@ import pytest
 
 from sprung.selection import TERMS, ModelTerm, choose_structure
 from sprung.selection.starts import neutral_values, start_values
+from sprung.selection.structure import SEAT_LOAD
 from sprung.selection.terms import SEPARATE_TRACKS
 from sprung.simulation import simulate
 from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, PARAMETERS, TABLE_1_CAR, Tracks
@@ -27,7 +28,9 @@ def test_a_term_that_is_absent_has_no_size_and_one_that_begins_has_what_its_fit_
     """At neutral values there is next to no effect; of an engine without mass the place would be undefined."""
     if term.name == SEPARATE_TRACKS:
         tracks = "separate"
-    campaign = simulate(TABLE_1_CAR, loads=[], rate=250.0, noise=0.02, seed=1)
+    people = {"name": "people", "items": [{"mass": 75.0, "position": (-1.0, 0.0, 0.6), "on": "seat"}]}
+    loads = [people] if term.name == SEAT_LOAD else []
+    campaign = simulate(TABLE_1_CAR, loads=loads, rate=250.0, noise=0.02, seed=1)
     terms = () if term.name == SEPARATE_TRACKS else (term.name,)
     structure = choose_structure(campaign, tracks, terms)
     values = neutral_values(structure, TABLE_1_CAR.parameters)

@@ -48,4 +48,5 @@ def test_they_are_identified() -> None:
     assert result.verdict.state == "accept"
     for name in ("k_sf", "k_sr", "e_lf", "e_lr", "g_f", "g_r", "m_s", "c_sf"):
         estimate = result.parameters[name]
+        assert estimate.std is not None
         assert estimate.value == pytest.approx(getattr(CAR, name), abs=4 * estimate.std), name

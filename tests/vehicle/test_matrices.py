@@ -47,7 +47,9 @@ def values_of(names: tuple[str, ...]) -> st.SearchStrategy[dict[str, float]]:
 
 
 NAMES = parameter_names("separate")
-ALL_NAMES = parameter_names("separate", LINEAR_EXTRAS)
+# Loads bring the elements of seats with them.
+OWN_EXTRAS = tuple(extra for extra in LINEAR_EXTRAS if extra != "seat-load")
+ALL_NAMES = parameter_names("separate", OWN_EXTRAS)
 
 
 def equation_2(p: Mapping[str, float], f: float, r: float, t_f: float, t_r: float) -> Array:
@@ -86,7 +88,7 @@ def test_matrices_are_equation_2(p: dict[str, float]) -> None:
 @given(values_of(ALL_NAMES))
 @settings(max_examples=25, deadline=None)
 def test_matrices_are_symmetric_and_store_or_dissipate_energy(p: dict[str, float]) -> None:
-    for matrix in model_of(ALL_NAMES, LINEAR_EXTRAS).matrices([p[name] for name in ALL_NAMES]):
+    for matrix in model_of(ALL_NAMES, OWN_EXTRAS).matrices([p[name] for name in ALL_NAMES]):
         assert_allclose(matrix, matrix.T, atol=1e-14 * np.abs(matrix).max())
         eigenvalues = np.linalg.eigvalsh(matrix)
         assert eigenvalues.min() >= -1e-12 * eigenvalues.max()
@@ -97,7 +99,7 @@ def test_matrices_are_symmetric_and_store_or_dissipate_energy(p: dict[str, float
 def test_derivatives_by_every_parameter(p: dict[str, float]) -> None:
     # Every entry is quadratic at most in any one parameter, so central differences are exact for any step.
     values = np.array([p[name] for name in ALL_NAMES])
-    model = model_of(ALL_NAMES, LINEAR_EXTRAS)
+    model = model_of(ALL_NAMES, OWN_EXTRAS)
     slopes = model.slopes(values)
     sizes = np.maximum(np.abs(values), 0.1)
     for i, step in enumerate(np.diag(0.25 * sizes)):
@@ -108,9 +110,9 @@ def test_derivatives_by_every_parameter(p: dict[str, float]) -> None:
 
 def test_anti_roll_bar_feels_roll_and_wheels_but_not_bounce_or_pitch() -> None:
     p = dict.fromkeys(ALL_NAMES, 1.0)
-    with_bar = model_of(ALL_NAMES, LINEAR_EXTRAS).matrices(list(p.values())).K
+    with_bar = model_of(ALL_NAMES, OWN_EXTRAS).matrices(list(p.values())).K
     p["k_af"] = 0.0
-    bar = with_bar - model_of(ALL_NAMES, LINEAR_EXTRAS).matrices(list(p.values())).K
+    bar = with_bar - model_of(ALL_NAMES, OWN_EXTRAS).matrices(list(p.values())).K
     # Left minus right travel is 2 t_f2 (φ + L q_w/2) - (z_uA - z_uB), here with t_f2 = 1 and the wheelbase L = 2.7.
     g = np.zeros(len(bar))
     g[2:5] = 2.0, -1.0, 1.0

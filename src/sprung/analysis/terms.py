@@ -41,8 +41,8 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     if requested is not None and requested.is_nonlinear:
         search = fit_forced_terms(before, requested)
     else:
-        _, plain = structures(run)
-        found = before.structure
+        wanted, _ = structures(run)
+        found, plain = before.structure, wanted.with_terms(wanted.linear_terms)
         plain = replace(
             plain, carried_at=found.carried_at, assumed_heights=found.assumed_heights, sinking=found.sinking
         )

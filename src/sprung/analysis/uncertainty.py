@@ -7,15 +7,23 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.estimation import escape_local_optimum, uncertainty_of, weigh_statements
 from sprung.progress import Progress, Step
+from sprung.selection import leave_out_refused
 
 
 def estimate_uncertainty(run: Analysis, progress: Progress) -> Analysis:
     """Compute the covariance of the parameters at the highest optimum near by."""
     progress(Step("computing the uncertainties"))
     # A motion that is stepped takes as long to probe as to fit, and its search began from both ends.
-    fit = run.fit if run.model.structure.is_time_stepped else escape_local_optimum(run.fit)
-    fit = weigh_statements(fit)
-    statistics = uncertainty_of(fit)
-    run = replace(run, search=replace(run.model, fit=fit), statistics=statistics)
+    search = run.model
+    if not search.structure.is_time_stepped:
+        fit = escape_local_optimum(search.fit)
+        # At another optimum a term may say something else.
+        search = search if fit is search.fit else leave_out_refused(replace(search, fit=fit))
+    search = replace(search, fit=weigh_statements(search.fit))
+    statistics = uncertainty_of(search.fit)
+    refused = search.steps[len(run.model.steps) :]
+    run = replace(run, search=search, statistics=statistics, fits=run.fits + len(refused))
+    for step in refused:
+        run = run.noted("estimate_uncertainty", f"{step.extra}: left out", step.text)
     what = f"variances are enlarged by {statistics.inflation:.3g}"
     return run.noted("estimate_uncertainty", what, statistics.inflated_by)

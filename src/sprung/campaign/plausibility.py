@@ -83,6 +83,8 @@ LIMITS: Mapping[str, Limits] = {
     **dict.fromkeys(("w_kf", "w_kr"), Limits(0, 5.0, "m/s")),
     **dict.fromkeys(("q_f", "q_r"), Limits(0.01, 10.0, "1")),
     **dict.fromkeys(("e_f", "e_r", "e_lf", "e_lr"), Limits(0, 50.0, "1/m")),
+    "w_l": Limits(10, 1e4, "1/s²"),
+    "c_l": Limits(0, 1e3, "1/s"),
     **dict.fromkeys(("g_f", "g_r"), Limits(0, 1e4, "N/(m kg)")),
     "y_s": Limits(-1.5, 1.5, "m"),
     "x_e": _SYMMETRIC_LENGTH,

@@ -139,7 +139,7 @@ def _of_loads(parsed: ParsedFile[CampaignFile]) -> Iterator[Sized]:
     for index, load in zip(parsed.numbered("load"), parsed.file.load, strict=True):
         for number, item in enumerate(load.items):
             place = ("load", index, "items", number)
-            yield (*place, "mass"), "load mass" if item.on is None else "load mass on a wheel", item.mass
+            yield (*place, "mass"), "load mass" if item.position is not None else "load mass on a wheel", item.mass
             for name, value in zip(("x", "y", "z"), item.position or (), strict=False):
                 yield (*place, "position"), name, value
             for value in item.inertia:

@@ -99,7 +99,7 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
         for direction in fit.undetermined.T
         for way in (-1, 1)
     ]
-    vibrations = is_vibration(modes.poles, modes.displacements, model.massive)
+    vibrations = is_vibration(modes.poles, modes.displacements, model.matrices(values).M)
     upper = np.flatnonzero((modes.poles.imag >= 0) & vibrations)
     found = [Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper]
     names = coordinates(fit.names)

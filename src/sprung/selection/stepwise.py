@@ -207,6 +207,25 @@ def needed_terms(search: ModelSearch) -> dict[str, float]:
     return {term: gain for term, gain in gains.items() if gain > search.required(term)}
 
 
+def leave_out_refused(search: ModelSearch) -> ModelSearch:
+    """Return the search without terms that its fit speaks against, once it has moved.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    for term in search.selected:
+        if against := search.veto(term):
+            search = search.recorded({term: search.wald_gain(term)}, True, False, against)
+            search = search.refit(search.without(term))
+    return search
+
+
 def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
     """Rank the terms that are worth a fit, and record the others.
 

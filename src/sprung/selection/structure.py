@@ -31,6 +31,9 @@ from sprung.vehicle import (
     stiffened_air_springs,
 )
 
+SEAT_LOAD = "seat-load"
+"""Term of loads on seats: the campaign says whether it is there."""
+
 _SEPARATE = ("t_f1", "t_f2", "t_r1", "t_r2")
 _SHARED = ("t_f", "t_r")
 
@@ -198,7 +201,8 @@ def choose_structure(
     problems = Problems()
     where = "campaign" if campaign.path is None else campaign.path.name
     wanted = campaign.model.extras if extras is None else extras
-    chosen_extras = tuple(wanted or ())
+    is_soft = any(load.is_soft for load in campaign.loads)
+    chosen_extras = (*(wanted or ()), *((SEAT_LOAD,) if is_soft and SEAT_LOAD not in (wanted or ()) else ()))
     for extra in chosen_extras:
         if extra not in EXTRAS:
             do = did_you_mean(extra, EXTRAS)
@@ -217,6 +221,9 @@ def choose_structure(
             "t_f and t_r where springs and dampers share their half-distance, t_f1, t_r1, t_f2 and t_r2 where not",
             'Set tracks = "separate" in [model] or rename the known half-distances.',
         )
+    if SEAT_LOAD in chosen_extras and not is_soft:
+        do = f"Say which items do, or remove '{SEAT_LOAD}'."
+        problems.add(f"{where}: model.extras", "no item of a load on a seat", 'an item with on = "seat"', do)
     names = parameter_names(chosen, chosen_extras) if not problems else ()
     for extra in EXTRAS:
         brought = parameters_of_term(extra, chosen)
@@ -235,6 +242,6 @@ def choose_structure(
     undecided = tracks is None and campaign.model.tracks is None and not apart and not together
     # Where heights are known they say all that gravity does.
     said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.has_effect else ()))
-    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in said)
+    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in (*said, SEAT_LOAD))
     ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
     return ModelStructure(campaign, chosen, ordered, known, undecided, free)

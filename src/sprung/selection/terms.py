@@ -15,7 +15,7 @@ import numpy as np
 
 from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
 from sprung.selection.description import TermDescription, Values
-from sprung.selection.structure import ModelStructure
+from sprung.selection.structure import SEAT_LOAD, ModelStructure
 from sprung.vehicle import COORDINATES, LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, coordinates, parameters_of_term
 
 StartValues = Callable[[Values, ModelStructure], Values]
@@ -30,7 +30,7 @@ ENGINE, BUMP_STOP, FRICTION = "engine", "bump-stop", "friction"
 OCCUPANTS, TWIST, BENDING = "occupants", "twist", "bending"
 """Likewise, of a body that is not one rigid mass."""
 
-STARTED_LATER = frozenset({ENGINE, OCCUPANTS, TWIST, BENDING})
+STARTED_LATER = frozenset({ENGINE, OCCUPANTS, TWIST, BENDING, SEAT_LOAD})
 """Terms that are put into a vehicle which is fitted already: nothing determines them before."""
 
 _TRAVEL = 0.002
@@ -59,6 +59,9 @@ _ALMOST_NO_ENGINE = 1e-5
 _USUAL_OCCUPANTS, _SEAT_FREQUENCY, _SEAT_DAMPING = 0.06, 4.5, 0.3
 """People on seats as a part of the sprung mass, the natural frequency of a seat, Hz, and its damping ratio (Griffin, Handbook
 of Human Vibration, 1990)."""
+
+_SEAT_LOSS = 2 * _SEAT_DAMPING * 2 * np.pi * _SEAT_FREQUENCY
+"""Damping of a seat over the mass on it, 1/s."""
 
 _MODAL_INERTIA, _MODAL_MASS, _BODY_DAMPING = 0.08, 0.6, 0.03
 """Modal inertia of a usual twist over I_xx, modal mass of a usual bending over m_s, and damping ratio of both."""
@@ -434,6 +437,20 @@ TERMS: Mapping[str, ModelTerm] = {
             first=_usual_occupants,
             character=lambda p: [natural_frequency(p["k_o"], p["m_o"])],
             band=(2.0, 7.5),
+        ),
+        ModelTerm(
+            SEAT_LOAD,
+            lambda p: 1 / natural_frequency(p["w_l"], 1.0),
+            typical=1 / _SEAT_FREQUENCY,
+            spread=1.5,
+            negligible=0.01,
+            description=TermDescription(
+                "loads on seats that move at {0}",
+                ((lambda p, _: natural_frequency(p["w_l"], 1.0), "Hz"),),
+                neutral=None,
+            ),
+            undefined=lambda _, __: {"w_l": _RIGID * (2 * np.pi * _SEAT_FREQUENCY) ** 2, "c_l": _SEAT_LOSS},
+            first=lambda _, __: {"w_l": (2 * np.pi * _SEAT_FREQUENCY) ** 2, "c_l": _SEAT_LOSS},
         ),
         ModelTerm(
             FRICTION,

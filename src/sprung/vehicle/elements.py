@@ -39,7 +39,7 @@ would be without gravity."""
 
 LINEAR_EXTRAS = (
     "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount", "zener",
-    "twist", "bending", "occupants",
+    "twist", "bending", "occupants", "seat-load",
 )  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 

@@ -40,7 +40,16 @@ WHEELS_AT = slice(3, 7)
 _LETTERS = "ABCD"
 """Letters of the wheel stations in the paper."""
 
-_WITH_MASS: Mapping[str, tuple[str, ...]] = {"m_e": ("z_e",), "m_o": ("z_o", "dz_o"), "I_w": ("q_w",), "m_v": ("q_v",)}
+SEAT_LOADS = ("z_l1", "z_l2", "z_l3", "z_l4")
+"""Coordinates of the items of a load on seats: vertical displacements in m. Every load has all, for an item or for none."""
+
+_WITH_MASS: Mapping[str, tuple[str, ...]] = {
+    "m_e": ("z_e",),
+    "m_o": ("z_o", "dz_o"),
+    "I_w": ("q_w",),
+    "m_v": ("q_v",),
+    "w_l": SEAT_LOADS,
+}
 """By parameter: the coordinates with mass that a vehicle with it has beside the paper's."""
 
 _WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
@@ -53,7 +62,7 @@ _BESIDE, _RISE_AT_SEATS = 0.37, 0.9
 """Half-distance of two people beside each other, m, and what the body under their seats rises as it bends, over the rise of its
 middle: 0.75 to 1 in the middle half of the wheelbase."""
 
-_RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e", "z_o"})
+_RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e", "z_o", *SEAT_LOADS})
 """Coordinates that are vertical displacements over the ground."""
 
 UNCONSTRAINED = ("x", "y", "psi")
@@ -318,6 +327,11 @@ def seats(side: float, wheelbase: float = 0.0) -> Row:
     """
     constant = {"z_s": 1.0, "phi": side * _BESIDE, "q_v": _RISE_AT_SEATS * sag(wheelbase)}
     return Row(constant, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, "y_o": {"phi": 1.0}})
+
+
+def on_seat(number: int) -> Row:
+    """Vertical displacement of an item of a load on a seat, by its number from 0."""
+    return Row({SEAT_LOADS[number]: 1.0})
 
 
 def on_axle(station: Wheel, share: str) -> Row:

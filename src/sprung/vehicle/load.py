@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -15,6 +15,9 @@ from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Wheel
 from sprung.vehicle.parameters import LOAD_MASS
+
+_NOTHING = 1e-3
+"""kg in practice none: a coordinate needs some mass."""
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 """A positive number in a campaign file."""
@@ -54,8 +57,9 @@ class Item:
     """x forward of the front axle, y left of the centreline, z above the ground, m; for items on the body."""
     inertia: tuple[NotNegative, NotNegative] = (0.0, 0.0)
     """Its own [I_xx, I_yy] about its centre, kg m²."""
-    on: Wheel | None = None
-    """Wheel station, for items on a wheel."""
+    on: Wheel | Literal["floor", "seat"] | None = None
+    """Wheel station, for items on a wheel; for items on the body ``floor``, which is meant where nothing is said, or ``seat``:
+    the item then moves on a cushion, with a frequency and a damping that the drops have to tell."""
 
     @model_validator(mode="before")
     @classmethod
@@ -64,11 +68,16 @@ class Item:
 
     @model_validator(mode="after")
     def _somewhere(self) -> Item:
-        if (self.position is None) == (self.on is None):
+        if (self.position is None) != (self.on in kinematics.WHEELS):
             raise ValueError('an item needs either a position on the body or the wheel it sits on (on = "fl")')
         return self
 
-    def elements(self, heights: Heights, mass: str | float | None = None) -> Iterator[Element]:
+    @property
+    def is_soft(self) -> bool:
+        """Whether it lies on a seat."""
+        return self.on == "seat"
+
+    def elements(self, heights: Heights, mass: str | float | None = None, seat: int | None = None) -> Iterator[Element]:
         """Yield the elements of the item.
 
         Parameters
@@ -77,13 +86,21 @@ class Item:
             Of the empty vehicle; without them the item is level with the centre of gravity.
         mass
             Name of the parameter that is its mass, or kg; its own mass unless given.
+        seat
+            Number of the seat on which it moves; as if on the floor unless given.
         """
         mass = self.mass if mass is None else mass
-        if self.on is not None:
-            yield Element("mass", mass, kinematics.wheel(self.on))
-        elif self.position is not None:
+        if self.position is None:
+            yield from (
+                Element("mass", mass, kinematics.wheel(wheel)) for wheel in kinematics.WHEELS if wheel == self.on
+            )
+        else:
             x, y, z = self.position
-            yield Element("mass", mass, kinematics.body_point(x, y))
+            if seat is None:
+                yield Element("mass", mass, kinematics.body_point(x, y))
+            else:
+                yield Element("mass", mass, kinematics.on_seat(seat))
+                yield from _cushion(self.mass, kinematics.body_point(x, y) - kinematics.on_seat(seat))
             # How far its own inertia follows a floor that bends or twists under it, nobody knows: it turns with the body.
             arms, rows = heights.item_arms(z), (kinematics.roll(), kinematics.pitch())
             for row, own, arm in zip(rows, self.inertia, arms, strict=True):
@@ -95,6 +112,18 @@ class Item:
             if heights.is_free:
                 yield Element("mass", mass, kinematics.forward(y, arms[1]))
                 yield Element("mass", mass, kinematics.sideways(x, arms[0]))
+
+
+def _cushion(mass: float, travel: kinematics.Row) -> Iterator[Element]:
+    """Yield the elements of a cushion under a mass, kg, by its travel."""
+    yield Element("spring", "w_l", travel, mass)
+    yield Element("damper", "c_l", travel, mass)
+
+
+def _empty_seat(seat: int) -> Iterator[Element]:
+    """Yield what holds the coordinate of a seat on which nothing lies: it weighs nothing, and moves by itself."""
+    yield Element("mass", _NOTHING, kinematics.on_seat(seat))
+    yield from _cushion(_NOTHING, kinematics.on_seat(seat))
 
 
 @checked_record
@@ -155,6 +184,8 @@ class Load:
 
     @model_validator(mode="after")
     def _one_description(self) -> Load:
+        if sum(item.is_soft for item in self.items) > len(kinematics.SEAT_LOADS):
+            raise ValueError(f"at most {len(kinematics.SEAT_LOADS)} items of a load may lie on seats")
         if self.items and self.added is not None:
             raise ValueError("give either items or added totals, not both")
         if self.name == "empty" and (self.items or self.added is not None):
@@ -165,6 +196,11 @@ class Load:
     def is_described(self) -> bool:
         """Whether its masses are known; its drops identify nothing without them."""
         return self.name == "empty" or bool(self.items) or self.added is not None
+
+    @property
+    def is_soft(self) -> bool:
+        """Whether an item lies on a seat."""
+        return any(item.is_soft for item in self.items)
 
     @property
     def mass(self) -> float:
@@ -209,7 +245,8 @@ class Load:
             Of the empty vehicle; without them every item is level with the centre of gravity. With them a load reduces the
             stiffness of roll and pitch by its height above the lateral support.
         unknown
-            Names of parameters; masses of `uncertain_masses` among them are parameters instead of numbers.
+            Names of parameters; masses of `uncertain_masses` among them are parameters instead of numbers, and items on seats
+            move by themselves if w_l is among them.
 
         Raises
         ------
@@ -219,15 +256,20 @@ class Load:
         if not self.is_described:
             expected, do = "items = [...] or added = {...}", "State the items of the load, or its totals."
             raise InputError([Problem(f"load '{self.name}'", "neither items nor added", expected, do)])
+        soft = [i for i, item in enumerate(self.items) if item.is_soft]
+        seats = dict(zip(soft, range(len(soft)), strict=True)) if "w_l" in unknown else {}
+        elements = [
+            element
+            for seat in range(len(seats), len(kinematics.SEAT_LOADS) if "w_l" in unknown else 0)
+            for element in _empty_seat(seat)
+        ]
         if self.added is not None:
             name = self._name_of(0, several=False)
-            return tuple(self.added.elements(name if name in unknown else None))
-        names = [self._name_of(i, len(self.items) > 1) for i in range(len(self.items))]
-        return tuple(
-            element
-            for item, name in zip(self.items, names, strict=True)
-            for element in item.elements(heights, name if name in unknown else None)
-        )
+            return (*elements, *self.added.elements(name if name in unknown else None))
+        for i, item in enumerate(self.items):
+            name = self._name_of(i, len(self.items) > 1)
+            elements += item.elements(heights, name if name in unknown else None, seats.get(i))
+        return tuple(elements)
 
 
 EMPTY = Load(name="empty")

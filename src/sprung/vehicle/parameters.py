@@ -188,6 +188,10 @@ PARAMETERS: Mapping[str, Parameter] = _Parameters(
         "c_o": Parameter("N s/m", "damping of the seats of these people, all together", True, False),
         "x_o": Parameter("m", "people on soft seats, forward of the front axle", False, False, True),
         "y_o": Parameter("m", "people on soft seats, left of the centreline", False, False, True),
+        "w_l": Parameter(
+            "1/s^2", "rate of the seats under a load, over the mass on them", False, vanishes_at_infinity=True
+        ),
+        "c_l": Parameter("1/s", "damping of the seats under a load, over the mass on them", False, False),
         "F_f": Parameter("N", "dry friction, each front wheel", True, False),
         "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
         "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
@@ -240,6 +244,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "twist": ("I_w", "k_w", "c_w", "a_w"),
     "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
     "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
+    "seat-load": ("w_l", "c_l"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
     "rebound": ("r_f", "r_r"),
     "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
@@ -255,7 +260,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 """The parameters that each extra may add; see `parameters_of_term`."""
 
 _INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"}) | {
-    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_df", "c_dr"
+    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_df", "c_dr", "c_l"
 }  # fmt: skip
 """Parameters of extras without effect where the others of the extra are neutral."""
 

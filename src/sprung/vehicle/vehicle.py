@@ -89,6 +89,9 @@ class Vehicle:
     m_o, k_o, c_o, x_o, y_o
         People on soft seats, kg, a part of the sprung mass and of its inertias; rate, N/m, and damping, N s/m, of all seats
         together; and their place, m forward of the front axle and left of the centreline.
+    w_l, c_l
+        Rate, 1/s², and damping, 1/s, of the seats under items of loads, over the mass on them: the squared natural frequency,
+        and twice that frequency times the damping ratio. An infinite rate is that of a floor.
     cg_height, wheel_height, roll_axis_height
         Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
     name
@@ -199,6 +202,8 @@ class Vehicle:
     c_o: float = 0.0
     x_o: float = 0.0
     y_o: float = 0.0
+    w_l: float = math.inf
+    c_l: float = 0.0
     cg_height: float | None = None
     wheel_height: float | None = None
     roll_axis_height: float | None = None
@@ -357,7 +362,7 @@ class Vehicle:
         """
         elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights, self.wheelbase)
         elements += stiffened_air_springs(load.mass_at_wheels(self.wheelbase), self.tracks, self.extras, self.wheelbase)
-        elements += load.elements(self.heights)
+        elements += load.elements(self.heights, tuple(self.parameters))
         return LinearModel.of(elements, tuple(self.parameters))
 
     def matrices(self, load: Load = EMPTY) -> Matrices:

@@ -238,15 +238,20 @@ def eigenmodes(matrices: Matrices) -> tuple[Mode, ...]:
     """
     poles, vectors = np.linalg.eig(matrices.state)
     shapes = vectors[: len(matrices.M)]
-    vibrations = is_vibration(poles, shapes, matrices.massive)
+    vibrations = is_vibration(poles, shapes, matrices.M)
     return make_modes(poles[vibrations], shapes[:, vibrations])
 
 
-def is_vibration(poles: ArrayLike, shapes: ArrayLike, massive: int) -> NDArray[np.bool_]:
+_NO_MASS = 0.01
+"""kg (or kg m²) that a mode moves at the most where nothing moves in it that a vehicle has."""
+
+
+def is_vibration(poles: ArrayLike, shapes: ArrayLike, M: ArrayLike) -> NDArray[np.bool_]:
     """Return which modes move masses, and do not only relax.
 
     Each coordinate without mass adds one pole: the relaxation of a damper against the spring in series with it. Of the real
-    poles these are the ones in whose shapes the coordinates without mass have the largest shares.
+    poles these are the ones in whose shapes the coordinates without mass have the largest shares. What has next to no mass, as
+    a seat on which nothing lies, is none either.
 
     Parameters
     ----------
@@ -254,17 +259,19 @@ def is_vibration(poles: ArrayLike, shapes: ArrayLike, massive: int) -> NDArray[n
         1/s, shape (pole,).
     shapes
         In the coordinates, those with mass first, as columns; shape (coordinate, pole).
-    massive
-        Number of coordinates with mass.
+    M
+        Mass matrix, SI, shape (coordinate, coordinate).
 
     Returns
     -------
     ndarray
         Shape (pole,).
     """
-    sizes = np.abs(np.asarray(shapes)) ** 2
+    shapes, M = np.asarray(shapes), np.asarray(M)
+    sizes, massive = np.abs(shapes) ** 2, int(M.any(axis=0).sum())
+    moved = np.einsum("ip,ij,jp->p", np.conj(shapes), M, shapes, optimize=True).real / sizes.max(axis=0)
     share = np.where(np.imag(poles) == 0, sizes[massive:].sum(axis=0) / sizes.sum(axis=0), -1.0)
     found = np.argsort(-share, kind="stable")[: len(sizes) - massive]
-    vibrations = np.ones(share.shape, dtype=bool)
+    vibrations = np.asarray(moved > _NO_MASS)
     vibrations[found[share[found] > 0]] = False
     return vibrations

@@ -29,7 +29,14 @@ _TRAMP = {
     ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
 }
 
-_ALONE = {"z_e": "engine bounce", "z_o": "seat bounce", "dz_o": "seat roll", "q_w": "body twist", "q_v": "body bending"}
+_ALONE = {
+    "z_e": "engine bounce",
+    "z_o": "seat bounce",
+    "dz_o": "seat roll",
+    "q_w": "body twist",
+    "q_v": "body bending",
+    **{f"z_l{seat}": f"load on seat {seat}" for seat in (1, 2, 3, 4)},
+}
 """By coordinate: the name of the mode in which it moves by itself."""
 
 _TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)

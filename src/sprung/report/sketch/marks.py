@@ -97,7 +97,7 @@ def mark_placer(
                 text = shortened(f"{load.name} {item.mass:.4g} kg")
                 if item.position is not None:
                     placed.append(Mark(frame.at(*project(item.position)), text, "load"))
-                elif item.on is not None:
+                elif item.on in WHEELS:
                     placed.append(Mark(frame.at(*wheel(item.on)), text, "load", False))
         return placed
 

@@ -143,6 +143,7 @@ def _loads(setup: Setup) -> Iterator[str]:
             places = "; ".join(
                 f"{item.mass:g} kg "
                 + (f"on wheel {item.on}" if item.position is None else f"at {_place(item.position)}")
+                + (" on a seat" if item.is_soft else "")
                 for item in load.items
             )
             yield f"{load.name}: {load.mass:g} kg in all: {places}"
