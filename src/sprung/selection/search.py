@@ -289,7 +289,8 @@ class ModelSearch:
             for residuals in (own, fit.residuals)
         )
         much = before > self._sensor_noise
-        return bool(much.any()) and float(np.mean(after[much] / before[much])) > part
+        # Of a motion without bounds the part is no number.
+        return bool(much.any()) and not float(np.mean(after[much] / before[much])) <= part
 
     @property
     def reason(self) -> str:

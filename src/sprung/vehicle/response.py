@@ -66,9 +66,11 @@ def affine_response(A: ArrayLike, constant: ArrayLike, state: ArrayLike, step: f
     propagator = expm(generator * step)
     states = np.append(state, 1.0)[:, None]
     # Doubling: one product propagates all states known so far, which doubles their number.
-    while states.shape[1] < samples:
-        states = np.hstack([states, propagator @ states])
-        propagator = propagator @ propagator
+    # A vehicle that a search passes through may be unstable: its motion has no bounds.
+    with np.errstate(over="ignore", invalid="ignore"):
+        while states.shape[1] < samples:
+            states = np.hstack([states, propagator @ states])
+            propagator = propagator @ propagator
     return states[:size, :samples]
 
 
