@@ -355,9 +355,17 @@ def _without_unneeded(
         if gains[least] > tried.required(least):
             return tried, gains
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
-        smaller = tried.without(least)
+        smaller = _with_counterpart(tried, least)
         tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
     return tried, {}
+
+
+def _with_counterpart(search: ModelSearch, term: str) -> ModelStructure:
+    """Return the structure without a term; with its counterpart, where that is what the term has been taken for."""
+    smaller, row = search.without(term), TERMS[term]
+    if row.counterpart in search.open_terms(tuple(TERMS)) and row.is_something_else(search.fit.parameters):
+        return smaller.with_terms((*smaller.terms, row.counterpart))
+    return smaller
 
 
 def _first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:

@@ -126,6 +126,8 @@ class ModelTerm:
         does.
     band
         Lowest and highest value that its character has.
+    counterpart
+        Term that takes its place where its character is none of its kind: both move alike.
     """
 
     name: str
@@ -144,6 +146,7 @@ class ModelTerm:
     equal_tracks: tuple[tuple[str, str], ...] = ()
     character: Callable[[Values], Sequence[float]] | None = None
     band: tuple[float, float] = (0.0, np.inf)
+    counterpart: str = ""
 
     @property
     def is_linear(self) -> bool:
@@ -375,6 +378,7 @@ TERMS: Mapping[str, ModelTerm] = {
             first=lambda own, _: usual_rubber(own),
             character=lambda p: [p[f"c_d{axle}"] / p[f"k_d{axle}"] for axle in "fr"],
             band=(-np.inf, _MOST_LOSS),
+            counterpart="zener",
         ),
         ModelTerm(
             "zener",
