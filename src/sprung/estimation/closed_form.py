@@ -231,6 +231,8 @@ class ClosedFormAt:
     @cached_property
     def fitted(self) -> tuple[Real, ...]:
         """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+        if not self.sums:  # a motion without bounds is no model of anything
+            return tuple(np.zeros_like(decay.values) for decay in self.objective.decays)
         found: dict[int, Real] = {}
         for projected in self._projected:
             positions = projected.sums.batch.positions.tolist()
