@@ -79,3 +79,6 @@ def test_a_step_to_an_unstable_vehicle_gains_nothing_and_warns_of_nothing() -> N
     assert tried is fit.iterate
     assert gain == -np.inf
     assert fit.problem.maximise(fit.iterate.u + step).converged is False
+    unstable = fit.iterate.at.moved(fit.problem.priors.coordinates.values(fit.iterate.u + step))
+    assert [record.shape for record in unstable.fitted] == [decay.values.shape for decay in fit.decays]
+    assert not any(record.any() for record in unstable.fitted)
