@@ -1,5 +1,6 @@
 """Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
+from sprung.selection.backward_elimination import leave_out_refused, needed_terms
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
@@ -8,17 +9,15 @@ from sprung.selection.ordinary import select_flexible_body
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
-from sprung.selection.stepwise import (
+from sprung.selection.stepwise import select_linear_terms
+from sprung.selection.structure import ModelStructure, choose_structure
+from sprung.selection.term_fits import (
     fit_forced_terms,
     fit_requested_terms,
     fit_term,
-    leave_out_refused,
-    needed_terms,
     select_gravity_leakage,
-    select_linear_terms,
     select_roll_axis_height,
 )
-from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER, TERMS, ModelTerm
 
 __all__ = [

@@ -1,0 +1,89 @@
+"""Backward elimination: terms that a fit does not need, or speaks against, are left out, the least missed first."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from sprung.selection.search import ModelSearch
+from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import TERMS
+
+
+def needed_terms(search: ModelSearch) -> dict[str, float]:
+    """Return the terms that the recordings brought into a model and that its fit needs.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    dict
+        By term, what twice the log-likelihood would lose without it (Wald test), divided by the overdispersion.
+    """
+    gains = {term: search.wald_gain(term) for term in search.selected if not search.veto(term)}
+    return {term: gain for term, gain in gains.items() if gain > search.required(term)}
+
+
+def leave_out_refused(search: ModelSearch) -> ModelSearch:
+    """Return the search without terms that its fit speaks against, once it has moved.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    for term in search.selected:
+        if against := search.veto(term):
+            search = search.recorded({term: search.wald_gain(term)}, True, False, against)
+            search = search.refit(search.without(term))
+    return search
+
+
+def leave_out_unneeded(
+    tried: ModelSearch, before: ModelSearch, keep: str | None = None
+) -> tuple[ModelSearch, dict[str, float]]:
+    """Leave out terms, the least missed first, until every one that is left is needed.
+
+    Parameters
+    ----------
+    tried
+        A larger model.
+    before
+        The model that it was made from.
+    keep
+        A term whose gain was measured by a fit without it.
+
+    Returns
+    -------
+    search
+        With what is left.
+    gains
+        What would be lost without each of the terms that are left; empty where that is the model before.
+    """
+    gains: dict[str, float] = {}
+    while tried.structure.names != before.structure.names:
+        against = {term: tried.veto(term) for term in tried.selected if term != keep}
+        if not against:
+            break
+        gains = {term: 0.0 if reason else tried.wald_gain(term) for term, reason in against.items()}
+        least = min(gains, key=lambda term: gains[term] / tried.required(term))
+        if gains[least] > tried.required(least):
+            return tried, gains
+        tried = tried.recorded({least: gains[least]}, True, False, against[least])
+        smaller = _with_counterpart(tried, least)
+        tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
+    return tried, {}
+
+
+def _with_counterpart(search: ModelSearch, term: str) -> ModelStructure:
+    """Return the structure without a term; with its counterpart, where that is what the term has been taken for."""
+    smaller, row = search.without(term), TERMS[term]
+    if row.counterpart in search.open_terms(tuple(TERMS)) and row.is_something_else(search.fit.parameters):
+        return smaller.with_terms((*smaller.terms, row.counterpart))
+    return smaller

@@ -1,0 +1,164 @@
+"""Fits of one more model term, linear or nonlinear, and of structures that the user requests.
+
+Linear fits are quick and are taken to the end; a nonlinear one ends early where its term does not explain the misfit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from sprung.estimation import NEAR, FitResult, fit_linear
+from sprung.progress import Step
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.scoring import score_terms
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import fit_structure, has_positive_masses, start_values
+from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import ENGINE
+
+WORTH_A_FIT = 4.0
+"""Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
+gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
+
+_FIRST_ITERATIONS = 8
+"""Iterations after which a nonlinear fit has to have explained some of the misfit."""
+
+_ITERATIONS_OF_SWITCH = 1
+"""Iterations after a change without a parameter, which hardly moves the optimum: one Newton step tells what it gains."""
+
+
+def fit_requested_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+    """Fit linear terms that the user requests, whatever they gain.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    terms
+        To be fitted, one after the other.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    for term in terms:
+        search = fit_term(search, term)
+    return search
+
+
+def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSearch:
+    """Fit the structure that the user requests, whatever it gains.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    requested
+        The structure.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    return select_gravity_leakage(search.refit(search.structure.with_terms(requested.terms)))
+
+
+def fit_term(search: ModelSearch, term: str) -> ModelSearch:
+    """Fit a linear term, from where it is expected to gain most.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    term
+        To be fitted.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    return fit_linear_term(score_terms(search, [term])[0], term)
+
+
+def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:
+    """Take the first Newton step towards one more linear term, and return what the whole fit may gain at the most.
+
+    Near the neutral values twice the log-likelihood is quadratic: the step gains what the score test says, and no more is
+    expected after it. A new engine is far from anything: nothing follows from one step.
+    """
+    if term == ENGINE:
+        return search, np.inf
+    first = search.refit(search.with_terms([term]), most=1)
+    gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + WORTH_A_FIT * first.fit.remaining_gain
+    return first, gain / first.fit.disagreement
+
+
+def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
+    """Fit a model with one more linear term; with an engine, without which all may be wrong, from nothing as well.
+
+    Where nothing but noise is left, nothing is wrong without an engine.
+    """
+    search.progress(Step(f"fitting with {term}"))
+    larger = search.with_terms([term])
+    begins = term != ENGINE or has_positive_masses(larger.linear_models, start_values(larger, search.fit.parameters))
+    ends = [search.refit(larger)] if begins else []
+    if term == ENGINE and not larger.needs_start and (search.has_model_error or not ends):
+        sensors, known = larger.sensors, larger.known
+        anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
+        ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
+    return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))
+
+
+def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResult:
+    """Take the first steps of the fit of a nonlinear model to the beginnings of the decays."""
+    return fit_structure(
+        larger, search.decays, search.fit, NEAR, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
+    )
+
+
+def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitResult) -> ModelSearch | None:
+    """Fit a nonlinear model whose fit has begun; None where it leaves too much of the misfit."""
+    if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
+        return None
+    if not first.converged:
+        first = fit_structure(larger, search.decays, first, NEAR, search.progress, beginning_only=True)
+    if not search.structure.is_nonlinear and search.leaves_misfit(first, MISFIT_LEFT):
+        return None
+    return replace(search, fit=first).refit(larger)
+
+
+def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
+    """Return the search with the body carried at the height that fits better, where two heights are known.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    if not search.structure.heights.is_ambiguous:
+        return search
+    other = search.refit(replace(search.structure, carried_at="roll axis"))
+    return other if other.fit.loglikelihood > search.fit.loglikelihood else search
+
+
+def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
+    """Return the search with sensors that feel less of gravity where the body turns, if the recordings support it.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    other = search.refit(replace(search.structure, gravity_leakage=True), most=_ITERATIONS_OF_SWITCH)
+    return other.refit(other.structure) if other.gain_over(search) > search.required_of_switch else search
