@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sprung.selection import TERMS, ModelTerm, choose_structure
+from sprung.selection import SEPARATE_TRACKS, TERMS, ModelTerm, choose_structure
 from sprung.selection.starts import neutral_values, start_values
 from sprung.selection.structure import SEAT_LOAD
-from sprung.selection.terms import SEPARATE_TRACKS
 from sprung.simulation import simulate
 from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, PARAMETERS, TABLE_1_CAR, Tracks
 

@@ -4,6 +4,8 @@ from sprung.selection.backward_elimination import leave_out_refused, needed_term
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
+from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
+from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.ordinary import select_flexible_body
 from sprung.selection.scoring import score_terms
@@ -18,7 +20,7 @@ from sprung.selection.term_fits import (
     select_gravity_leakage,
     select_roll_axis_height,
 )
-from sprung.selection.terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER, TERMS, ModelTerm
+from sprung.selection.terms import TERMS
 
 __all__ = [
     "ENGINE",

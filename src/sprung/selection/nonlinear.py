@@ -10,13 +10,14 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
+from sprung.selection.linear_terms import ENGINE
 from sprung.selection.ordinary import select_from_ordinary_vehicle
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, select_further_terms, try_term
 from sprung.selection.structure import ModelStructure
 from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gravity_leakage
-from sprung.selection.terms import ENGINE, TERMS
+from sprung.selection.terms import TERMS
 
 _TRIED_FIRST = 3
 """Nonlinear terms of which the likeliest is fitted first."""

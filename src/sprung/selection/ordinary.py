@@ -13,11 +13,12 @@ from dataclasses import replace
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.linear_terms import BENDING, TWIST
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_values, start_variants
 from sprung.selection.stepwise import select_further_terms
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import BENDING, TERMS, TWIST
+from sprung.selection.terms import TERMS
 
 _SPREADS: Mapping[str, float] = {
     "m_s": 1.15,

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 from sprung.estimation import score_linear_term, score_linear_terms, score_nonlinear_terms, score_stepped_terms
 from sprung.preprocess import FreeDecay
+from sprung.selection.nonlinear_terms import BUMP_STOP
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import neutral_values, start_variants, states_by_coordinates, stop_gaps, thinned
-from sprung.selection.terms import BUMP_STOP, TERMS
+from sprung.selection.terms import TERMS
 from sprung.vehicle import separate_track_names
 
 _RATE, _DURATION = 250.0, 3.0

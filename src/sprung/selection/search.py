@@ -15,9 +15,10 @@ from sprung.estimation import NEAR, FitResult, wald_test
 from sprung.preprocess import FreeDecay, estimate_sensor_noise
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
+from sprung.selection.linear_terms import SEPARATE_TRACKS
 from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import SEPARATE_TRACKS, TERMS
+from sprung.selection.terms import TERMS
 from sprung.vehicle import PARAMETERS
 
 Real = NDArray[np.float64]

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from sprung.estimation import FitResult, fit_linear, fit_nonlinear, mountings_of
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
+from sprung.selection.linear_terms import BENDING, ENGINE, OCCUPANTS, TWIST
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import BENDING, ENGINE, OCCUPANTS, TERMS, TWIST
+from sprung.selection.terms import TERMS
 from sprung.vehicle import (
     NEUTRAL,
     LinearModel,

@@ -13,11 +13,11 @@ import numpy as np
 from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.linear_terms import ENGINE
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import ENGINE
 
 WORTH_A_FIT = 4.0
 """Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the

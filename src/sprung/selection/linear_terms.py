@@ -1,0 +1,265 @@
+"""The table of model terms, first part: those that mass, damping and stiffness matrices carry."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
+from sprung.selection.description import TermDescription, Values
+from sprung.selection.model_term import ModelTerm, of_axles
+from sprung.selection.structure import SEAT_LOAD
+from sprung.selection.usual_parts import (
+    SEAT_FREQUENCY,
+    SEAT_LOSS,
+    USUAL_OCCUPANTS,
+    natural_frequency,
+    usual_bending,
+    usual_occupants,
+    usual_twist,
+)
+
+SEPARATE_TRACKS = "tracks apart"
+"""Springs and dampers at half-distances of their own."""
+
+ENGINE, OCCUPANTS, TWIST, BENDING = "engine", "occupants", "twist", "bending"
+"""Terms with starts of their own: masses on springs, and a body that is not one rigid mass."""
+
+STARTED_LATER = frozenset({ENGINE, OCCUPANTS, TWIST, BENDING, SEAT_LOAD})
+"""Terms that are put into a vehicle which is fitted already: nothing determines them before."""
+
+_TYRE_DAMPING = 0.06
+"""Usual damping of a tyre over that of the damper."""
+
+_ALMOST_NO_ENGINE = 1e-5
+"""Part of the sprung mass that is nothing in practice: with no mass at all, an engine's place would be undefined."""
+
+_AT_REST = 1e4
+"""Factor on a usual modal mass that is an infinite one in practice."""
+
+_ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
+
+_ALMOST_NONE = 0.01
+"""Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
+
+_MOST_LOSS = 0.008
+"""s: damping of a rubber mount over its rate, at the most. With more, a damper behind a mount moves as one beside a Zener
+branch: their forces are the same function of frequency."""
+
+_RIGID = 1e5
+"""Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
+
+
+def _half_distance(values: Values, axle: str) -> float:
+    """Half-distance of an axle's springs, m."""
+    return values[f"t_{axle}"] if f"t_{axle}" in values else values[f"t_{axle}2"]
+
+
+def _asymmetry(values: Values, axle: str) -> float:
+    rates = [values[f"d_{rate}{axle}"] / values[f"{rate[0]}_{rate[1:]}{axle}"] for rate in ("ks", "kt", "cs")]
+    return max(abs(values["y_s"]) / _half_distance(values, axle), *map(abs, rates))
+
+
+def _inboard_share(values: Values, axle: str) -> float:
+    """Place of the springs on a rigid axle, as a part of its wheels' half-distance."""
+    return values[f"n_{axle}" if f"n_{axle}" in values else f"n_{axle}2"]
+
+
+def _gravity(values: Values) -> float:
+    """Share of the roll stiffness of all springs."""
+    return values["w_h"] / _roll_rate(values)
+
+
+def _roll_rate(values: Values) -> float:
+    """Roll stiffness of the springs of both axles, N m."""
+    return 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
+
+
+LINEAR_TERMS = (
+    ModelTerm(
+        SEPARATE_TRACKS,
+        of_axles(lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"] - 1),
+        typical=0.15,
+        spread=2.0,
+        negligible=0.01,
+        description=TermDescription(
+            "{axle} dampers at {0} times the half-distance of the springs",
+            ((lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"], "1"),),
+            again="{axle} ones at {0} times",
+            neutral=1.0,
+        ),
+        equal_tracks=(("t_f1", "t_f2"), ("t_r1", "t_r2")),
+    ),
+    ModelTerm(
+        "anti-roll",
+        of_axles(lambda p, axle: p[f"k_a{axle}"] / p[f"k_s{axle}"]),
+        typical=0.3,
+        spread=2.5,
+        negligible=0.01,
+        description=TermDescription(
+            "a {axle} anti-roll bar of {0}",
+            ((lambda p, axle: p[f"k_a{axle}"] / 1e3, "N/mm"),),
+            again="a {axle} one of {0}",
+        ),
+    ),
+    ModelTerm(
+        "tyre-damping",
+        of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
+        usual=lambda own, _: {f"c_t{axle}": _TYRE_DAMPING * own[f"c_s{axle}"] for axle in "fr"},
+        typical=_TYRE_DAMPING,
+        spread=2.5,
+        negligible=0.005,
+        description=TermDescription(
+            "tyre damping of {0} at each {axle} wheel",
+            ((lambda p, axle: p[f"c_t{axle}"], "N s/m"),),
+            again="{0} at each {axle} wheel",
+        ),
+    ),
+    ModelTerm(
+        "gravity",
+        _gravity,
+        typical=0.1,
+        spread=2.0,
+        negligible=0.005,
+        description=TermDescription(
+            "gravity that takes {0} off the roll stiffness of the springs",
+            ((lambda p, _: 100 * _gravity(p), "%"),),
+        ),
+    ),
+    ModelTerm(
+        "asymmetry",
+        of_axles(_asymmetry),
+        typical=0.05,
+        spread=2.0,
+        negligible=0.01,
+        description=TermDescription(
+            "left and right sides that differ by up to {0}",
+            ((lambda p, _: 200 * max(_asymmetry(p, axle) for axle in "fr"), "%"),),
+        ),
+        explains_all=True,
+    ),
+    ModelTerm(
+        "rigid-axle",
+        of_axles(lambda p, axle: 1 - _inboard_share(p, axle)),
+        typical=0.3,
+        spread=1.6,
+        negligible=0.05,
+        description=TermDescription(
+            "a rigid {axle} axle with its springs at {0} of the half-distance of its wheels",
+            ((_inboard_share, "1"),),
+            again="a rigid {axle} axle with its springs at {0}",
+            neutral=1.0,
+        ),
+        explains_all=True,
+    ),
+    ModelTerm(
+        ENGINE,
+        lambda p: p["m_e"] / p["m_s"],
+        typical=USUAL_ENGINE,
+        spread=1.6,
+        negligible=0.02,
+        description=TermDescription("an engine of {0} that moves on its mounts", ((lambda p, _: p["m_e"], "kg"),)),
+        explains_all=True,
+        undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
+        first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
+        character=lambda p: [natural_frequency(p["k_e"], p["m_e"])],
+        band=(5.5, 30.0),
+    ),
+    ModelTerm(
+        "damper-mount",
+        of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
+        usual=lambda own, _: usual_rubber(own),
+        typical=1 / USUAL_MOUNT,
+        spread=2.0,
+        negligible=0.003,
+        description=TermDescription(
+            "{axle} dampers on rubber mounts of {0}",
+            ((lambda p, axle: p[f"k_d{axle}"] / 1e3, "N/mm"),),
+            again="{axle} ones on mounts of {0}",
+            neutral=None,
+        ),
+        undefined=lambda own, _: {
+            **{f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+            **dict.fromkeys(("c_df", "c_dr"), 0.0),
+        },
+        first=lambda own, _: usual_rubber(own),
+        character=lambda p: [p[f"c_d{axle}"] / p[f"k_d{axle}"] for axle in "fr"],
+        band=(-np.inf, _MOST_LOSS),
+        counterpart="zener",
+    ),
+    ModelTerm(
+        "zener",
+        of_axles(lambda p, axle: p[f"k_z{axle}"] / p[f"k_s{axle}"]),
+        usual=lambda own, _: usual_rubber(own),
+        typical=USUAL_RELAXATION,
+        spread=2.0,
+        negligible=0.01,
+        description=TermDescription(
+            "{axle} springs stiffer by {0} in fast motion, which relaxes in {1}",
+            (
+                (lambda p, axle: 100 * p[f"k_z{axle}"] / p[f"k_s{axle}"], "%"),
+                (lambda p, axle: 1e3 * p[f"c_z{axle}"] / p[f"k_z{axle}"], "ms"),
+            ),
+            again="{axle} ones by {0}, which relaxes in {1}",
+        ),
+        held="c_z",
+        undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
+        first=lambda own, _: usual_rubber(own),
+    ),
+    ModelTerm(
+        TWIST,
+        lambda p: _roll_rate(p) / p["k_w"],
+        typical=0.05,
+        spread=2.5,
+        negligible=0.004,
+        description=TermDescription(
+            "a body that twists at {0}",
+            ((lambda p, _: natural_frequency(p["k_w"], p["I_w"]), "Hz"),),
+            neutral=None,
+        ),
+        explains_all=True,
+        undefined=lambda own, structure: usual_twist(own, structure, _AT_REST),
+        first=usual_twist,
+    ),
+    ModelTerm(
+        BENDING,
+        lambda p: 2 * (p["k_sf"] + p["k_sr"]) / p["k_v"],
+        typical=0.015,
+        spread=2.5,
+        negligible=0.0015,
+        description=TermDescription(
+            "a body that bends at {0}",
+            ((lambda p, _: natural_frequency(p["k_v"], p["m_v"]), "Hz"),),
+            neutral=None,
+        ),
+        explains_all=True,
+        undefined=lambda own, structure: usual_bending(own, structure, _AT_REST),
+        first=usual_bending,
+    ),
+    ModelTerm(
+        OCCUPANTS,
+        lambda p: p["m_o"] / p["m_s"],
+        typical=USUAL_OCCUPANTS,
+        spread=2.0,
+        negligible=0.005,
+        description=TermDescription("{0} of people on soft seats", ((lambda p, _: p["m_o"], "kg"),)),
+        explains_all=True,
+        undefined=lambda own, structure: usual_occupants(own, structure, _ALMOST_NO_ENGINE),
+        first=usual_occupants,
+        character=lambda p: [natural_frequency(p["k_o"], p["m_o"])],
+        band=(2.0, 7.5),
+    ),
+    ModelTerm(
+        SEAT_LOAD,
+        lambda p: 1 / natural_frequency(p["w_l"], 1.0),
+        typical=1 / SEAT_FREQUENCY,
+        spread=1.5,
+        negligible=0.01,
+        description=TermDescription(
+            "loads on seats that move at {0}",
+            ((lambda p, _: natural_frequency(p["w_l"], 1.0), "Hz"),),
+            neutral=None,
+        ),
+        undefined=lambda _, __: {"w_l": _RIGID * (2 * np.pi * SEAT_FREQUENCY) ** 2, "c_l": SEAT_LOSS},
+        first=lambda _, __: {"w_l": (2 * np.pi * SEAT_FREQUENCY) ** 2, "c_l": SEAT_LOSS},
+    ),
+)

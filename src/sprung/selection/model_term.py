@@ -1,0 +1,147 @@
+"""What the search needs to know of one model term: its practical effect, its usual size, and where a fit begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from sprung.selection.description import TermDescription, Values
+from sprung.selection.structure import ModelStructure
+from sprung.vehicle import COORDINATES, LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, coordinates, parameters_of_term
+
+StartValues = Callable[[Values, ModelStructure], Values]
+"""From the fitted vehicle and the structure to fit, values of some parameters."""
+
+
+@dataclass(frozen=True)
+class ModelTerm:
+    """One term that the model may have.
+
+    Attributes
+    ----------
+    name
+        As in campaign.toml and results.json.
+    size
+        Practical effect, dimensionless, from the parameters of a vehicle that has it; a sign means a direction only.
+    typical, spread
+        Usual size where the term is present, and the factor by which one standard deviation lies above or below it.
+    description
+        How a sentence states it.
+    negligible
+        Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
+    explains_all
+        Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
+    refines
+        Term without which it is nothing, and whose law it changes.
+    resembles_others
+        Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
+    usual
+        Values that its parameters usually have, of a term that most vehicles have.
+    held
+        First letters of parameters that mean little where the term is small: a search that may find it small holds them close
+        to their usual values.
+    undefined
+        Values of those parameters that have none where the term is absent.
+    first
+        Values with which a fit begins instead of the neutral ones.
+    equal_tracks
+        Parameters that are equal to another one where the term is absent.
+    character
+        What tells it from other things that move alike: a natural frequency, Hz, or relaxation times, s; None where nothing
+        does.
+    band
+        Lowest and highest value that its character has.
+    counterpart
+        Term that takes its place where its character is none of its kind: both move alike.
+    """
+
+    name: str
+    size: Callable[[Values], float]
+    typical: float
+    spread: float
+    negligible: float
+    description: TermDescription
+    explains_all: bool = False
+    refines: str = ""
+    resembles_others: bool = False
+    usual: StartValues | None = None
+    held: str = ""
+    undefined: StartValues | None = None
+    first: StartValues | None = None
+    equal_tracks: tuple[tuple[str, str], ...] = ()
+    character: Callable[[Values], Sequence[float]] | None = None
+    band: tuple[float, float] = (0.0, np.inf)
+    counterpart: str = ""
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether mass, damping and stiffness matrices carry it."""
+        return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+
+    @property
+    def adds_coordinates(self) -> bool:
+        """Whether a vehicle with it moves in more coordinates than the paper's."""
+        return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
+
+    def parameters(self, tracks: Tracks) -> tuple[str, ...]:
+        """Return the parameters that a model with the term has and one without it has not, or not free.
+
+        Parameters
+        ----------
+        tracks
+            Whether springs and dampers share their half-distance.
+        """
+        if self.equal_tracks:
+            return tuple(name for name, _ in self.equal_tracks)
+        return parameters_of_term(self.name, tracks)
+
+    def neutral(self, tracks: Tracks) -> list[tuple[str, str | float]]:
+        """Return what each parameter is where the term is absent: a value, or another parameter.
+
+        Parameters
+        ----------
+        tracks
+            As for `parameters`.
+        """
+        if self.equal_tracks:
+            return list(self.equal_tracks)
+        return [(name, NEUTRAL[name]) for name in self.parameters(tracks) if name in NEUTRAL]
+
+    def not_negative(self, tracks: Tracks) -> tuple[str, ...]:
+        """Return the parameters that physics does not allow to be negative, though the fit does.
+
+        Parameters
+        ----------
+        tracks
+            As for `parameters`.
+        """
+        about = {name: PARAMETERS[name] for name in self.parameters(tracks)}
+        return tuple(name for name, one in about.items() if not (one.positive or one.signed))
+
+    def is_something_else(self, values: Values) -> bool:
+        """Whether a part vibrates or relaxes as none of its kind does.
+
+        Parameters
+        ----------
+        values
+            Of the vehicle that has it, SI.
+        """
+        if self.character is None:
+            return False
+        lowest, highest = self.band
+        return not all(lowest <= one <= highest for one in self.character(values))
+
+    def implausibility(self, size: float) -> float:
+        """Minus twice the logarithm of the prior density of a size, 0 at the usual one.
+
+        Log-normal with `typical` and `spread`; a size that is negligible is as implausible as the smallest that is not.
+        """
+        ratio = max(abs(size), self.negligible) / self.typical
+        return float((np.log(ratio) / np.log(self.spread)) ** 2)
+
+
+def of_axles(ratio: Callable[[Values, str], float]) -> Callable[[Values], float]:
+    """Return the larger of both axles' sizes."""
+    return lambda values: max(abs(ratio(values, axle)) for axle in "fr")
