@@ -1,0 +1,173 @@
+"""The likelihood of stepped motions: initial states are eliminated to second order, and predicted for the next point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.elimination import eliminate
+from sprung.estimation.stepped_motion import SteppedMotion
+
+if TYPE_CHECKING:
+    from sprung.estimation.time_stepping import TimeSteppingObjective
+
+Real = NDArray[np.float64]
+
+_STATE_STEPS, _STATE_GAIN = 20, 1e-2
+"""Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
+
+
+@dataclass(frozen=True, eq=False)
+class TimeSteppingAt:
+    """Time stepping at parameter values and noise levels.
+
+    Attributes
+    ----------
+    stepped
+        The motion of every drop.
+    weights
+        1/σ² of each channel, s⁴/m², shape (channel,).
+    """
+
+    stepped: SteppedMotion
+    weights: Real
+
+    is_reversible = False
+
+    @property
+    def objective(self) -> TimeSteppingObjective:
+        """What is fitted, and the equations of motion."""
+        return self.stepped.objective
+
+    @property
+    def values(self) -> Real:
+        """Parameters, SI, shape (parameter,)."""
+        return self.stepped.values
+
+    @property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); infinite where the motion has no bounds."""
+        return self.stepped.residual_sums
+
+    def reweighted(self, weights: Real) -> TimeSteppingAt:
+        """Return the likelihood with other weights; motion and derivatives are the same, and are not computed again."""
+        return replace(self, weights=weights)
+
+    def moved(self, values: Real) -> TimeSteppingAt:
+        """Return the likelihood at other parameter values, with the initial states that should explain the records there."""
+        information, gradient = self._normal_equations
+        parameters = len(self.values)
+        right = gradient[:, parameters:] - np.einsum(
+            "dzp,p->dz", information[:, parameters:, :parameters], values - self.values
+        )
+        step = np.linalg.solve(information[:, parameters:, parameters:], right[:, :, None])[:, :, 0]
+        of_model = (values - self.values)[: self.objective.sensors.shared]
+        change = np.hstack([np.tile(of_model, (len(step), 1)), step])
+        return self.objective.at_states(values, self.weights, self.stepped.begin + step, self.stepped.predict(change))
+
+    def with_optimal_states(self) -> TimeSteppingAt:
+        """Return the likelihood with the initial states that maximise it at these parameters."""
+        best = self
+        for _ in range(_STATE_STEPS):
+            tried = best.moved(self.values)
+            gain = best._cost - tried._cost
+            best = tried if gain > 0 else best
+            if not gain > _STATE_GAIN:
+                break
+        return best
+
+    @property
+    def _cost(self) -> float:
+        return float(self.residual_sums.sum(axis=0) @ self.weights) + self.penalty
+
+    def of_drop(self, drop: int) -> TimeSteppingAt:
+        """Return the likelihood of one drop alone, by its position."""
+        alone = self.objective.with_decays([self.objective.decays[drop]])
+        return alone.at_states(self.values, self.weights, self.stepped.begin[[drop]])
+
+    @property
+    def penalty(self) -> float:
+        """Twice the negative log-likelihood of the initial states under their prior."""
+        return float(np.sum((self.stepped.begin / self.objective.prior_std) ** 2))
+
+    @cached_property
+    def _normal_equations(self) -> tuple[Real, Real]:
+        """Information and gradient of parameters and initial states of each drop, the prior of the states included."""
+        parameters = len(self.values)
+        whole = np.einsum("c,dcij->dij", self.weights, self.stepped.products, optimize=True)
+        information, gradient = whole[:, :-1, :-1], whole[:, :-1, -1]
+        precision = self.objective.prior_std**-2
+        information[:, parameters:, parameters:] += np.diag(precision)
+        gradient[:, parameters:] -= self.stepped.begin * precision
+        return information, gradient
+
+    @cached_property
+    def _eliminated(self) -> tuple[Real, Real, Real]:
+        """Information and gradient of each drop without its initial state, and how that follows the parameters."""
+        return eliminate(*self._normal_equations, len(self.values))
+
+    @property
+    def by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
+        information, gradient, _ = self._eliminated
+        return gradient, information
+
+    @cached_property
+    def by_window(self) -> tuple[Real, Real]:
+        """Gradient and information of each window of time; shapes (window, parameter) and (window, parameter, parameter)."""
+        response = self._eliminated[2]
+        # What a change of the parameters is in a drop whose initial state follows it.
+        change = np.concatenate([np.tile(np.eye(len(self.values)), (len(response), 1, 1)), response], axis=1)
+        products = np.einsum("c,wdcij->wdij", self.weights, self.stepped.linearised[0], optimize=True)
+        gradient = np.einsum("dup,wdu->wp", change, products[..., :-1, -1], optimize=True)
+        information = np.einsum("dup,wduv,dvq->wpq", change, products[..., :-1, :-1], change, optimize=True)
+        return gradient, information
+
+    @property
+    def gradient(self) -> Real:
+        """Of the log-likelihood by the parameters, per SI unit, shape (parameter,)."""
+        return np.asarray(self.by_drop[0].sum(axis=0))
+
+    @property
+    def information(self) -> Real:
+        """Fisher information of the parameters, shape (parameter, parameter)."""
+        return np.asarray(self.by_drop[1].sum(axis=0))
+
+    @cached_property
+    def leverage(self) -> Real:
+        """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+        parameters = len(self.values)
+        products = self.stepped.products[:, :, parameters:-1, parameters:-1]
+        inverse = np.linalg.inv(self._normal_equations[0][:, parameters:, parameters:])
+        leverage: Real = self.weights * np.einsum("dij,dcji->c", inverse, products, optimize=True)
+        return leverage
+
+    @property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
+        objective = self.objective
+        whole = objective.records - self.stepped.residuals
+        return tuple(record[:, :samples] for record, samples in zip(whole, objective.samples, strict=True))
+
+    @property
+    def states(self) -> Real:
+        """{X, Ẋ} and memories of each drop at its first sample, SI, shape (drop, state + memory)."""
+        states: Real = self.stepped.begin - self.objective.sag(self.values)
+        return states
+
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """{X, Ẋ} and memories of a drop, SI, shape (state + memory, time).
+
+        NaN for the samples before its first: friction cannot be followed backward in time.
+        """
+        chosen = slice(None, self.objective.every * after, self.objective.every)
+        memories = self.stepped.trajectory.memories[chosen, drop]
+        whole = (
+            np.hstack([self.stepped.trajectory.states[chosen, drop], memories]) - self.objective.sag(self.values)[drop]
+        )
+        unknown = np.full((whole.shape[1], before), np.nan)
+        return np.hstack([unknown, whole.T])

@@ -1,0 +1,165 @@
+"""Stepped motions of all drops at parameter values, what the sensors read of them, and how it follows the unknowns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import Prediction, Stepper, Trajectory, differentiate_motions, segments_of
+
+if TYPE_CHECKING:
+    from sprung.estimation.time_stepping import TimeSteppingObjective
+
+Real = NDArray[np.float64]
+
+_FIRST_WINDOW, _WINDOWS = 0.05, 8
+"""Length of the first window of time, s, and how many there are, each twice as long as the one before."""
+
+
+@dataclass(frozen=True, eq=False)
+class SteppedMotion:
+    """Motions of all drops, whatever the noise of the sensors.
+
+    Attributes
+    ----------
+    objective
+        What is fitted, and the equations of motion.
+    values
+        Parameters, SI, shape (parameter,).
+    begin
+        {X, Ẋ} and memories of each drop at its first sample, from where the empty vehicle rests, shape (drop, state + memory).
+    stepper
+        What steps.
+    trajectory
+        The motion of every drop.
+    """
+
+    objective: TimeSteppingObjective
+    values: Real
+    begin: Real
+    stepper: Stepper
+    trajectory: Trajectory
+
+    def predict(self, change: Real) -> Prediction:
+        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
+        _, by_unknown, transitions = self.linearised
+        steps = len(self.trajectory.states) - 1
+        number, length = segments_of(steps, self.objective.every)
+        first = np.minimum(np.arange(number) * length, steps)
+        starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
+        return Prediction(
+            np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True), transitions
+        )
+
+    @cached_property
+    def _inputs(self) -> Real:
+        """{X, Ẋ, u, 1} at every sample, shape (time, drop, input)."""
+        every = self.objective.every
+        states, forces = self.trajectory.states[::every], self.trajectory.forces[::every]
+        return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
+
+    @cached_property
+    def _accelerations(self) -> Real:
+        """Accelerations of the coordinates at every sample, shape (time, drop, coordinate)."""
+        by_kind = [model.accelerations(self.values)[0] for model in self.objective.models_by_kind]
+        rows = np.stack(by_kind)[self.objective.kind]
+        accelerations: Real = np.einsum("dij,kdj->kdi", rows, self._inputs, optimize=True)
+        return accelerations
+
+    @property
+    def _gravity(self) -> float:
+        """What the sensors measure less of where they turn, m/s²."""
+        return STANDARD_GRAVITY if self.objective.sensors_tilt else 0.0
+
+    @cached_property
+    def _readings(self) -> Real:
+        """What the sensors read, shape (drop, channel, time)."""
+        sensors, angles = self.objective.sensors, self._inputs[:, :, 1:3]
+        readings: Real = sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
+        if self._gravity:
+            readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
+        if sensors.has_delays:
+            # To the second order: a delay is a small part of a period.
+            samples = sensors.delays(self.values)[:, None] * self._rates
+            rising = np.gradient(readings, axis=-1, edge_order=2)
+            readings += 0.5 * samples**2 * np.gradient(rising, axis=-1, edge_order=2) - samples * rising
+        return readings
+
+    @property
+    def _rates(self) -> Real:
+        """Samples per second of every drop, shape (drop, 1, 1)."""
+        return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
+
+    @cached_property
+    def residuals(self) -> Real:
+        """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
+        objective = self.objective
+        with np.errstate(over="ignore", invalid="ignore"):
+            residuals = objective.records - self._readings
+            residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
+            residuals *= objective.is_sample[:, None, :]
+        counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
+        return counted
+
+    @cached_property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, (m/s²)², shape (drop, channel); infinite where the motion has no bounds."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            sums = self.objective.channel_weights * np.einsum("dct,dct->dc", self.residuals, self.residuals)
+        return np.where(np.isfinite(sums), sums, np.inf)
+
+    @cached_property
+    def products(self) -> Real:
+        """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
+
+        Shape (drop, channel, unknown + 1, unknown + 1); what offsets explain is subtracted.
+        """
+        products: Real = self.linearised[0].sum(axis=0)
+        return products
+
+    @cached_property
+    def linearised(self) -> tuple[Real, Real, Real]:
+        """The products by window, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
+        objective = self.objective
+        S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
+        channels, shared = len(S), objective.sensors.shared
+        by_kind = [model.accelerations(self.values) for model in objective.models_by_kind]
+        outputs = np.stack([S @ rows[:, :-1] for rows, _ in by_kind])
+        direct = [np.swapaxes(by_S, 0, 1) @ rows for rows, _ in by_kind]
+        for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
+            by_row[:shared] += S @ slopes
+        if self._gravity:
+            # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
+            angles = np.broadcast_to(np.eye(2, outputs.shape[2], k=1), (len(outputs), 2, outputs.shape[2]))
+            outputs = np.concatenate([outputs, angles], axis=1)
+        stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
+        if skipped > 1:
+            longer = [skipped * time for time in objective.times]
+            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values[:shared])
+            trajectory = Trajectory(*(part[::skipped] for part in trajectory))
+        found = differentiate_motions(stepper, trajectory, outputs, objective.every // skipped)
+        products = []
+        for drop, (moved, samples) in enumerate(zip(found.outputs, objective.samples, strict=True)):
+            inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
+            if self._gravity:
+                readings -= self._gravity * (inputs[:, None, 1:3] @ moved[:samples, channels:])
+            # The unknowns of the sensors come between the parameters of the model and the initial states.
+            readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
+            by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
+            readings[..., : len(self.values)] += by_sensor
+            for channel, position in objective.sensors.delay_positions:
+                readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
+                readings[:, channel, position] *= objective.decays[drop].rate
+            columns = np.empty((channels, samples, readings.shape[2] + 1))
+            columns[..., :-1] = np.swapaxes(readings - readings.mean(axis=0), 0, 1)
+            columns[..., -1] = self.residuals[drop, :, :samples]
+            ends = (objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
+            windows = np.split(columns, np.minimum(ends, samples), axis=1)
+            products.append([np.swapaxes(window, 1, 2) @ window for window in windows])
+        by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
+        return by_window, found.starts, found.transitions
