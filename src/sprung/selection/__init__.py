@@ -7,7 +7,7 @@ from sprung.selection.finite_rotation import select_finite_rotation
 from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
-from sprung.selection.ordinary import select_flexible_body
+from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure

@@ -71,6 +71,9 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     is_held = structure.campaign.heights.roll_axis_height is not None
     if structure.is_time_stepped or is_held or any(decay.clocks for decay in search.decays):
         return search
+    # Angles are small: what is large is something else, a fault perhaps, which would be taken for it.
+    if search.is_misfit_large:
+        return search
     recorded = search.decays
     plainest, *others = _ASSUMPTIONS[:2] if structure.campaign.heights.has_effect else _ASSUMPTIONS
     first, assumption = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS), plainest
@@ -84,7 +87,8 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     if plain.names != structure.names:
         base = _with_geometry(replace(plain, carried_at=structure.carried_at), turned.fit.parameters, assumption)
         again = select_linear_terms(replace(turned.refit(base), steps=search.steps))
-        turned = _corrected(again, recorded, assumption)
+        anew = _corrected(again, recorded, assumption)
+        turned = anew if anew.delta_bic(turned) > 0 else replace(turned, steps=anew.steps)
     return turned if turned.gain_over(search) > search.required_of_switch else search
 
 

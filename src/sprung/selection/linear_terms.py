@@ -45,6 +45,9 @@ _MOST_LOSS = 0.008
 """s: damping of a rubber mount over its rate, at the most. With more, a damper behind a mount moves as one beside a Zener
 branch: their forces are the same function of frequency."""
 
+_HOP, _LOSS = 12.0, 0.1
+"""Hz at which a wheel usually hops, and the loss factor of rubber there."""
+
 _RIGID = 1e5
 """Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
 
@@ -177,11 +180,21 @@ LINEAR_TERMS = (
             again="{axle} ones on mounts of {0}",
             neutral=None,
         ),
-        undefined=lambda own, _: {
-            **{f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
-            **dict.fromkeys(("c_df", "c_dr"), 0.0),
-        },
+        undefined=lambda own, _: {f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
         first=lambda own, _: usual_rubber(own),
+    ),
+    ModelTerm(
+        "mount-damping",
+        of_axles(lambda p, axle: 2 * np.pi * _HOP * p[f"c_d{axle}"] / p[f"k_d{axle}"]),
+        usual=lambda own, _: usual_rubber(own),
+        typical=_LOSS,
+        spread=2.0,
+        negligible=0.02,
+        description=TermDescription(
+            "damping of {0} in the mounts of the {axle} dampers",
+            ((lambda p, axle: p[f"c_d{axle}"], "N s/m"),),
+            again="{0} in those of the {axle} ones",
+        ),
         character=lambda p: [p[f"c_d{axle}"] / p[f"k_d{axle}"] for axle in "fr"],
         band=(-np.inf, _MOST_LOSS),
         counterpart="zener",

@@ -9,7 +9,16 @@ import numpy as np
 
 from sprung.selection.description import TermDescription, Values
 from sprung.selection.structure import ModelStructure
-from sprung.vehicle import COORDINATES, LINEAR_EXTRAS, NEUTRAL, PARAMETERS, Tracks, coordinates, parameters_of_term
+from sprung.vehicle import (
+    COORDINATES,
+    LINEAR_EXTRAS,
+    NEUTRAL,
+    PARAMETERS,
+    REFINED,
+    Tracks,
+    coordinates,
+    parameters_of_term,
+)
 
 StartValues = Callable[[Values, ModelStructure], Values]
 """From the fitted vehicle and the structure to fit, values of some parameters."""
@@ -33,8 +42,6 @@ class ModelTerm:
         Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
     explains_all
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
-    refines
-        Term without which it is nothing, and whose law it changes.
     resembles_others
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
     usual
@@ -64,7 +71,6 @@ class ModelTerm:
     negligible: float
     description: TermDescription
     explains_all: bool = False
-    refines: str = ""
     resembles_others: bool = False
     usual: StartValues | None = None
     held: str = ""
@@ -79,6 +85,11 @@ class ModelTerm:
     def is_linear(self) -> bool:
         """Whether mass, damping and stiffness matrices carry it."""
         return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+
+    @property
+    def refines(self) -> str:
+        """Term without which it is nothing, and whose law it changes; empty where there is none."""
+        return REFINED.get(self.name, "")
 
     @property
     def adds_coordinates(self) -> bool:

@@ -86,7 +86,6 @@ NONLINEAR_TERMS = (
             ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
             again="{axle} ones over {0}",
         ),
-        refines="damper-curve",
         first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
     ),
     ModelTerm(

@@ -112,7 +112,12 @@ class ModelSearch:
             Only these terms.
         """
         tracks = [SEPARATE_TRACKS] if self.structure.tracks_open and self.structure.tracks == "shared" else []
-        terms = [term for term in self.structure.open_terms if term not in self.structure.terms]
+        present = self.structure.terms
+        terms = [
+            term
+            for term in self.structure.open_terms
+            if term not in present and (not TERMS[term].refines or TERMS[term].refines in present)
+        ]
         return [term for term in (*tracks, *terms) if term in among]
 
     @property
@@ -129,8 +134,8 @@ class ModelSearch:
         return self.structure.with_terms((*self.structure.terms, *added), tracks)
 
     def without(self, term: str) -> ModelStructure:
-        """Return the structure without one of its terms."""
-        kept = tuple(other for other in self.structure.terms if other != term)
+        """Return the structure without one of its terms and what refines it."""
+        kept = tuple(other for other in self.structure.terms if term not in (other, TERMS[other].refines))
         return self.structure.with_terms(kept, "shared" if term == SEPARATE_TRACKS else None)
 
     def recorded(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> ModelSearch:

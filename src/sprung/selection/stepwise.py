@@ -84,9 +84,9 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
         _, scores = score_terms(search, terms)
         ratios = {
-            # Where a term that refines another is neutral it does nothing to first order: its score says nothing.
+            # Where a rounding is neutral it does nothing to first order: its score says nothing.
             term: np.inf
-            if TERMS[term].refines in search.structure.terms
+            if TERMS[term].refines and TERMS[term].first is not None
             else scores[term][0] / (search.required(term) * search.overdispersion)
             for term in terms
         }

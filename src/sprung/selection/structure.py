@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -14,6 +14,7 @@ from sprung.vehicle import (
     COORDINATES,
     EXTRAS,
     LINEAR_EXTRAS,
+    REFINED,
     CarriedAt,
     Element,
     Heights,
@@ -203,12 +204,9 @@ def choose_structure(
     wanted = campaign.model.extras if extras is None else extras
     is_soft = any(load.is_soft for load in campaign.loads)
     chosen_extras = (*(wanted or ()), *((SEAT_LOAD,) if is_soft and SEAT_LOAD not in (wanted or ()) else ()))
+    forbidden = campaign.model.forbid if extras is None else ()
     for extra in chosen_extras:
-        if extra not in EXTRAS:
-            do = did_you_mean(extra, EXTRAS)
-            problems.add(f"{where}: model.extras", f"'{extra}'", f"any of {', '.join(EXTRAS)}", do)
-        elif extra in campaign.model.forbid and extras is None:
-            problems.add(f"{where}: model", f"'{extra}' both wanted and forbidden", "one of the two", "Remove one.")
+        _check_extra(extra, chosen_extras, forbidden, where, problems)
 
     apart = [name for name in _SEPARATE if name in campaign.known]
     together = [name for name in _SHARED if name in campaign.known]
@@ -242,6 +240,25 @@ def choose_structure(
     undecided = tracks is None and campaign.model.tracks is None and not apart and not together
     # Where heights are known they say all that gravity does.
     said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.has_effect else ()))
+    said += tuple(extra for extra, refined in REFINED.items() if refined in said)
     free = tuple(extra for extra in EXTRAS if wanted is None and extra not in (*said, SEAT_LOAD))
     ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
     return ModelStructure(campaign, chosen, ordered, known, undecided, free)
+
+
+def _check_extra(
+    extra: str, chosen: Collection[str], forbidden: Collection[str], where: str, problems: Problems
+) -> None:
+    """Add what is wrong with an extra that is wanted, beside all others that are."""
+    if extra not in EXTRAS:
+        do = did_you_mean(extra, EXTRAS)
+        problems.add(f"{where}: model.extras", f"'{extra}'", f"any of {', '.join(EXTRAS)}", do)
+    elif REFINED.get(extra, extra) not in (extra, *chosen):
+        problems.add(
+            f"{where}: model.extras",
+            f"'{extra}' without '{REFINED[extra]}'",
+            "both: one is nothing without the other",
+            f"Add '{REFINED[extra]}', or remove '{extra}'.",
+        )
+    elif extra in forbidden:
+        problems.add(f"{where}: model", f"'{extra}' both wanted and forbidden", "one of the two", "Remove one.")

@@ -14,6 +14,7 @@ from sprung.vehicle.curves import FORCE_CURVES, CurveElements
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
+    REFINED,
     Element,
     LinearLaw,
     NonlinearElement,
@@ -75,6 +76,7 @@ __all__ = [
     "MOTION_RATIOS",
     "NEUTRAL",
     "PARAMETERS",
+    "REFINED",
     "SCHOOL_BUS",
     "SENSOR_DELAY",
     "SENSOR_GAIN",

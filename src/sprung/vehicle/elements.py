@@ -7,8 +7,9 @@ the paper, entry by entry and without its misprints.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Literal
 
 from sprung.display import shown
@@ -38,7 +39,8 @@ Origin = Literal["empty", "loaded", "weightless"]
 would be without gravity."""
 
 LINEAR_EXTRAS = (
-    "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount", "zener",
+    "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount",
+    "mount-damping", "zener",
     "twist", "bending", "occupants", "seat-load",
 )  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
@@ -48,6 +50,9 @@ EXTRAS = (
     "tyre-curve",
 )  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
+
+REFINED: Mapping[str, str] = MappingProxyType({"rounded-knee": "damper-curve", "mount-damping": "damper-mount"})
+"""Extras that are nothing without another one, and that other one."""
 
 
 @shown
@@ -295,7 +300,8 @@ def _basic_elements(tracks: Tracks, extras: Collection[str], wheelbase: float) -
         if "damper-mount" in extras:
             mount = travel(station, "damper") - kinematics.behind_mount(station)
             yield Element("spring", f"k_d{axle}", mount)
-            yield Element("damper", f"c_d{axle}", mount)
+            if "mount-damping" in extras:
+                yield Element("damper", f"c_d{axle}", mount)
         if "zener" in extras:
             branch = kinematics.behind_branch(station)
             yield Element("spring", f"k_z{axle}", travel(station, "spring") - branch)

@@ -239,7 +239,8 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "tyre-damping": ("c_tf", "c_tr"),
     "gravity": ("w_h",),
     "engine": ("m_e", "k_e", "c_e", "x_e"),
-    "damper-mount": ("k_df", "k_dr", "c_df", "c_dr"),
+    "damper-mount": ("k_df", "k_dr"),
+    "mount-damping": ("c_df", "c_dr"),
     "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
     "twist": ("I_w", "k_w", "c_w", "a_w"),
     "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
@@ -260,7 +261,7 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 """The parameters that each extra may add; see `parameters_of_term`."""
 
 _INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"}) | {
-    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_df", "c_dr", "c_l"
+    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_l"
 }  # fmt: skip
 """Parameters of extras without effect where the others of the extra are neutral."""
 

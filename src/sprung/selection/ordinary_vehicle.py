@@ -1,0 +1,121 @@
+"""An ordinary vehicle: usual values of every parameter and of every term, a start that does not depend on any fit.
+
+Where a model lacks much of what a vehicle has, its fit may end at a vehicle that nobody would recognise; from there no term
+that is missing is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import start_values
+from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import TERMS
+
+_SPREADS: Mapping[str, float] = {
+    "m_s": 1.15,
+    "I_yy": 1.4,
+    "I_xx": 1.7,
+    "m_u": 1.5,
+    "k_s": 1.8,
+    "k_t": 1.7,
+    "c_s": 2.0,
+    "a": 1.25,
+    "b": 1.25,
+    "t_": 1.2,
+}
+"""Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
+name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
+
+_ITERATIONS = 22
+"""Of a fit from an ordinary vehicle, at the most."""
+
+_HELD = 1.1
+"""Factor within which a parameter is held that means little where its term is small."""
+
+
+def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[str, UsualValue]]:
+    """Return an ordinary vehicle with the terms of a structure, each of its usual size.
+
+    Parameters
+    ----------
+    structure
+        The model.
+
+    Returns
+    -------
+    values
+        Parameters by name, SI.
+    usual
+        Usual values of all parameters that are not those of a load, with their spread.
+    """
+    own = usual_vehicle(VehicleSize.of(structure.known, structure.campaign.sensors))
+    plain = structure.with_terms(())
+    masses = {name: known.value for name, known in structure.known.items() if name in structure.names}
+    own = {name: own[name] for name in plain.names if name in own} | masses
+    values = start_values(structure, own)
+    for term in structure.terms:
+        usual_of = TERMS[term].usual
+        if usual_of is not None:
+            values |= {name: value for name, value in usual_of(own, structure).items() if name in values}
+    usual = {
+        name: UsualValue(values[name], spread)
+        for name in plain.names
+        for start, spread in _SPREADS.items()
+        if name.startswith(start)
+    }
+    return values, usual | usual_sizes(structure, values)
+
+
+def usual_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[str, UsualValue]:
+    """Return the usual values of the parameters of a structure's terms, where they are those of a vehicle's.
+
+    Parameters
+    ----------
+    structure
+        The model.
+    values
+        Parameters of a vehicle with terms of usual size, SI, by name.
+    """
+    return {
+        name: UsualValue(values[name], TERMS[term].spread)
+        for term in structure.terms
+        for name in TERMS[term].parameters(structure.tracks)
+        if values[name] > 0
+    }
+
+
+def held_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[str, UsualValue]:
+    """Return the usual values of parameters that mean little where their term is small, with a narrow spread.
+
+    Parameters
+    ----------
+    structure, values
+        As for `usual_sizes`.
+    """
+    held = tuple(TERMS[term].held for term in structure.terms if TERMS[term].held)
+    usual = usual_sizes(structure, values)
+    return {name: UsualValue(value, _HELD) for name, (value, _) in usual.items() if name.startswith(held)}
+
+
+def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) -> ModelSearch:
+    """Fit a linear structure from an ordinary vehicle that has its terms.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    structure
+        What is fitted.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    values, _ = ordinary_vehicle(structure)
+    models, sensors, known = structure.linear_models, structure.sensors, structure.known
+    fit = fit_linear(search.decays, models, sensors, known, start=values, enough=NEAR, most=_ITERATIONS)
+    return replace(search, structure=structure, fit=fit.after(search.fit))
