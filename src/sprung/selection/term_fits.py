@@ -166,5 +166,9 @@ def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    other = search.refit(replace(search.structure, gravity_leakage=True), most=_ITERATIONS_OF_SWITCH)
-    return other.refit(other.structure) if other.gain_over(search) > search.required_of_switch else search
+    # A fit that ended a standard error away gains by any further step.
+    same, other = (
+        search.refit(replace(search.structure, gravity_leakage=leaks), most=_ITERATIONS_OF_SWITCH, enough=NEAR)
+        for leaks in (False, True)
+    )
+    return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else same
