@@ -171,4 +171,4 @@ def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
         search.refit(replace(search.structure, gravity_leakage=leaks), most=_ITERATIONS_OF_SWITCH, enough=NEAR)
         for leaks in (False, True)
     )
-    return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else same
+    return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else search
