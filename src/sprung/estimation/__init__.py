@@ -2,6 +2,7 @@
 
 from sprung.estimation.characteristics import characteristics_of, estimate_quantity, rates_at_motion_ratios
 from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
 from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
@@ -12,7 +13,6 @@ from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
 from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
 from sprung.estimation.nonlinear_scores import score_nonlinear_terms
-from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
@@ -45,6 +45,7 @@ __all__ = [
     "USUAL_MOUNT",
     "USUAL_MOUNTING",
     "USUAL_RELAXATION",
+    "ClosedFormAt",
     "ClosedFormObjective",
     "Coordinates",
     "Correlation",
@@ -53,7 +54,6 @@ __all__ = [
     "FitResult",
     "FitStatistics",
     "ForceCurve",
-    "HasModalResponse",
     "Inflater",
     "ModeEstimate",
     "Mounting",

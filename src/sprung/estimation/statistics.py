@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
-from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay, Moments, pool_moments
@@ -258,12 +257,10 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     information, _, null_space = problem.system(optimum, inflation)
     eigenvalues, vectors = np.linalg.eigh(information)
     rounding = RANK * eigenvalues.max(initial=0.0)
-    if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
-        match optimum.at:
-            case HasModalResponse() as at:
-                basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
-                bias = basis.T @ at.noise_bias_of_information() @ basis
-                eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
-            case _:
-                pass  # a stepped motion follows its initial states: nothing is known of a bias
+    # A stepped motion follows its initial states: nothing is known of a bias.
+    modal = optimum.at.modal
+    if modal is not None and eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
+        basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
+        bias = basis.T @ modal.noise_bias_of_information() @ basis
+        eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
     return np.where(eigenvalues < rounding, 0.0, eigenvalues), null_space @ vectors
