@@ -176,7 +176,10 @@ class ClosedFormAt:
         return self._in_order(found)
 
     def motion(self, drop: int, before: int, after: int) -> Real:
-        """{X, Ẋ} of a drop from samples before its first to samples from it on, SI, shape (state, time)."""
+        """Return {X, Ẋ} of a drop, from `before` samples before its first to `after` samples from it on.
+
+        SI, shape (state, before + after).
+        """
         load, step = self._load(drop)
         poles, shapes = self.modes.poles[load], self.modes.right[load]
         amplitudes = self.modes.left[load] @ self.states[drop]
@@ -285,7 +288,7 @@ class ClosedFormAt:
         return self._gradient(both), self._information(both)
 
     def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
-        """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""
+        """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop, by its position."""
         load, _ = self._load(drop)
         batch, group = next(
             (i, group) for i, batch in enumerate(self.objective.batches) if (group := batch.find(drop)) is not None
