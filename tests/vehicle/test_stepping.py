@@ -30,6 +30,7 @@ from sprung.vehicle import (
     seven_degrees_of_freedom,
     stiffened_air_springs,
 )
+from sprung.vehicle.damper_curve import damper_curve
 from sprung.vehicle.force_laws import (
     AIR,
     BUMP_STOP,
@@ -39,7 +40,6 @@ from sprung.vehicle.force_laws import (
     REBOUND,
     ElementInput,
     ForceLaw,
-    damper_curve,
 )
 
 Array = NDArray[np.float64]

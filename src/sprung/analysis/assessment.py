@@ -43,6 +43,7 @@ from sprung.vehicle import (
     SENSOR_UNKNOWNS,
     Sensor,
     nonlinear_elements,
+    sensor_unknown,
     seven_degrees_of_freedom,
 )
 
@@ -113,18 +114,18 @@ def _sensor_estimates(fit: FitStatistics, sensors: Sequence[Sensor]) -> tuple[Se
     std = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
     found = []
     for sensor in sensors:
-        for kind in SENSOR_UNKNOWNS:
-            name = f"{kind.prefix}{sensor.channel}"
+        for quantity, unknown in SENSOR_UNKNOWNS.items():
+            name = sensor_unknown(quantity, sensor.channel)
             if name in fit.names:
                 at = fit.names.index(name)
                 found.append(
                     SensorEstimate(
                         channel=sensor.channel,
-                        quantity=kind.quantity,
+                        quantity=quantity,
                         value=float(fit.values[at]),
                         std=float(std[at]),
                         stated_std=sensor.uncertainties[name].std,
-                        unit=kind.unit,
+                        unit=unknown.unit,
                     )
                 )
     return tuple(found)

@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance
+from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance, parameter_of
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -146,7 +146,7 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) 
     Estimate
     """
     value, gradient = evaluate_quantity(name, fit.names, fit.values)
-    unit = DERIVED[name].unit if name in DERIVED else PARAMETERS[name].unit
+    unit = DERIVED[name].unit if name in DERIVED else parameter_of(name).unit
     if name in known and known[name].is_exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
@@ -172,12 +172,12 @@ def _scale(fit: FitStatistics) -> Scale:
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
-        if PARAMETERS[name].scales and not name.startswith(LOAD_MASS):
+        if parameter_of(name).scales and not name.startswith(LOAD_MASS):
             ratio = float(fit.values[i]) / total
             direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
             std = fit.spread(direction, fit.size(name) / total)
             if std is not None:
-                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[PARAMETERS[name].unit])
+                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[parameter_of(name).unit])
     return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)
 
 
@@ -186,7 +186,7 @@ def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tup
     found = []
     directions = fit.undetermined
     if directions.shape[1] and np.linalg.norm(directions.T @ scaling) > 0.999 * np.linalg.norm(scaling):
-        found.append(Unidentifiable(tuple(name for name in fit.names if PARAMETERS[name].scales), _SCALE))
+        found.append(Unidentifiable(tuple(name for name in fit.names if parameter_of(name).scales), _SCALE))
         unit = scaling / np.linalg.norm(scaling)
         left, size, _ = np.linalg.svd(directions - np.outer(unit, unit @ directions), full_matrices=False)
         directions = canonical_basis(left[:, size > 0.5])

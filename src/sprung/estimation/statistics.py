@@ -17,7 +17,7 @@ from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay, Moments, pool_moments
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, LinearModel, Sensor, is_of_sensor
+from sprung.vehicle import LinearModel, Sensor, is_of_sensor, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -111,7 +111,9 @@ class FitStatistics:
 
     def moved(self, step: Real) -> Real:
         """Return parameter values, SI, a step of the coordinates away, shape (parameter,)."""
-        logarithmic, scales = np.array([(PARAMETERS[name].positive, PARAMETERS[name].scales) for name in self.names]).T
+        logarithmic, scales = np.array(
+            [(parameter_of(name).positive, parameter_of(name).scales) for name in self.names]
+        ).T
         # What scales everything is taken apart: it multiplies those that are not fitted by their logarithms as well.
         alike = float(step @ self.scaling) / max(float(self.scaling @ self.scaling), np.finfo(float).tiny)
         rest = step - alike * self.scaling
@@ -143,14 +145,14 @@ class FitStatistics:
     @property
     def scaling(self) -> Real:
         """The direction of the coordinates in which every mass and rate grows alike, which no acceleration shows."""
-        scales = np.array([PARAMETERS[name].scales for name in self.names])
+        scales = np.array([parameter_of(name).scales for name in self.names])
         return np.where(scales, self.values / self.slopes, 0.0)
 
     def size(self, name: str) -> float:
         """Size of a parameter: its value, or, where that may be zero, what would matter beside others."""
         at = self.names.index(name)
         value = abs(float(self.values[at]))
-        return value if PARAMETERS[name].positive else max(value, abs(float(self.slopes[at])))
+        return value if parameter_of(name).positive else max(value, abs(float(self.slopes[at])))
 
     def spread(self, direction: Real, value: float) -> float | None:
         """Return the standard uncertainty of a function of the coordinates.

@@ -16,17 +16,14 @@ from numpy.typing import NDArray
 from sprung.estimation import ClosedFormAt, FitResult, lift_priors, score_added
 from sprung.selection import required_gain
 from sprung.vehicle import (
-    SENSOR_DELAY,
-    SENSOR_GAIN,
-    SENSOR_X,
-    SENSOR_Y,
     Heights,
     LinearModel,
     Load,
     Rows,
     Sensor,
-    SensorUnknown,
+    SensorQuantity,
     is_of_sensor,
+    sensor_unknown,
 )
 
 Real = NDArray[np.float64]
@@ -131,11 +128,11 @@ def score_faults(
     return tuple(sorted((*lifted.values(), *scores), key=lambda score: score.gain, reverse=True))
 
 
-_KINDS: Mapping[SensorUnknown, tuple[Kind, int]] = {
-    SENSOR_GAIN: ("gain", 0),
-    SENSOR_X: ("position", 0),
-    SENSOR_Y: ("position", 1),
-    SENSOR_DELAY: ("late", 0),
+_KINDS: Mapping[SensorQuantity, tuple[Kind, int]] = {
+    "gain": ("gain", 0),
+    "x": ("position", 0),
+    "y": ("position", 1),
+    "delay": ("late", 0),
 }
 """Faults that lie beyond what is stated of the unknowns of a sensor."""
 
@@ -149,8 +146,8 @@ def _lifted_scores(fit: FitResult, sensors: Sequence[Sensor]) -> Iterator[FaultS
     """
     lifts = lift_priors(fit, [name for name in fit.names if is_of_sensor(name)])
     for sensor in sensors:
-        for unknown, (kind, axis) in _KINDS.items():
-            if (lifted := lifts.get(f"{unknown.prefix}{sensor.channel}")) is not None:
+        for quantity, (kind, axis) in _KINDS.items():
+            if (lifted := lifts.get(sensor_unknown(quantity, sensor.channel))) is not None:
                 yield FaultScore(kind, sensor.channel, axis, 0, *lifted, uncertainties=len(lifts))
 
 
