@@ -54,7 +54,7 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
-from sprung.vehicle.segments import Prediction, integrate_near, segments_of
+from sprung.vehicle.segments import integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
@@ -104,7 +104,6 @@ __all__ = [
     "NotNegative",
     "Parameter",
     "Positive",
-    "Prediction",
     "Readout",
     "Row",
     "Rows",

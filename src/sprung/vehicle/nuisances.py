@@ -56,6 +56,10 @@ def sensor_unknown(quantity: SensorQuantity, channel: str) -> str:
         What is uncertain.
     channel
         The sensor's.
+
+    Returns
+    -------
+    str
     """
     return f"{quantity} of {channel}"
 
