@@ -9,7 +9,7 @@ from typing import TypeAlias
 from sprung.campaign import Campaign
 from sprung.errors import Fault
 from sprung.estimation import FitResult, FitStatistics
-from sprung.faults import Hypothesis, Isolated
+from sprung.faults import Hypothesis
 from sprung.preprocess import FreeDecay, Prepared
 from sprung.progress import Progress, silent
 from sprung.results import Result, TraceStep
@@ -102,7 +102,7 @@ class Analysis:
     clock_fit: FitResult | None = None
     requested: ModelStructure | None = None
     search: ModelSearch | None = None
-    isolated: tuple[FitResult, Isolated | None] | None = None
+    isolated: tuple[FitResult, tuple[Hypothesis, ...]] | None = None
     statistics: FitStatistics | None = None
     remarks: tuple[str, ...] = ()
     result: Result | None = None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
-from sprung.faults.isolation import CandidateFit
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Rows, Sensor, coordinates

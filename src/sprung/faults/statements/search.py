@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault, InputError, Problem
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.consistency import SIGNIFICANT
-from sprung.faults.isolation import FaultIsolation
 from sprung.faults.statements.cause import CommonCause
 from sprung.faults.statements.exchanged_axes import exchanged_axes
 from sprung.faults.statements.exchanged_sides import exchanged_sides
@@ -136,7 +136,7 @@ def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> Commo
     """Fit the campaign with each correction, and take the one with which the recordings are most likely."""
     fitted = []
     for one in explaining:
-        base = FaultIsolation.of(choose_structure(one.changed, "shared", ()), prepare(one.changed).decays).base
+        base = CandidateFit.of(choose_structure(one.changed, "shared", ()), prepare(one.changed).decays)
         samples = max(float(base.table.counts.sum()), 1.0)
         fitted.append((base.table.cost / samples, samples, base.fit.overdispersion, one))
     fitted.sort(key=lambda each: each[0])
