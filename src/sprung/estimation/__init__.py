@@ -5,7 +5,16 @@ from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
-from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
+from sprung.estimation.estimates import (
+    Correlation,
+    Scale,
+    Unidentifiable,
+    correlation_of,
+    estimate_of,
+    scale_of,
+    to_estimates,
+    unidentifiable_combinations,
+)
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
@@ -50,7 +59,6 @@ __all__ = [
     "Coordinates",
     "Correlation",
     "CurvePoint",
-    "Estimates",
     "FitResult",
     "FitStatistics",
     "ForceCurve",
@@ -68,6 +76,7 @@ __all__ = [
     "canonical_basis",
     "characteristics_of",
     "clear_of_splines",
+    "correlation_of",
     "escape_local_optimum",
     "estimate_of",
     "estimate_quantity",
@@ -84,6 +93,7 @@ __all__ = [
     "predictions",
     "profiled",
     "rates_at_motion_ratios",
+    "scale_of",
     "score_added",
     "score_linear_term",
     "score_linear_terms",
@@ -92,6 +102,7 @@ __all__ = [
     "shape_of",
     "to_estimates",
     "uncertainty_of",
+    "unidentifiable_combinations",
     "usual_rubber",
     "usual_vehicle",
     "wald_test",

@@ -90,31 +90,8 @@ class Correlation:
     matrix: tuple[tuple[float, ...], ...]
 
 
-@shown
-@dataclass(frozen=True)
-class Estimates:
-    """The estimates of the parameters.
-
-    Attributes
-    ----------
-    parameters
-        By name.
-    scale
-        The absolute scale, and ratios that do not need it.
-    unidentifiable
-        Combinations that the data do not determine.
-    correlation
-        Of the estimated parameters.
-    """
-
-    parameters: dict[str, Estimate]
-    scale: Scale
-    unidentifiable: tuple[Unidentifiable, ...]
-    correlation: Correlation
-
-
-def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimates:
-    """Return the estimates of all parameters, their correlation, and the combinations that are unidentifiable.
+def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> dict[str, Estimate]:
+    """Return the estimates of all parameters of the vehicle.
 
     Parameters
     ----------
@@ -125,10 +102,10 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimat
 
     Returns
     -------
-    Estimates
+    dict
+        By name.
     """
-    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not is_nuisance(name)}
-    return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
+    return {name: estimate_of(fit, known, name) for name in fit.names if not is_nuisance(name)}
 
 
 def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> Estimate:
@@ -167,7 +144,18 @@ def _interval(name: str, value: float, std: float) -> tuple[float, float]:
     return value - NORMAL_95 * std, value + NORMAL_95 * std
 
 
-def _scale(fit: FitStatistics) -> Scale:
+def scale_of(fit: FitStatistics) -> Scale:
+    """Return whether the absolute scale is determined, and ratios that do not need it.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+
+    Returns
+    -------
+    Scale
+    """
     total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
@@ -181,7 +169,20 @@ def _scale(fit: FitStatistics) -> Scale:
     return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)
 
 
-def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
+def unidentifiable_combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
+    """Return the combinations of parameters that the data do not determine.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    parameters
+        Its estimates.
+
+    Returns
+    -------
+    tuple of Unidentifiable
+    """
     scaling = fit.scaling
     found = []
     directions = fit.undetermined
@@ -216,7 +217,20 @@ def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tup
     return tuple(found)
 
 
-def _correlation(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Correlation:
+def correlation_of(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Correlation:
+    """Return the correlation of the estimated parameters.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    parameters
+        Its estimates.
+
+    Returns
+    -------
+    Correlation
+    """
     chosen = [i for i, name in enumerate(fit.names) if name in parameters and parameters[name].status == "estimated"]
     covariance = fit.covariance[np.ix_(chosen, chosen)]
     spread = np.sqrt(np.diag(covariance))
