@@ -17,8 +17,8 @@ from sprung.estimation import MOST_STEPS, NEAR, FitResult, fit_linear
 from sprung.faults.consistency import score_faults_of
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
-from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
-from sprung.preprocess import FreeDecay, prepare
+from sprung.faults.residual_table import ResidualTable, reference_noise, residual_table
+from sprung.preprocess import FreeDecay, SensorNoise, prepare
 from sprung.selection import ModelStructure, choose_structure
 from sprung.vehicle import LinearModel
 
@@ -59,7 +59,7 @@ class CandidateFit:
     decays: tuple[FreeDecay, ...]
     fit: FitResult
     table: ResidualTable
-    noise: ReferenceNoise
+    noise: SensorNoise
 
     @classmethod
     def of(cls, structure: ModelStructure, decays: Sequence[FreeDecay], fit: FitResult | None = None) -> CandidateFit:
@@ -176,7 +176,9 @@ class CandidateFit:
         start = self.fit if start is None and structure.needs_start else start
         candidate = _candidate(structure, self.recordings, decays, _fitted(structure, decays, start, most))
         is_same = correction.samples is None and not correction.corners
-        noise = self.noise if is_same else candidate.noise.of_present(candidate.table, self.noise)
+        noise = (
+            self.noise if is_same else candidate.noise.where(np.asarray(candidate.table.counts.any(axis=0)), self.noise)
+        )
         return replace(candidate, noise=noise)
 
 

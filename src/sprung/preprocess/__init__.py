@@ -11,7 +11,7 @@ from sprung.preprocess.high_pass import differentiate_by_cutoff, is_ac_coupled
 from sprung.preprocess.landing import find_steepest_rise
 from sprung.preprocess.prepare import Prepared, exclude_drops, prepare
 from sprung.preprocess.release import Release, StaticBaseline, detect_release, unknown_baseline
-from sprung.preprocess.sensor_noise import Moments, estimate_sensor_noise, pool_moments
+from sprung.preprocess.sensor_noise import Moments, SensorNoise, estimate_sensor_noise, pool_moments
 from sprung.preprocess.slow_motion import extract_slow_motion, find_slower_drops
 
 __all__ = [
@@ -28,6 +28,7 @@ __all__ = [
     "Moments",
     "Prepared",
     "Release",
+    "SensorNoise",
     "StaticBaseline",
     "align_loggers",
     "detect_dropped_channels",
