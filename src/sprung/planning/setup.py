@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints
-from sprung.preprocess import FreeDecay, unknown_baseline
+from sprung.preprocess import FreeDecay, unknown_release
 from sprung.simulation import drop_from_blocks
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
@@ -212,7 +212,7 @@ class MeasurementSetup:
             earlier=np.zeros((len(rows), 0)),
             rate=rate,
             start=first / rate,
-            rest=unknown_baseline(len(rows)),
+            rest=unknown_release(len(rows)),
         )
 
 
