@@ -45,9 +45,9 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     term, share = _explaining_term(run) if consistency == "misfit" else (None, 0.0)
     if share > _MOST:
         why = f"{_STEPS} steps with it explain {100 * share:.0f} % of the misfit"
-        return run.noted("isolate_evident_faults", f"{term} is tried first", why)
+        return replace(run, first_term=term).noted("isolate_evident_faults", f"{term} is tried first", why)
     run = _with_isolated(run, consistency, progress)
-    found = _found(run)
+    found = run.found
     if found is None or not found.is_explained:
         return run
     if any(one.remedy == "named" or not one.is_specific for one in found.hypotheses):
@@ -58,7 +58,7 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
-    found = _found(run)
+    found = run.found
     if found is None or not found.hypotheses:
         return run
     named = tuple(one.fault for one in found.hypotheses if one.remedy == "named")
@@ -95,11 +95,6 @@ def _explaining_term(run: Analysis) -> tuple[str | None, float]:
     table, noise = residual_table(recordings, run.decays, run.fit), reference_noise(run.decays, run.fit)
     gain = table.cost - residual_table(recordings, run.decays, fit).cost
     return term, gain / max(table.explicable(noise), 1.0)
-
-
-def _found(run: Analysis) -> Isolated | None:
-    """Return what was isolated in the present fit."""
-    return run.isolated[1] if run.isolated is not None and run.isolated[0] is run.fit else None
 
 
 def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Progress) -> Analysis:

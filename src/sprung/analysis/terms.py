@@ -7,16 +7,21 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body
+from sprung.selection import TERMS, ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body, try_term
 from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
 
 
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
-    """Select the terms that the matrices M, C and K hold."""
+    """Select the terms that the matrices M, C and K hold; first the one that explains much of the misfit, if there is one."""
     before = run.model
-    search = select_linear(select_flexible_body(replace(before, progress=progress)))
+    search = replace(before, progress=progress)
+    if run.first_term is not None and not TERMS[run.first_term].explains_all:
+        search = try_term(search, run.first_term)
+    search = select_flexible_body(search)
+    if search.fit is not before.fit or not has_flexible_body(run):
+        search = select_linear(search)
     if search.structure.names != before.structure.names:
         search = from_contact(search)
     return _with_search(run, before, search, "select_linear_terms")
@@ -40,6 +45,8 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     before, requested = replace(run.model, progress=progress), run.requested
     if requested is not None and requested.is_nonlinear:
         search = fit_forced_terms(before, requested)
+    elif has_flexible_body(run):
+        search = before
     else:
         wanted, _ = structures(run)
         found, plain = before.structure, wanted.with_terms(wanted.linear_terms)
@@ -50,6 +57,11 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     if search.structure.is_nonlinear:
         search = from_contact(search)
     return _with_search(run, run.model, search, "select_nonlinear_terms")
+
+
+def has_flexible_body(run: Analysis) -> bool:
+    """Whether nothing but a flexible body explains what the present fit leaves, so that no further term is to be tried."""
+    return run.found is not None and run.found.is_flexible_body
 
 
 def _with_search(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:

@@ -45,11 +45,14 @@ class Isolated:
         Whether the residuals are noise alone once they are corrected.
     fits
         How many fits were made.
+    is_flexible_body
+        Whether the body twists: no model term but that of a flexible body can explain what is left.
     """
 
     hypotheses: tuple[Hypothesis, ...]
     is_explained: bool
     fits: int
+    is_flexible_body: bool = False
 
 
 def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
@@ -85,7 +88,7 @@ def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
         fault = torsion_test(first)
         if fault is not None:
             named = Hypothesis(fault, "named", Correction(), first.base.table, first.base)
-            return Isolated((named,), False, fits)
+            return Isolated((named,), False, fits, is_flexible_body=True)
     explained = bool(hypotheses) and hypotheses[-1].candidate.is_explained
     return Isolated(hypotheses, explained, fits)
 
@@ -104,14 +107,19 @@ def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple
     best, fits = _wrong_statement(isolation)
     if best is not None:
         return best, fits
+    is_near = isolation.base.is_explained
     ranked = [*_by_scores(isolation), *load_position(isolation), *high_passes(isolation)]
-    # Where the fit is far away, score tests are not to be trusted: only what explains everything counts.
-    best, ranked, more = _confirm_best(isolation, ranked, _MOST_FITS if isolation.base.is_explained else 1)
-    fits += more
-    if best is not None and (isolation.base.is_explained or best.candidate.is_explained):
-        return _with_rival(isolation, best, ranked), fits
+    deletions = () if is_near else _deletions(isolation, progress)
+    limit = deletions[0].limit.cost if deletions else np.inf
+    # Where the fit is far away, score tests are not to be trusted: only what explains everything counts, and more than any
+    # channel or drop would that is left out.
+    if is_near or min((one.score() for one in ranked), default=np.inf) < limit:
+        best, ranked, more = _confirm_best(isolation, ranked, _MOST_FITS if is_near else 1)
+        fits += more
+        if best is not None and (is_near or best.candidate.is_explained):
+            return _with_rival(isolation, best, ranked), fits
     best = None
-    for hypotheses, made in _groups(isolation, progress):
+    for hypotheses, made in _groups(isolation, deletions, progress):
         other, ranked, more = _confirm_best(isolation, [*ranked, *hypotheses])
         fits += made + more
         if other is not None and (best is None or other.score() < best.score()):
@@ -122,18 +130,17 @@ def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple
     return (None if best is None else _with_rival(isolation, best, ranked)), fits
 
 
-def _groups(isolation: FaultIsolation, progress: Progress) -> Iterator[tuple[list[Hypothesis], int]]:
+def _groups(
+    isolation: FaultIsolation, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
+) -> Iterator[tuple[list[Hypothesis], int]]:
     """Yield hypotheses about single channels and drops, and those about exchanged ones; and how many fits each group took.
 
     The group that is predicted to explain the recordings better comes first. Nothing that is exchanged is a small fault.
     """
-    base = isolation.base
-    progress(Step("leaving out each channel and each drop"))
-    deletions = _deletions(isolation)
-    if base.is_explained:
-        yield _of_parts(isolation, deletions, progress)
+    if isolation.base.is_explained:
+        yield _of_parts(isolation, _deletions(isolation, progress), progress)
         return
-    limit = deletions[0].limit if deletions else base.table
+    limit = deletions[0].limit if deletions else isolation.base.table
     is_alone = limit.is_explained(isolation.noise)
     if is_alone:
         yield _of_parts(isolation, deletions, progress)
@@ -142,7 +149,8 @@ def _groups(isolation: FaultIsolation, progress: Progress) -> Iterator[tuple[lis
     is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
     if is_likelier or is_alone:
         yield exchanges, 0
-    if not is_alone:
+    # Where the body twists, each of its sensors contradicts the others: no part is to be examined.
+    if not is_alone and torsion_test(isolation) is None:
         yield _of_parts(isolation, deletions, progress)
     if not (is_likelier or is_alone):
         yield exchanges, 0
@@ -185,8 +193,9 @@ def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
     return hypotheses
 
 
-def _deletions(isolation: FaultIsolation) -> list[ChannelDeletion | DropDeletion]:
+def _deletions(isolation: FaultIsolation, progress: Progress) -> list[ChannelDeletion | DropDeletion]:
     """Return each channel and each drop left out, by a few steps; first the one whose deletion gains most."""
+    progress(Step("leaving out each channel and each drop"))
     table = isolation.base.table
     channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
     deletions: list[ChannelDeletion | DropDeletion] = []
@@ -202,16 +211,20 @@ def _of_parts(
     isolation: FaultIsolation, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
 ) -> tuple[list[Hypothesis], int]:
     """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
-    gains = [isolation.base.table.cost - deletion.limit.cost for deletion in deletions]
+    base = isolation.base
+    gains = [base.table.cost - deletion.limit.cost for deletion in deletions]
     hypotheses: list[Hypothesis] = []
-    fits = 0
+    fits, is_found = 0, False
     for gain, deletion in list(zip(gains, deletions, strict=True))[:_MOST_PARTS]:
-        is_found = any(one.is_specific and one.is_explained for one in hypotheses)
         if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * gains[0]):
             break
         progress(Step(f"fitting without {deletion.name}"))
-        hypotheses += replace(deletion, candidate=isolation.fit(deletion.correction)).hypotheses()
+        candidate = isolation.fit(deletion.correction)
+        hypotheses += replace(deletion, candidate=candidate).hypotheses()
         fits += 1
+        # Once it is known what, left out, leaves noise alone, only what was expected to gain as much is another cause.
+        is_named = any(one.is_specific and one.is_explained for one in hypotheses)
+        is_found = is_named if base.is_explained else is_found or candidate.is_explained
     return hypotheses, fits
 
 

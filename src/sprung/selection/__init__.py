@@ -11,7 +11,7 @@ from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
-from sprung.selection.stepwise import select_linear_terms
+from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.selection.term_fits import (
     fit_forced_terms,
@@ -49,4 +49,5 @@ __all__ = [
     "select_linear_terms",
     "select_nonlinear_terms",
     "select_roll_axis_height",
+    "try_term",
 ]
