@@ -64,11 +64,18 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
     smaller = larger
     for term in larger.selected:
         smaller = smaller if term in needed else replace(smaller, structure=smaller.without(term))
-    decays = run.prepared.decays
+    decays = _begun_as(candidate.decays, run.prepared.decays)
     fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
     near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
     run = settle_corrections(replace(run, search=near.recorded(needed, fitted=True, taken=True)))
     return converged(run, progress)
+
+
+def _begun_as(fitted: Sequence[FreeDecay], decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
+    """Let decays begin no earlier than those that a correction explains: the contact of the tyres then moves them back."""
+    starts = {decay.file: decay.start for decay in fitted}
+    shifts = [max(round((starts.get(decay.file, decay.start) - decay.start) * decay.rate), 0) for decay in decays]
+    return tuple(decay.shifted(shift) for decay, shift in zip(decays, shifts, strict=True))
 
 
 def converged(run: Analysis, progress: Progress) -> Analysis:

@@ -13,13 +13,21 @@ from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
 
 
+def select_first_term(run: Analysis, progress: Progress) -> Analysis:
+    """Try the term that explains much of the misfit, if there is one; a body that is flexible is looked for otherwise."""
+    before, term = run.model, run.first_term
+    if term is None or TERMS[term].explains_all:
+        return run
+    search = try_term(replace(before, progress=progress), term)
+    if search.structure.names != before.structure.names:
+        search = from_contact(search)
+    return _with_search(replace(run, first_term=None), before, search, "select_first_term")
+
+
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
-    """Select the terms that the matrices M, C and K hold; first the one that explains much of the misfit, if there is one."""
+    """Select the terms that the matrices M, C and K hold."""
     before = run.model
-    search = replace(before, progress=progress)
-    if run.first_term is not None and not TERMS[run.first_term].explains_all:
-        search = try_term(search, run.first_term)
-    search = select_flexible_body(search)
+    search = select_flexible_body(replace(before, progress=progress))
     if search.fit is not before.fit or not has_flexible_body(run):
         search = select_linear(search)
     if search.structure.names != before.structure.names:
@@ -66,7 +74,7 @@ def has_flexible_body(run: Analysis) -> bool:
 
 def _with_search(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:
     steps = search.steps[len(before.steps) :]
-    fits = sum(step.fitted for step in steps) + (search.structure.names != before.structure.names)
+    fits = sum(step.fitted and not step.joint for step in steps) + (search.structure.names != before.structure.names)
     run = replace(run, search=search, fits=run.fits + fits)
     for step in steps:
         run = run.noted(stage, f"{step.extra}: {_outcome(step)}", step.text)

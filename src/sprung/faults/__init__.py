@@ -6,7 +6,7 @@ fitted, and none is accepted on suspicion: it has to explain the recordings, bey
 well.
 """
 
-from sprung.faults.consistency import Consistency, consistency_of, score_faults_of
+from sprung.faults.consistency import Consistency, consistency_of, largest_expected_gain, score_faults_of
 from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import Isolated, isolate
@@ -24,6 +24,7 @@ __all__ = [
     "detect_drift",
     "examine",
     "isolate",
+    "largest_expected_gain",
     "reference_noise",
     "residual_table",
     "score_faults_of",

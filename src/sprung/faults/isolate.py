@@ -268,7 +268,9 @@ def _confirm_best(
 def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
     """Whether a fit of a hypothesis may be convincing, by what it predicts."""
     base = isolation.base
-    gain = base.table.cost - hypothesis.score()
+    # Of residuals that are noise alone, coloured noise is what a small fault has to stand out from.
+    overdispersion = base.fit.overdispersion if base.is_explained else 1.0
+    gain = base.table.inflated_cost(overdispersion) - hypothesis.score(overdispersion)
     explains = base.is_explained or hypothesis.is_beyond_prior or gain > (1 - _FEW) * base.misfit
     return hypothesis.is_specific and not hypothesis.is_fitted and explains and gain > hypothesis.required
 
