@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import dct
 from scipy.stats import f as fisher
 
 from sprung.errors import Fault
@@ -76,10 +76,17 @@ def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Rea
     """Return the mean power, (m/s²)², of the residuals: slowest half periods, and faster ones; shape (channel,) each."""
     slow = fast = drops = np.zeros(len(decays[0].values))
     for record in optimum.residuals:
-        power = np.nan_to_num(dct(record, norm="ortho")[:, 1 : _LAST + 1]) ** 2
+        power = np.nan_to_num(record @ _cosines(record.shape[1])) ** 2
         slow, fast = slow + power[:, :_SLOWEST].mean(axis=1), fast + power[:, _FIRST:].mean(axis=1)
         drops = drops + ~np.isnan(record[:, 0])
     return slow / np.maximum(drops, 1), fast / np.maximum(drops, 1)
+
+
+@lru_cache(maxsize=64)
+def _cosines(samples: int) -> Real:
+    """Return the first cosines of the cosine transform after the constant one, orthonormal, shape (time, half periods)."""
+    phase = np.pi * (np.arange(samples) + 0.5) / samples
+    return np.sqrt(2 / samples) * np.cos(np.outer(phase, np.arange(1, _LAST + 1)))
 
 
 def _size(decays: Sequence[FreeDecay], power: float) -> float:

@@ -118,6 +118,11 @@ class Hypothesis:
         free = 0 if self.is_beyond_prior else self.free
         return cost - gain + free * float(np.log(max(self.table.counts.sum(), 1.0)))
 
+    def overlaps(self, other: Hypothesis) -> bool:
+        """Whether two hypotheses are about a common drop or channel."""
+        own, others = (set(each.fault.where.replace(": ", ", ").split(", ")) for each in (self, other))
+        return bool(own & others)
+
     def concerns_same(self, other: Hypothesis) -> bool:
         """Whether two hypotheses are about the same place, or one is among several of which the other says the same."""
         if self.fault.where == other.fault.where:

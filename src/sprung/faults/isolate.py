@@ -18,6 +18,7 @@ from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
 from sprung.faults.isolation import FaultIsolation
 from sprung.progress import Progress, Step, silent
+from sprung.selection import WORTH_A_FIT
 
 _FEW = 0.85
 """Share of a misfit that a first fault may leave while a second one is looked for."""
@@ -77,6 +78,9 @@ def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
         fits += more
         if best is None or (not best.is_specific and any(not one.is_specific for one in accepted)):
             break
+        if not best.is_specific and best.candidate.is_explained and any(one.overlaps(best) for one in accepted):
+            # What is left at the place of a correction may be gone once the recordings are corrected and preprocessed again.
+            return Isolated(tuple(accepted), True, fits)
         accepted.append(best)
         if best.candidate.is_explained or best.candidate.misfit < SHARE * first.base.misfit:
             sufficient = len(accepted)
@@ -268,11 +272,13 @@ def _confirm_best(
 def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
     """Whether a fit of a hypothesis may be convincing, by what it predicts."""
     base = isolation.base
-    # Of residuals that are noise alone, coloured noise is what a small fault has to stand out from.
-    overdispersion = base.fit.overdispersion if base.is_explained else 1.0
-    gain = base.table.inflated_cost(overdispersion) - hypothesis.score(overdispersion)
+    gain = base.table.cost - hypothesis.score()
+    # Where what is left is noise, a small fault has to stand out from its colour, as far as its score may understate it.
+    expected = WORTH_A_FIT * gain / base.fit.overdispersion if base.is_explained else gain
     explains = base.is_explained or hypothesis.is_beyond_prior or gain > (1 - _FEW) * base.misfit
-    return hypothesis.is_specific and not hypothesis.is_fitted and explains and gain > hypothesis.required
+    return (
+        hypothesis.is_specific and not hypothesis.is_fitted and explains and min(gain, expected) > hypothesis.required
+    )
 
 
 def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:

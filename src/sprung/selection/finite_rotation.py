@@ -103,9 +103,10 @@ def _loses_much(search: ModelSearch, assumption: _Assumption) -> bool:
     thin, part = thinned(search.decays, _RATE, np.inf)
     if part > _PART:
         return False
-    before = replace(search, decays=thin).refit(search.structure, most=1)
-    after = _corrected(before, thin, assumption, passes=1, most=_FIRST_ITERATIONS)
-    return 2 * (after.fit.loglikelihood - before.fit.loglikelihood) < -search.required_of_switch
+    before = replace(search, decays=thin).refit(search.structure, most=0)
+    after = _corrected(before, thin, assumption, passes=1, most=0)
+    expected = [2 * one.fit.loglikelihood + one.fit.remaining_gain for one in (before, after)]
+    return expected[1] - expected[0] < -search.required_of_switch
 
 
 def _corrected(
@@ -130,19 +131,21 @@ def _corrected(
     sensors = search.structure.campaign.sensors
     for _ in range(passes):
         fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
-        decays = []
-        for drop, decay in enumerate(recorded):
+        decays = list(recorded)
+        for load, rate in dict.fromkeys((decay.load, decay.rate) for decay in recorded):
+            drops = [drop for drop, decay in enumerate(recorded) if (decay.load, decay.rate) == (load, rate)]
             readings = second_order_readings(
-                structure.linear_models[decay.load],
+                structure.linear_models[load],
                 structure.tracks,
-                structure.heights_of(decay.load),
-                loads[decay.load],
+                structure.heights_of(load),
+                loads[load],
                 sensors,
                 fit.values[: len(structure.names)],  # without what was found of the sensors
-                fit.motion(drop, 0, decay.samples),
-                1 / decay.rate,
+                [fit.motion(drop, 0, recorded[drop].samples) for drop in drops],
+                1 / rate,
             )
-            decays.append(replace(decay, values=decay.values - readings))
+            for drop, reading in zip(drops, readings, strict=True):
+                decays[drop] = replace(recorded[drop], values=recorded[drop].values - reading)
         fitted = fit_structure(structure, decays, fit, NEAR, search.progress, most=most)
         search = replace(search, structure=structure, fit=fitted, decays=tuple(decays))
     return search
