@@ -86,7 +86,8 @@ def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Rea
 def _cosines(samples: int) -> Real:
     """Return the first cosines of the cosine transform after the constant one, orthonormal, shape (time, half periods)."""
     phase = np.pi * (np.arange(samples) + 0.5) / samples
-    return np.sqrt(2 / samples) * np.cos(np.outer(phase, np.arange(1, _LAST + 1)))
+    cosines: Real = np.sqrt(2 / samples) * np.cos(np.outer(phase, np.arange(1, _LAST + 1)))
+    return cosines
 
 
 def _size(decays: Sequence[FreeDecay], power: float) -> float:

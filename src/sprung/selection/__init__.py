@@ -4,10 +4,10 @@ from sprung.selection.backward_elimination import leave_out_refused, needed_term
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
+from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
-from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure

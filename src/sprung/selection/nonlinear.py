@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
-from sprung.selection.linear_terms import ENGINE
 from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
+from sprung.selection.linear_terms import ENGINE
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, select_further_terms, try_term
