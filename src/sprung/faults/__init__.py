@@ -11,7 +11,7 @@ from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import Isolated, isolate
 from sprung.faults.isolation import FaultIsolation, decays_without_wheel_sensors
-from sprung.faults.residual_table import reference_noise, residual_table
+from sprung.faults.residual_table import is_explained, reference_noise, residual_table
 from sprung.faults.statements.search import examine
 
 __all__ = [
@@ -23,6 +23,7 @@ __all__ = [
     "decays_without_wheel_sensors",
     "detect_drift",
     "examine",
+    "is_explained",
     "isolate",
     "largest_expected_gain",
     "reference_noise",

@@ -11,7 +11,7 @@ from scipy.stats import f as fisher
 
 from sprung.errors import Fault
 from sprung.estimation import FitResult
-from sprung.faults.residual_table import reference_noise, residual_table
+from sprung.faults.residual_table import is_explained
 from sprung.preprocess import FreeDecay, quantisation_variance
 from sprung.vehicle import Sensor
 
@@ -52,9 +52,7 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
     The power of the slowest half periods of the residuals (by a cosine transform, in which white noise is spread evenly) over
     that of those between the body's modes and the wheels' follows Fisher's distribution in noise that has no drift.
     """
-    if not residual_table([decay.file for decay in decays], decays, optimum).is_explained(
-        reference_noise(decays, optimum)
-    ):
+    if not is_explained(decays, optimum):
         return ()
     slow, fast = slowness(decays, optimum)
     fast = np.maximum(fast, quantisation_variance(decays))
