@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import sprung
 from sprung.planning import CramerRaoBound, MeasurementSetup, PlannedDrop, PlannedTest
 from sprung.uncertainty import NORMAL_95, KnownValue
-from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity
+from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -236,7 +236,7 @@ def _bound(case: Case, used: tuple[int, ...]) -> Real:
     gradients = np.eye(len(setup.names))
     if not case.scaled:
         total, gradient = evaluate_quantity("total_mass", setup.names, setup.values)
-        scales = np.array([PARAMETERS[name].scales for name in setup.names])
+        scales = np.array([parameter_of(name).scales for name in setup.names])
         gradients[scales] -= gradient * setup.slopes / total
     spread: Real = np.sqrt(np.einsum("ij,jk,ik->i", gradients, covariance, gradients))
     return spread

@@ -150,56 +150,50 @@ class Problems:
             raise InputError(self._problems)
 
 
-class Omissions:
-    """Collection of optional parts of a report, such as figures, that could not be made.
+@contextmanager
+def record_failure(
+    omissions: list[str], what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()
+) -> Iterator[None]:
+    """Add a sentence, once, if an optional part of a report, such as a figure, raises an error; and continue after it.
+
+    Parameters
+    ----------
+    omissions
+        A sentence for each part that could not be made, to which it is added.
+    what
+        The part, as the subject of the sentence.
+    done
+        What could not be done, as a participle.
+    unless
+        Errors that are raised.
+
+    Yields
+    ------
+    None
+        The block that makes the part runs here.
 
     Examples
     --------
-    >>> omissions = Omissions()
-    >>> with omissions.record_failure("The stabilisation diagram"):
+    >>> omissions = []
+    >>> with record_failure(omissions, "The stabilisation diagram"):
     ...     raise ValueError("no poles")
-    >>> omissions.sentences
-    ('The stabilisation diagram could not be drawn: no poles (ValueError).',)
+    >>> omissions
+    ['The stabilisation diagram could not be drawn: no poles (ValueError).']
     """
-
-    def __init__(self, sentences: Iterable[str] = ()) -> None:
-        self._sentences = dict.fromkeys(sentences)
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """A sentence for each missing part, with the reason."""
-        return tuple(self._sentences)
-
-    def add(self, sentences: Iterable[str]) -> None:
-        """Add sentences, each once."""
-        self._sentences |= dict.fromkeys(sentences)
-
-    @contextmanager
-    def record_failure(
-        self, what: str, done: str = "drawn", unless: tuple[type[Exception], ...] = ()
-    ) -> Iterator[None]:
-        """Add a sentence if the block raises an error, and continue after it.
-
-        Parameters
-        ----------
-        what
-            The part, as the subject of the sentence.
-        done
-            What could not be done, as a participle.
-        unless
-            Errors that are raised.
-        """
-        try:
-            yield
-        except unless:
-            raise
-        except InputError as error:
-            reasons = "; ".join(f"{problem.found}. {problem.do}" for problem in error.problems)
-            self._sentences[f"{what} could not be {done}: {reasons}"] = None
-        except Exception as error:  # noqa: BLE001 (no error of an optional part may prevent the result)
-            reason = " ".join(str(error).split())
-            kind = type(error).__name__
-            self._sentences[f"{what} could not be {done}: {f'{reason} ({kind})' if reason else kind}."] = None
+    try:
+        yield
+        return
+    except unless:
+        raise
+    except InputError as error:
+        reasons = "; ".join(f"{problem.found}. {problem.do}" for problem in error.problems)
+        sentence = f"{what} could not be {done}: {reasons}"
+    except Exception as error:  # noqa: BLE001 (no error of an optional part may prevent the result)
+        reason = " ".join(str(error).split())
+        kind = type(error).__name__
+        sentence = f"{what} could not be {done}: {f'{reason} ({kind})' if reason else kind}."
+    if sentence not in omissions:
+        omissions.append(sentence)
 
 
 def did_you_mean(word: str, allowed: Iterable[str]) -> str:

@@ -83,10 +83,10 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
     found = find_flights(prepared.decays, prepared.observations)
     for one, decay, seen in zip(found, prepared.decays, prepared.observations, strict=True):
         assert one is not None
-        assert one.decay.events.why_fit == FROM_RELEASE
-        assert one.decay.end == pytest.approx(decay.end)
-        np.testing.assert_array_equal(one.decay.values, seen.recording.values[:, -one.decay.samples :])
-        assert one.since == pytest.approx(0.012)
+        assert one.events.why_fit == FROM_RELEASE
+        assert one.end == pytest.approx(decay.end)
+        np.testing.assert_array_equal(one.values, seen.recording.values[:, -one.samples :])
+        assert one.start - (one.events.release or 0.0) == pytest.approx(0.012)
     started = [replace(drop, start=0.6) for drop in campaign.drops]
     prepared = prepare(replace(campaign, drops=tuple(started)))
     assert find_flights(prepared.decays, prepared.observations) == [None] * 3

@@ -29,7 +29,7 @@ def judged(made: Campaign) -> Verdict:
     return decide_verdict(
         fit,
         estimate_model_error(fit.residual_moments, decays),
-        to_estimates(fit, choice.known).parameters,
+        to_estimates(fit, choice.known),
         channels,
         (),
         drops,

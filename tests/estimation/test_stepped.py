@@ -18,7 +18,6 @@ from sprung.estimation import (
     score_stepped_terms,
     wald_test,
 )
-from sprung.estimation.objective import HasWindows
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -179,7 +178,7 @@ def test_windows_of_time_add_up(decays: tuple[FreeDecay, ...], plain: ModelStruc
         states=optimum.states,
     )
     at = found.iterate.at
-    assert isinstance(at, HasWindows)
+    assert at.by_window is not None
     gradients, informations = at.by_window
     scale = np.sqrt(np.diag(at.information))
     np.testing.assert_allclose(gradients.sum(axis=0) / scale, at.gradient / scale, atol=0.05)

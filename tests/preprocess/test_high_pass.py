@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sprung.campaign import Campaign
-from sprung.preprocess import FreeDecay, differentiate_by_cutoff, is_ac_coupled, prepare, unknown_baseline
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff, is_ac_coupled, prepare, unknown_release
 from sprung.simulation import simulate
 from sprung.vehicle import TABLE_1_CAR
 
@@ -53,6 +53,6 @@ def test_a_sensor_that_feels_gravity_is_not_coupled() -> None:
 
 def test_without_a_rest_nobody_knows() -> None:
     for one in decays(None):
-        blind = replace(one, rest=unknown_baseline(len(one.values)))
+        blind = replace(one, rest=unknown_release(len(one.values)))
         assert not is_ac_coupled(blind).any()
         assert not differentiate_by_cutoff(blind).any()

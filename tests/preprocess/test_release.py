@@ -22,8 +22,8 @@ def test_release_is_found_to_the_sample(vehicle: Vehicle, noise: float, rest: fl
         found = detect_release(recording.values, recording.rate)
         assert found is not None
         assert found.sample / recording.rate == pytest.approx(rest, abs=1.5 / recording.rate)
-        np.testing.assert_allclose(found.rest.level, 9.80665, atol=0.02 + noise)
-        np.testing.assert_allclose(found.rest.noise.std(axis=1), noise, atol=0.25 * noise + 1e-9)
+        np.testing.assert_allclose(found.level, 9.80665, atol=0.02 + noise)
+        np.testing.assert_allclose(found.noise.std(axis=1), noise, atol=0.25 * noise + 1e-9)
 
 
 def test_creep_on_the_blocks_is_not_noise() -> None:
@@ -31,7 +31,7 @@ def test_creep_on_the_blocks_is_not_noise() -> None:
     creeping = recording.values + 0.5 * recording.time
     found = detect_release(creeping, recording.rate)
     assert found is not None
-    np.testing.assert_allclose(found.rest.noise.std(axis=1), 0.02, rtol=0.25)
+    np.testing.assert_allclose(found.noise.std(axis=1), 0.02, rtol=0.25)
 
 
 def test_a_recording_that_begins_in_the_decay_shows_no_rest() -> None:

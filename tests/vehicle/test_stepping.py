@@ -15,7 +15,6 @@ from sprung.vehicle import (
     Load,
     Matrices,
     NonlinearModel,
-    Prediction,
     Rows,
     Stepper,
     Vehicle,
@@ -30,6 +29,7 @@ from sprung.vehicle import (
     seven_degrees_of_freedom,
     stiffened_air_springs,
 )
+from sprung.vehicle.damper_curve import damper_curve
 from sprung.vehicle.force_laws import (
     AIR,
     BUMP_STOP,
@@ -39,7 +39,6 @@ from sprung.vehicle.force_laws import (
     REBOUND,
     ElementInput,
     ForceLaw,
-    damper_curve,
 )
 
 Array = NDArray[np.float64]
@@ -183,13 +182,13 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     trajectory = before.integrate(states, memories, steps)
     outputs = 14 + before.forces.number
     every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
-    sensitivities = differentiate_motions(before, trajectory, every_output, 1)
-    found = np.stack(list(sensitivities.outputs), axis=1)
+    by_drop, starts, _ = differentiate_motions(before, trajectory, every_output, 1)
+    found = np.stack(list(by_drop), axis=1)
     assert found.shape == (steps + 1, 2, outputs, len(names) + 18)
     number, length = segments_of(steps, 1)
     assert 1 < number < number * length
     for segment in range(number):
-        np.testing.assert_array_equal(sensitivities.starts[:, segment, :14], found[segment * length, :, :14])
+        np.testing.assert_array_equal(starts[:, segment, :14], found[segment * length, :, :14])
     if ground:
         matrices = linear_part()
         touching = matrices.deflection(matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * 9.80665)[3:7]
@@ -252,15 +251,15 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
     states, before = some_states(2, 5), stepper(extras, 0.002)
     memories = np.full((2, before.forces.memories), 0.2)
     sequential = before.integrate(states, memories, 301)
-    found = differentiate_motions(before, sequential, np.zeros((2, 0, 14 + before.forces.number)), 2)
-    first = np.arange(found.starts.shape[1]) * segments_of(301, 2)[1]
+    _, segments, transitions = differentiate_motions(before, sequential, np.zeros((2, 0, 14 + before.forces.number)), 2)
+    first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
     starts = np.concatenate([sequential.states[first], sequential.memories[first]], axis=2)
     for size in (1e-5, 3e-3, 1.0):
         there = stepper(extras, 0.002, values * (1 + size * np.cos(np.arange(len(names)))))
-        near = Prediction(np.swapaxes(starts, 0, 1), found.transitions)
+        near = np.swapaxes(starts, 0, 1), transitions
         expected = there.integrate(states, memories, 301)
         # Forces at the end of a step are corrected only so often, those at the start of a segment once more.
-        for one, other in zip(integrate_near(there, states, memories, 301, 2, near), expected, strict=True):
+        for one, other in zip(integrate_near(there, states, memories, 301, 2, *near), expected, strict=True):
             np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max(initial=0.0))
 
 

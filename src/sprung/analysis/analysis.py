@@ -9,7 +9,7 @@ from typing import TypeAlias
 from sprung.campaign import Campaign
 from sprung.errors import Fault
 from sprung.estimation import FitResult, FitStatistics
-from sprung.faults import Hypothesis, Isolated
+from sprung.faults import Hypothesis
 from sprung.preprocess import FreeDecay, Prepared
 from sprung.progress import Progress, silent
 from sprung.results import Result, TraceStep
@@ -105,7 +105,7 @@ class Analysis:
     requested: ModelStructure | None = None
     search: ModelSearch | None = None
     first_term: str | None = None
-    isolated: tuple[FitResult, Isolated | None] | None = None
+    isolated: tuple[FitResult, tuple[Hypothesis, ...]] | None = None
     statistics: FitStatistics | None = None
     remarks: tuple[str, ...] = ()
     result: Result | None = None
@@ -181,9 +181,9 @@ class Analysis:
         return self.search
 
     @property
-    def found(self) -> Isolated | None:
-        """What was isolated in the present fit; None where nothing was looked for in it."""
-        return self.isolated[1] if self.isolated is not None and self.isolated[0] is self.fit else None
+    def found(self) -> tuple[Hypothesis, ...]:
+        """What was isolated in the present fit."""
+        return self.isolated[1] if self.isolated is not None and self.isolated[0] is self.fit else ()
 
     @property
     def fit(self) -> FitResult:

@@ -26,11 +26,14 @@ from sprung.estimation import (
     FitStatistics,
     ForceCurve,
     characteristics_of,
+    correlation_of,
     estimate_of,
     force_curves,
     mode_estimates,
     rates_at_motion_ratios,
+    scale_of,
     to_estimates,
+    unidentifiable_combinations,
 )
 from sprung.faults import detect_drift
 from sprung.preprocess import FreeDecay
@@ -43,6 +46,7 @@ from sprung.vehicle import (
     SENSOR_UNKNOWNS,
     Sensor,
     nonlinear_elements,
+    sensor_unknown,
     seven_degrees_of_freedom,
 )
 
@@ -63,9 +67,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     misfit = estimate_model_error(fit.residual_moments, decays)
     motions = body_motions(statistics, decays, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
-    verdict = decide_verdict(
-        fit, misfit, estimates.parameters, channels, [fault.what for fault in suspected], validated
-    )
+    verdict = decide_verdict(fit, misfit, estimates, channels, [fault.what for fault in suspected], validated)
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
@@ -75,17 +77,17 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else recommend_next_step(run),
-        parameters={name: profiles.get(name, found) for name, found in estimates.parameters.items()},
+        parameters={name: profiles.get(name, found) for name, found in estimates.items()},
         derived={
             **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
             **({} if rejected else rates_at_motion_ratios(fit, campaign.motion_ratio)),
             **about_roll_axis(fit, structure.heights),
             **{name: estimate_of(fit, structure.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
-            **{name: found for name, found in profiles.items() if name not in estimates.parameters},
+            **{name: found for name, found in profiles.items() if name not in estimates},
         },
-        scale=estimates.scale,
-        unidentifiable=estimates.unidentifiable,
-        correlation=estimates.correlation,
+        scale=scale_of(fit),
+        unidentifiable=unidentifiable_combinations(fit, estimates),
+        correlation=correlation_of(fit, estimates),
         modes={
             load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
             for load in loads
@@ -113,18 +115,18 @@ def _sensor_estimates(fit: FitStatistics, sensors: Sequence[Sensor]) -> tuple[Se
     std = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0))
     found = []
     for sensor in sensors:
-        for kind in SENSOR_UNKNOWNS:
-            name = f"{kind.prefix}{sensor.channel}"
+        for quantity, unknown in SENSOR_UNKNOWNS.items():
+            name = sensor_unknown(quantity, sensor.channel)
             if name in fit.names:
                 at = fit.names.index(name)
                 found.append(
                     SensorEstimate(
                         channel=sensor.channel,
-                        quantity=kind.quantity,
+                        quantity=quantity,
                         value=float(fit.values[at]),
                         std=float(std[at]),
                         stated_std=sensor.uncertainties[name].std,
-                        unit=kind.unit,
+                        unit=unknown.unit,
                     )
                 )
     return tuple(found)

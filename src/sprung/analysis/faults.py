@@ -11,10 +11,9 @@ from sprung.analysis.settling import settle_corrections
 from sprung.campaign import Campaign
 from sprung.estimation import NEAR, FitResult
 from sprung.faults import (
+    CandidateFit,
     Consistency,
-    FaultIsolation,
     Hypothesis,
-    Isolated,
     consistency_of,
     decays_without_wheel_sensors,
     isolate,
@@ -49,24 +48,20 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
         return replace(run, first_term=first[0]).noted("isolate_evident_faults", f"{first[0]} is tried first", first[1])
     run = _with_isolated(run, consistency, progress)
     found = run.found
-    if found is None or not found.is_explained:
+    if not _explains(found) or any(one.remedy == "named" or not one.is_specific for one in found):
         return run
-    if any(one.remedy == "named" or not one.is_specific for one in found.hypotheses):
-        return run
-    return _corrected(run, found.hypotheses, "isolate_evident_faults")
+    return _corrected(run, found, "isolate_evident_faults")
 
 
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
     found = run.found
-    if found is None or not found.hypotheses:
-        return run
-    named = tuple(one.fault for one in found.hypotheses if one.remedy == "named")
+    named = tuple(one.fault for one in found if one.remedy == "named")
     run = replace(run, suspected=tuple(dict.fromkeys((*run.suspected, *named))))
     for fault in named:
         run = run.noted("isolate_faults", f"suspected {fault.code} of {fault.where}", fault.what)
-    corrected = [one for one in found.hypotheses if one.remedy != "named"]
+    corrected = [one for one in found if one.remedy != "named"]
     return _corrected(run, corrected, "isolate_faults") if corrected else run
 
 
@@ -109,6 +104,11 @@ def _explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[st
     return (best, why) if gains[best] > fault else None
 
 
+def _explains(hypotheses: Sequence[Hypothesis]) -> bool:
+    """Whether hypotheses that were isolated one after the other explain the recordings wholly."""
+    return bool(hypotheses) and (hypotheses[-1].candidate.is_explained or hypotheses[-1].is_sufficient)
+
+
 def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Progress) -> Analysis:
     """Look for faults in the present fit as far as its test gives reason to; without a test there is nothing to do."""
     if consistency is None:
@@ -116,20 +116,19 @@ def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Pro
     if consistency == "consistent":
         settled = settle_corrections(run)
         run = run if settled is run else converged(settled, progress)
-        checked = replace(run, isolated=(run.fit, None))
+        checked = replace(run, isolated=(run.fit, ()))
         return checked.noted("isolate_faults", "no fault is indicated", "the residuals are consistent with the model")
     progress(Step("isolating faults"))
-    run, isolation = _with_isolation(run, consistency)
-    base = isolation.base
+    run, base = _with_base(run, consistency)
     is_sound = base.fit is not run.fit and consistency_of(base.campaign, base.decays, base.fit) == "consistent"
-    found = Isolated((), False, 0) if is_sound else isolate(isolation, progress)
-    run = replace(run, isolated=(run.fit, found), fits=run.fits + found.fits)
-    faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found.hypotheses) or "no fault"
-    explains = "explains the recordings" if found.is_explained else "explains a part of the recordings at most"
-    return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{found.fits} fits of hypotheses")
+    found, fits = ((), 0) if is_sound else isolate(base, progress)
+    run = replace(run, isolated=(run.fit, found), fits=run.fits + fits)
+    faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found) or "no fault"
+    explains = "explains the recordings" if _explains(found) else "explains a part of the recordings at most"
+    return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{fits} fits of hypotheses")
 
 
-def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, FaultIsolation]:
+def _with_base(run: Analysis, consistency: Consistency) -> tuple[Analysis, CandidateFit]:
     """Return the fit against which hypotheses are held, with the larger of the models that are open.
 
     A wheel sensor at fault may have shown a wrong landing: where the fit does not describe the recordings, the decays begin
@@ -145,21 +144,21 @@ def _with_isolation(run: Analysis, consistency: Consistency) -> tuple[Analysis, 
         decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
         if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
             run = replace(run, fits=run.fits + 1)
-            isolation = _isolation_of(larger, decays, run.fit)
-            if not isolation.base.is_explained:
-                return run, isolation
-            if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, isolation.base.fit, decays)):
+            base = _fit_of(larger, decays, run.fit)
+            if not base.is_explained:
+                return run, base
+            if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, base.fit, decays)):
                 larger = linear
     if larger.names == structure.names:
-        return run, FaultIsolation.of(structure, run.decays, run.fit)
-    return replace(run, fits=run.fits + 1), _isolation_of(larger, run.decays, run.fit)
+        return run, CandidateFit.of(structure, run.decays, run.fit)
+    return replace(run, fits=run.fits + 1), _fit_of(larger, run.decays, run.fit)
 
 
-def _isolation_of(structure: ModelStructure, decays: Sequence[FreeDecay], before: FitResult) -> FaultIsolation:
+def _fit_of(structure: ModelStructure, decays: Sequence[FreeDecay], before: FitResult) -> CandidateFit:
     """Fit a model to decays from nothing, or from a fit where it has coordinates that only a fitted vehicle shows."""
     if structure.needs_start:
-        return FaultIsolation.of(structure, decays, fit_structure(structure, decays, before, NEAR, silent))
-    return FaultIsolation.of(structure, decays)
+        return CandidateFit.of(structure, decays, fit_structure(structure, decays, before, NEAR, silent))
+    return CandidateFit.of(structure, decays)
 
 
 def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.clocks import use_clock_flights
 from sprung.campaign import Campaign
-from sprung.estimation import CONVERGED, FitResult, FitStatistics, uncertainty_of, weigh_statements
-from sprung.preprocess import Flight, find_flights
+from sprung.estimation import CONVERGED, FitStatistics, uncertainty_of, weigh_statements
+from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
-from sprung.selection import ModelSearch, ModelStructure, fit_structure, select_gravity_leakage
+from sprung.selection import ModelSearch, fit_structure, select_gravity_leakage
 from sprung.vehicle import WHEELS, Readout, Vehicle, evaluate_quantity, parameter_names, state_variables
 
 Real = NDArray[np.float64]
@@ -62,11 +62,11 @@ def use_flight(run: Analysis, progress: Progress) -> Analysis:
     return replace(run, remarks=(*run.remarks, remark)).noted("use_flight", remark)
 
 
-def _with_fall(run: Analysis, found: Sequence[Flight | None], progress: Progress) -> Analysis | None:
+def _with_fall(run: Analysis, found: Sequence[FreeDecay | None], progress: Progress) -> Analysis | None:
     """Fit the drops from their releases on; None where the model does not describe that, or where it tells nothing more."""
     statistics, fit = run.uncertainty, run.fit
-    states = _initial_states(run.campaign, run.model.structure, fit, found)
-    decays = tuple(flight.decay if flight else decay for flight, decay in zip(found, run.decays, strict=True))
+    states = _initial_states(run, found)
+    decays = tuple(decay if flight is None else flight for flight, decay in zip(found, run.decays, strict=True))
     structure = replace(run.model.structure, unilateral_tyres=True)
     other = fit_structure(structure, decays, fit, CONVERGED, progress, states)
     search = select_gravity_leakage(ModelSearch(structure, other, decays, run.model.steps, progress))
@@ -106,31 +106,32 @@ def is_needed(fit: FitStatistics) -> bool:
     return bool(np.any((errors > NEEDED * sizes)[plain])) and hopeless < _UNDETERMINED
 
 
-def _initial_states(
-    campaign: Campaign, choice: ModelStructure, optimum: FitResult, found: Sequence[Flight | None]
-) -> Real:
+def _initial_states(run: Analysis, found: Sequence[FreeDecay | None]) -> Real:
     """Return {X, Ẋ} and memories with which the fits begin: of the fitted vehicle on its blocks; shape (drop, state)."""
+    campaign, optimum = run.campaign, run.fit
     states = optimum.states[:, : len(state_variables(optimum.names))].copy()
-    vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **choice.heights.by_key)
+    vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **run.model.structure.heights.by_key)
     rows = Readout.of(campaign.sensors, optimum.names).at(optimum.values)
+    observations = {observation.recording.name: observation for observation in run.prepared.observations}
     for state, flight in zip(states, found, strict=True):
         if flight is not None:
             # Coordinates without mass, whose velocities are no part of the state, come last.
-            state[:] = _start(flight, vehicle, campaign, rows)[: len(state)]
+            state[:] = _start(flight, observations[flight.file], vehicle, campaign, rows)[: len(state)]
     return states
 
 
-def _start(flight: Flight, vehicle: Vehicle, campaign: Campaign, rows: Real) -> Real:
-    decay = flight.decay
-    load, rate = campaign.load(decay.load), decay.rate
-    heights = _HEIGHTS if flight.height is None else (flight.height,)
+def _start(flight: FreeDecay, observation: DropObservation, vehicle: Vehicle, campaign: Campaign, rows: Real) -> Real:
+    load, rate, height = campaign.load(flight.load), flight.rate, observation.drop.height
     from sprung.simulation import BlockSupport, simulate_nonlinear_drops  # noqa: PLC0415 (only the fall needs it)
 
-    blocks = [BlockSupport(load, flight.wheels or WHEELS, height) for height in heights]
-    offset = flight.since % (1 / rate)
-    before, samples = round((flight.since - offset) * rate), int(_LONG_ENOUGH * rate)
+    wheels = observation.wheels or WHEELS
+    blocks = [BlockSupport(load, wheels, one) for one in (_HEIGHTS if height is None else (height,))]
+    first = round((flight.start - observation.recording.start) * rate)
+    since = (first - observation.rest.sample) / rate
+    offset = since % (1 / rate)
+    before, samples = round((since - offset) * rate), int(_LONG_ENOUGH * rate)
     motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, before + samples, offset)
-    readings = (decay.values - decay.rest.level[:, None])[:, :samples]
+    readings = (flight.values - flight.rest.level[:, None])[:, :samples]
     missed = [
         np.nansum((readings - (rows @ motion.acceleration)[:, before : before + readings.shape[1]]) ** 2)
         for motion in motions

@@ -13,7 +13,7 @@ from sprung.analysis.stages import analyse
 from sprung.analysis.starting import start_values
 from sprung.assessment import ModeAmplitude, body_motions
 from sprung.campaign import CampaignSource, resolve_campaign
-from sprung.errors import Omissions
+from sprung.errors import record_failure
 from sprung.progress import Progress, silent
 from sprung.results import Result
 from sprung.vehicle import Tracks, Vehicle
@@ -153,9 +153,9 @@ def with_amplitudes(run: Analysis, progress: Progress = silent) -> Result:
     result = result_of(run)
     if result.verdict.state == "reject":
         return result  # a model that does not describe the recordings has no modes to follow
-    omissions = Omissions(result.omissions)
+    omissions = list(result.omissions)
     amplitudes: tuple[ModeAmplitude, ...] = ()
-    with omissions.record_failure("The amplitude curves"):
+    with record_failure(omissions, "The amplitude curves"):
         motions = body_motions(run.uncertainty, run.decays, run.campaign.sensors)
         amplitudes = amplitudes_of(run, motions, progress)
-    return replace(result, amplitude=amplitudes, omissions=omissions.sentences)
+    return replace(result, amplitude=amplitudes, omissions=tuple(omissions))

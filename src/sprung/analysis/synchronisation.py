@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,6 +72,13 @@ _FARTHEST, _COARSE = 0.1, 0.001
 """s by which the first motion of a sensor that hardly moves may come after the release, and step of looking for it."""
 
 
+_Moment = tuple[float, float, Real, Real, Real]
+"""When a logger saw the release and the standard uncertainty of that, s; how it would move with each parameter of the vehicle
+that the flight was computed with, s per SI unit, shape (parameter,); what the flight leaves of the logger's samples, over their
+noise, shape (sample,); and by how much more it would read with each parameter, less what another moment takes up, shape
+(parameter, sample)."""
+
+
 def synchronise_at_release(
     decay: FreeDecay, seen: DropObservation, drop: Drop, vehicle: Vehicle, load: Load, sensors: Sequence[Sensor]
 ) -> FreeDecay:
@@ -130,50 +136,27 @@ def synchronise_at_release(
             moments[number] = found
     if not moments:
         return decay
-    common = float(np.median([one.time for one in moments.values()]))
-    here = np.array(list(parameters.values()))
-    clocks = tuple(
-        replace(
-            clock,
+    released, stds, slopes_of, left, unseen = zip(*moments.values(), strict=True)
+    common, here = float(np.median(released)), np.array(list(parameters.values()))
+    clocks = list(decay.clocks)
+    for number, time, std, own_slopes in zip(moments, released, stds, slopes_of, strict=True):
+        clocks[number] = replace(
+            clocks[number],
             # Expected at parameters of zero, so that the slopes alone lead to what is expected elsewhere.
-            delay=common - moments[number].time + float(moments[number].slopes @ here),
-            delay_std=moments[number].std,
-            d_delay_d_parameter=dict(zip(parameters, (-moments[number].slopes).tolist(), strict=True)),
+            delay=common - time + float(own_slopes @ here),
+            delay_std=std,
+            d_delay_d_parameter=dict(zip(parameters, (-own_slopes).tolist(), strict=True)),
         )
-        if number in moments
-        else clock
-        for number, clock in enumerate(decay.clocks)
-    )
-    left, unseen = (
-        np.concatenate([getattr(one, name) for one in moments.values()], axis=-1) for name in ("left", "unseen")
-    )
-    gradient, information = unseen @ left, unseen @ unseen.T
+    residual, more = np.concatenate(left), np.concatenate(unseen, axis=-1)
     from_flight = FlightLikelihood(
-        tuple(parameters), here, gradient, information, float(left @ left), left.size - len(moments)
+        tuple(parameters),
+        here,
+        more @ residual,
+        more @ more.T,
+        float(residual @ residual),
+        residual.size - len(moments),
     )
-    return replace(decay, clocks=clocks, flight=from_flight)
-
-
-class _Moment(NamedTuple):
-    """When a logger saw the release, s from where it was thought to be.
-
-    Attributes
-    ----------
-    time, std
-        s.
-    slopes
-        How it would move with each parameter of the vehicle that the flight was computed with, s per SI unit.
-    left
-        What the flight leaves of the logger's samples, over their noise, shape (sample,).
-    unseen
-        By how much more it would read with each parameter, less what another moment takes up; shape (parameter, sample).
-    """
-
-    time: float
-    std: float
-    slopes: Real
-    left: Real
-    unseen: Real
+    return replace(decay, clocks=tuple(clocks), flight=from_flight)
 
 
 def _flights(
@@ -233,7 +216,7 @@ def _as_taken(values: Real, times: Real, taken: Real, step: float) -> tuple[Real
 
 
 def _moment_of(values: Real, times: Real, flight: Real, slopes: Real, begin: float) -> _Moment | None:
-    """Find when a logger saw the release, of which the sample is known."""
+    """Find when a logger saw the release, of which the sample is known; None where it is not certain."""
 
     def model(moment: float, waves: Real = flight) -> Real:
         return _read(waves, times - moment)
@@ -264,7 +247,7 @@ def _moment_of(values: Real, times: Real, flight: Real, slopes: Real, begin: flo
     if spread > _VAGUE:
         return None
     std = float(np.hypot(spread, _FLOOR))
-    return _Moment(moment, std, -along, left.ravel(), more - along[:, None] * slope.ravel())
+    return moment, std, -along, left.ravel(), more - along[:, None] * slope.ravel()
 
 
 def synchronise_by_decay(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[FreeDecay, ...]:

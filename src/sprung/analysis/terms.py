@@ -69,7 +69,7 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
 
 def has_flexible_body(run: Analysis) -> bool:
     """Whether nothing but a flexible body explains what the present fit leaves, so that no further term is to be tried."""
-    return run.found is not None and run.found.is_flexible_body
+    return any(hypothesis.fault.code == "twist" for hypothesis in run.found)
 
 
 def _with_search(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import parameter_of
 
 _OTHER_UNITS: Mapping[str, Mapping[str, float]] = {
     "kg": {"tonnes": 1e3, "g": 1e-3, "pounds": 0.45359237},
@@ -129,7 +129,7 @@ def find_limits(quantity: str) -> Limits:
     quantity
         A key of `LIMITS`, or the name of any parameter.
     """
-    return LIMITS[quantity] if quantity in LIMITS else _ANYTHING[PARAMETERS[quantity].unit]
+    return LIMITS[quantity] if quantity in LIMITS else _ANYTHING[parameter_of(quantity).unit]
 
 
 def explain_implausible(quantity: str, *values: float) -> tuple[str, str] | None:

@@ -13,7 +13,7 @@ import sprung
 from sprung.cli.app import CampaignFile, Force, Json, app
 from sprung.cli.completion import parameters, results
 from sprung.cli.output import DEFECT, REJECTED, complain, say, say_json, working
-from sprung.errors import InputError, Omissions
+from sprung.errors import InputError, record_failure
 from sprung.progress import Progress, Step
 
 
@@ -148,16 +148,16 @@ def validate(
         _refuse_overwriting((output, ("validation.npz", "validation.json")))
     with working("reading the recordings") as progress:
         found = sprung.validate(sprung.read(campaign, progress=progress), progress=progress)
-        omissions = Omissions(found.result.omissions)
+        omissions = list(found.result.omissions)
         written: tuple[Path, ...] = ()
         if output is not None:
             folder = output.resolve()
             written = sprung.report.write_validation(found, folder, {}, overwrite=force)
             progress(Step("drawing"))
-            with omissions.record_failure("The validation"):
+            with record_failure(omissions, "The validation"):
                 drawings = sprung.report.draw_validation(found)
                 written = sprung.report.write_validation(found, folder, drawings, overwrite=force)
-    for omission in omissions.sentences:
+    for omission in omissions:
         complain(omission)
     if as_json:
         say_json(found.document())

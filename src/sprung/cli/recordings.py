@@ -13,7 +13,7 @@ import sprung
 from sprung.cli import completion
 from sprung.cli.app import Force, Json, app
 from sprung.cli.output import complain, say, say_json, working
-from sprung.errors import Fault, InputError, Omissions, Problem
+from sprung.errors import Fault, InputError, Problem, record_failure
 
 
 @app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
@@ -49,11 +49,11 @@ def check(
     beside = campaign if campaign.is_dir() else campaign.parent
     folder = (output or beside / "check").resolve()
     written: tuple[Path, ...] = ()
-    omissions = Omissions()
+    omissions: list[str] = []
     if page or drawings:
-        with working("drawing"), omissions.record_failure("The page of the check", "written"):
+        with working("drawing"), record_failure(omissions, "The page of the check", "written"):
             written = sprung.report.write_check(found, folder, page=page, drawings=drawings, overwrite=force)
-    for omission in omissions.sentences:
+    for omission in omissions:
         complain(omission)
     pages = [path for path in written if path.name == sprung.report.CHECK_FILE]
     drawn = [str(path) for path in written if path not in pages]

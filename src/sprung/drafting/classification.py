@@ -132,8 +132,8 @@ def classify_event(values: Real, rate: float, event: int, wheels: NDArray[np.boo
     detected = detect_release(looked_at, rate)
     if detected is None or begin + detected.sample > event + int(IMPACT * rate):
         return "nothing is at rest before it, so it is no release"
-    release, level = begin + detected.sample, detected.rest.level
-    noise, moved = detected.rest.noise.std(axis=1), values - level[:, None]
+    release, level = begin + detected.sample, detected.level
+    noise, moved = detected.noise.std(axis=1), values - level[:, None]
     onset, depth, speed, gained, fall = measure_fall(moved, rate, release, level)
     falling = _falling_channels(depth, wheels)
     landing = release + max((find_steepest_rise(fall[i]) for i in np.flatnonzero(falling)), default=0)

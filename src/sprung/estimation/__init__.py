@@ -2,9 +2,19 @@
 
 from sprung.estimation.characteristics import characteristics_of, estimate_quantity, rates_at_motion_ratios
 from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
-from sprung.estimation.estimates import Correlation, Estimates, Scale, Unidentifiable, estimate_of, to_estimates
+from sprung.estimation.estimates import (
+    Correlation,
+    Scale,
+    Unidentifiable,
+    correlation_of,
+    estimate_of,
+    scale_of,
+    to_estimates,
+    unidentifiable_combinations,
+)
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
@@ -12,7 +22,6 @@ from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
 from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
 from sprung.estimation.nonlinear_scores import score_nonlinear_terms
-from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
@@ -21,12 +30,12 @@ from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
 from sprung.estimation.starts import (
     USUAL_ENGINE,
+    USUAL_ENGINE_FREQUENCY,
     USUAL_MOUNT,
-    USUAL_MOUNTING,
     USUAL_RELAXATION,
-    Mounting,
     VehicleSize,
-    mountings_of,
+    engine_mountings,
+    usual_engine,
     usual_rubber,
     usual_vehicle,
 )
@@ -42,21 +51,19 @@ __all__ = [
     "STARTS",
     "UNNAMED",
     "USUAL_ENGINE",
+    "USUAL_ENGINE_FREQUENCY",
     "USUAL_MOUNT",
-    "USUAL_MOUNTING",
     "USUAL_RELAXATION",
+    "ClosedFormAt",
     "ClosedFormObjective",
     "Coordinates",
     "Correlation",
     "CurvePoint",
-    "Estimates",
     "FitResult",
     "FitStatistics",
     "ForceCurve",
-    "HasModalResponse",
     "Inflater",
     "ModeEstimate",
-    "Mounting",
     "Prediction",
     "PriorsAndConstraints",
     "Scale",
@@ -68,6 +75,8 @@ __all__ = [
     "canonical_basis",
     "characteristics_of",
     "clear_of_splines",
+    "correlation_of",
+    "engine_mountings",
     "escape_local_optimum",
     "estimate_of",
     "estimate_quantity",
@@ -79,11 +88,11 @@ __all__ = [
     "identifiable_subspace",
     "lift_priors",
     "mode_estimates",
-    "mountings_of",
     "parameters_from_matrices",
     "predictions",
     "profiled",
     "rates_at_motion_ratios",
+    "scale_of",
     "score_added",
     "score_linear_term",
     "score_linear_terms",
@@ -92,6 +101,8 @@ __all__ = [
     "shape_of",
     "to_estimates",
     "uncertainty_of",
+    "unidentifiable_combinations",
+    "usual_engine",
     "usual_rubber",
     "usual_vehicle",
     "wald_test",

@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance
+from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance, parameter_of
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -90,31 +90,8 @@ class Correlation:
     matrix: tuple[tuple[float, ...], ...]
 
 
-@shown
-@dataclass(frozen=True)
-class Estimates:
-    """The estimates of the parameters.
-
-    Attributes
-    ----------
-    parameters
-        By name.
-    scale
-        The absolute scale, and ratios that do not need it.
-    unidentifiable
-        Combinations that the data do not determine.
-    correlation
-        Of the estimated parameters.
-    """
-
-    parameters: dict[str, Estimate]
-    scale: Scale
-    unidentifiable: tuple[Unidentifiable, ...]
-    correlation: Correlation
-
-
-def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimates:
-    """Return the estimates of all parameters, their correlation, and the combinations that are unidentifiable.
+def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> dict[str, Estimate]:
+    """Return the estimates of all parameters of the vehicle.
 
     Parameters
     ----------
@@ -125,10 +102,10 @@ def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> Estimat
 
     Returns
     -------
-    Estimates
+    dict
+        By name.
     """
-    parameters = {name: estimate_of(fit, known, name) for name in fit.names if not is_nuisance(name)}
-    return Estimates(parameters, _scale(fit), _combinations(fit, parameters), _correlation(fit, parameters))
+    return {name: estimate_of(fit, known, name) for name in fit.names if not is_nuisance(name)}
 
 
 def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) -> Estimate:
@@ -146,7 +123,7 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) 
     Estimate
     """
     value, gradient = evaluate_quantity(name, fit.names, fit.values)
-    unit = DERIVED[name].unit if name in DERIVED else PARAMETERS[name].unit
+    unit = DERIVED[name].unit if name in DERIVED else parameter_of(name).unit
     if name in known and known[name].is_exact:
         exact = known[name].value
         return Estimate(exact, 0.0, (exact, exact), unit, "known")
@@ -167,26 +144,50 @@ def _interval(name: str, value: float, std: float) -> tuple[float, float]:
     return value - NORMAL_95 * std, value + NORMAL_95 * std
 
 
-def _scale(fit: FitStatistics) -> Scale:
+def scale_of(fit: FitStatistics) -> Scale:
+    """Return whether the absolute scale is determined, and ratios that do not need it.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+
+    Returns
+    -------
+    Scale
+    """
     total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     mass_direction = gradient * fit.slopes / total
     per_total_mass = {}
     for i, name in enumerate(fit.names):
-        if PARAMETERS[name].scales and not name.startswith(LOAD_MASS):
+        if parameter_of(name).scales and not name.startswith(LOAD_MASS):
             ratio = float(fit.values[i]) / total
             direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
             std = fit.spread(direction, fit.size(name) / total)
             if std is not None:
-                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[PARAMETERS[name].unit])
+                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[parameter_of(name).unit])
     return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)
 
 
-def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
+def unidentifiable_combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:
+    """Return the combinations of parameters that the data do not determine.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    parameters
+        Its estimates.
+
+    Returns
+    -------
+    tuple of Unidentifiable
+    """
     scaling = fit.scaling
     found = []
     directions = fit.undetermined
     if directions.shape[1] and np.linalg.norm(directions.T @ scaling) > 0.999 * np.linalg.norm(scaling):
-        found.append(Unidentifiable(tuple(name for name in fit.names if PARAMETERS[name].scales), _SCALE))
+        found.append(Unidentifiable(tuple(name for name in fit.names if parameter_of(name).scales), _SCALE))
         unit = scaling / np.linalg.norm(scaling)
         left, size, _ = np.linalg.svd(directions - np.outer(unit, unit @ directions), full_matrices=False)
         directions = canonical_basis(left[:, size > 0.5])
@@ -216,7 +217,20 @@ def _combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tup
     return tuple(found)
 
 
-def _correlation(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Correlation:
+def correlation_of(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Correlation:
+    """Return the correlation of the estimated parameters.
+
+    Parameters
+    ----------
+    fit
+        The fit.
+    parameters
+        Its estimates.
+
+    Returns
+    -------
+    Correlation
+    """
     chosen = [i for i, name in enumerate(fit.names) if name in parameters and parameters[name].status == "estimated"]
     covariance = fit.covariance[np.ix_(chosen, chosen)]
     spread = np.sqrt(np.diag(covariance))

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.objective import HasClockDelays, HasWindows, ObjectiveAt
+from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
 from sprung.estimation.problem import EstimationProblem, Iterate
 from sprung.preprocess import FreeDecay, Moments, pool_moments
@@ -152,11 +152,8 @@ class FitResult:
     @cached_property
     def disagreement_in_time(self) -> float:
         """Factor by which large and small motions that contradict each other inflate variances; 1 where not significantly."""
-        match self.iterate.at:
-            case HasWindows() as at:
-                return birge_ratio(*self.problem.in_null_space(self.iterate, *at.by_window))
-            case _:
-                return 1.0
+        windows = self.iterate.at.by_window
+        return 1.0 if windows is None else birge_ratio(*self.problem.in_null_space(self.iterate, *windows))
 
     @cached_property
     def overdispersion(self) -> float:
@@ -225,11 +222,8 @@ class FitResult:
             By the position of the drop the delays, s, shape (logger,), and their covariance; drops of one logger are not
             in it.
         """
-        match self.iterate.at:
-            case HasClockDelays() as at:
-                return at.clock_delays(covariance)
-            case _:
-                return {}
+        modal = self.iterate.at.modal
+        return {} if modal is None else modal.clock_delays(covariance)
 
     def most_likely_delays(self, decays: Sequence[FreeDecay], shifts: Real) -> dict[int, Real]:
         """Search for the delays of clocks that are hardly known, of decays with more channels than were fitted.
@@ -246,11 +240,8 @@ class FitResult:
         dict
             By the position of the drop the delays of its loggers, s, shape (logger,).
         """
-        match self.problem.objective.with_decays(decays).at(self.values, 1 / self.noise**2):
-            case HasClockDelays() as at:
-                return at.most_likely_delays(shifts)
-            case _:
-                return {}
+        modal = self.problem.objective.with_decays(decays).at(self.values, 1 / self.noise**2).modal
+        return {} if modal is None else modal.most_likely_delays(shifts)
 
     def after(self, before: FitResult) -> FitResult:
         """Return this fit with the history of the one before, from which it was reached."""

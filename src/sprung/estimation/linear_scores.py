@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import objective_of, problem_of
-from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
 from sprung.estimation.score_test import score_added, score_test
@@ -48,30 +47,29 @@ def score_linear_terms(
         By candidate: the gain in twice the log-likelihood, and the estimates of its parameters, SI, by name. None where modal
         coordinates do not exist.
     """
-    match fit.iterate.at:
-        case HasModalResponse() as at:
-            brought = {name: value for parameters in candidates.values() for name, value in parameters.items()}
-            larger = LinearModel.stack([models[load] for load in at.loads])
-            changed = np.array([_changed(name, larger.names) for name in brought])
-            slopes = np.concatenate(larger.slopes(np.array([values[name] for name in larger.names])), axis=-1)
-            modes = at.modes
-            motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
-            forces = np.moveaxis(np.tensordot(changed, slopes, 1) @ motions, 0, -2)
-            gradient, information = at.with_changes(at.differentiate_response(forces))
-            test = score_added(fit, gradient, information)
-            coordinates = Coordinates.scaled_by(tuple(brought), {**values, **brought})
-            u = coordinates.from_parameters(brought)
-            scores = {}
-            for term, parameters in candidates.items():
-                own = [list(brought).index(name) for name in parameters]
-                estimates = coordinates.extrapolated(u, test.joint_values(own) / coordinates.derivatives(u))
-                scores[term] = (
-                    test.gain(own),
-                    {name: float(estimates[i]) for name, i in zip(parameters, own, strict=True)},
-                )
-            return scores
-        case _:
-            return None
+    at = fit.iterate.at.modal
+    if at is None:
+        return None
+    brought = {name: value for parameters in candidates.values() for name, value in parameters.items()}
+    larger = LinearModel.stack([models[load] for load in at.loads])
+    changed = np.array([_changed(name, larger.names) for name in brought])
+    slopes = np.concatenate(larger.slopes(np.array([values[name] for name in larger.names])), axis=-1)
+    modes = at.modes
+    motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
+    forces = np.moveaxis(np.tensordot(changed, slopes, 1) @ motions, 0, -2)
+    gradient, information = at.with_changes(at.differentiate_response(forces))
+    test = score_added(fit, gradient, information)
+    coordinates = Coordinates.scaled_by(tuple(brought), {**values, **brought})
+    u = coordinates.from_parameters(brought)
+    scores = {}
+    for term, parameters in candidates.items():
+        own = [list(brought).index(name) for name in parameters]
+        estimates = coordinates.extrapolated(u, test.joint_values(own) / coordinates.derivatives(u))
+        scores[term] = (
+            test.gain(own),
+            {name: float(estimates[i]) for name, i in zip(parameters, own, strict=True)},
+        )
+    return scores
 
 
 def _changed(name: str, names: Sequence[str]) -> Real:

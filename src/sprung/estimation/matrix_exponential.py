@@ -51,6 +51,8 @@ class MatrixExponentialAt:
     weights: Real
 
     is_reversible = True
+    by_window = None
+    modal = None
 
     def reweighted(self, weights: Real) -> MatrixExponentialAt:
         """Return the likelihood with other weights."""

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sprung.estimation.monomials import expand, parameters_of
 from sprung.estimation.records import RecordBatch
 from sprung.estimation.starts import VehicleSize
-from sprung.vehicle import LINEAR_LAWS, PARAMETERS, LinearModel, Rows, Sensor
+from sprung.vehicle import LINEAR_LAWS, LinearModel, Rows, Sensor, parameter_of
 from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
@@ -87,8 +87,10 @@ def modulating_function_estimate(
     # A known load stands beside the vehicle's own masses as a number.
     load_share = products.get((0, 0, 0), 0.0)
     mass = 1 / load_share if load_share > 0 and not size.weighed else size.sprung_mass
-    values = {name: value * (mass if PARAMETERS[name].scales else 1.0) for name, value in per_mass.items()}
-    usable = all(np.isfinite(value) and (value > 0 or not PARAMETERS[name].positive) for name, value in values.items())
+    values = {name: value * (mass if parameter_of(name).scales else 1.0) for name, value in per_mass.items()}
+    usable = all(
+        np.isfinite(value) and (value > 0 or not parameter_of(name).positive) for name, value in values.items()
+    )
     return values if usable else None
 
 

@@ -90,7 +90,7 @@ def fit_nonlinear(
     -------
     FitResult
     """
-    laws = ", ".join(own.law.name for own in next(iter(models.values())).forces.laws)
+    laws = ", ".join(law.name for law, *_ in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     known = {**known, **uncertainties_of(sensors)}
     steps, values = 0, expected_nuisances(known) | dict(start)

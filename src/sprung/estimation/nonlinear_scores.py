@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
@@ -56,27 +56,26 @@ def score_nonlinear_terms(
         By candidate: the gain in twice the log-likelihood, to second order, 0 where modal coordinates do not exist; and the
         estimates of its parameters by one Newton step, SI, by name.
     """
-    match fit.iterate.at:
-        case HasModalResponse() as at:
-            brought = list(dict.fromkeys(name for names in candidates.values() for name in names))
-            drops = range(len(fit.decays))
-            systems = [_of_drop(fit, at, drop, models[fit.decays[drop].load], values, brought) for drop in drops]
-            information, gradient = (np.sum(parts, axis=0) for parts in zip(*systems, strict=True))
-            test = score_added(fit, gradient, information)
-            scores = {}
-            for term, names in candidates.items():
-                own = [brought.index(name) for name in names]
-                step = test.joint_values(own)
-                estimates = {name: values[name] + float(step[i]) for name, i in zip(names, own, strict=True)}
-                scores[term] = (test.gain(own), estimates)
-            return scores
-        case _:
-            return {term: (0.0, {name: values[name] for name in names}) for term, names in candidates.items()}
+    at = fit.iterate.at.modal
+    if at is None:
+        return {term: (0.0, {name: values[name] for name in names}) for term, names in candidates.items()}
+    brought = list(dict.fromkeys(name for names in candidates.values() for name in names))
+    drops = range(len(fit.decays))
+    systems = [_of_drop(fit, at, drop, models[fit.decays[drop].load], values, brought) for drop in drops]
+    information, gradient = (np.sum(parts, axis=0) for parts in zip(*systems, strict=True))
+    test = score_added(fit, gradient, information)
+    scores = {}
+    for term, names in candidates.items():
+        own = [brought.index(name) for name in names]
+        step = test.joint_values(own)
+        estimates = {name: values[name] + float(step[i]) for name, i in zip(names, own, strict=True)}
+        scores[term] = (test.gain(own), estimates)
+    return scores
 
 
 def _of_drop(
     fit: FitResult,
-    at: HasModalResponse,
+    at: ClosedFormAt,
     drop: int,
     model: NonlinearModel,
     values: Mapping[str, float],

@@ -1,22 +1,23 @@
 """What is maximised: the likelihood of free decays under equations of motion, whichever way these are solved.
 
-There are two: the closed form for linear vehicles, time stepping for those with nonlinear forces. What only one of them can
-do is a protocol of its own.
+There are two: the closed form for linear vehicles, time stepping for those with nonlinear forces. What needs modal coordinates
+asks for `ObjectiveAt.modal`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol, Self, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.modal_solution import ModalSolution
 from sprung.preprocess import FreeDecay
 
+if TYPE_CHECKING:
+    from sprung.estimation.closed_form_likelihood import ClosedFormAt
+
 Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 class Objective(Protocol):
@@ -77,6 +78,17 @@ class ObjectiveAt(Protocol):
         """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
 
     @property
+    def by_window(self) -> tuple[Real, Real] | None:
+        """Gradient and information of each window of time, shapes (window, parameter) and (window, parameter, parameter).
+
+        None where drops are not cut into windows.
+        """
+
+    @property
+    def modal(self) -> ClosedFormAt | None:
+        """The likelihood itself where it has modal coordinates, in which changes of the response are sums of exponentials."""
+
+    @property
     def fitted(self) -> tuple[Real, ...]:
         """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
 
@@ -104,103 +116,4 @@ class ObjectiveAt(Protocol):
         """Motion of a drop from so many samples before its first to so many from it on, shape (state, time).
 
         {X, Ẋ}, and memories of forces that have one, SI; NaN before the first sample where motion cannot be followed backward.
-        """
-
-
-@runtime_checkable
-class HasClockDelays(Protocol):
-    """An objective in which the clocks of several loggers may be unknown."""
-
-    def clock_delays(self, covariance: Real) -> dict[int, tuple[Real, Real]]:
-        """Return the delays of the loggers' clocks.
-
-        Parameters
-        ----------
-        covariance
-            Of the parameters, SI, shape (parameter, parameter).
-
-        Returns
-        -------
-        dict
-            By the position of the drop the delays, s, shape (logger,), and their covariance, s²; without drops of one logger.
-        """
-
-    def most_likely_delays(self, shifts: Real) -> dict[int, Real]:
-        """Search for the delays of clocks that are hardly known.
-
-        Parameters
-        ----------
-        shifts
-            What is tried beside what is expected of each clock, s, shape (shift,).
-
-        Returns
-        -------
-        dict
-            By the position of the drop the delays of its loggers, s, shape (logger,).
-        """
-
-
-@runtime_checkable
-class HasWindows(Protocol):
-    """An objective that is a sum over windows of time as well as over drops."""
-
-    @property
-    def by_window(self) -> tuple[Real, Real]:
-        """Gradient and information of each window; shapes (window, parameter) and (window, parameter, parameter)."""
-
-
-@runtime_checkable
-class HasModalResponse(Protocol):
-    """An objective that has modal coordinates, in which changes of the response are sums of exponentials."""
-
-    @property
-    def modes(self) -> ModalSolution:
-        """Poles and shapes of every load."""
-
-    @property
-    def loads(self) -> tuple[str, ...]:
-        """Names of the loads in their order there."""
-
-    @property
-    def sensor_rows(self) -> Real:
-        """Rows of the sensors, shape (channel, coordinate)."""
-
-    def noise_bias_of_information(self) -> Real:
-        """Return the information that noise alone adds on average.
-
-        Returns
-        -------
-        ndarray
-            Per SI units, shape (parameter, parameter).
-        """
-
-    def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
-        """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop."""
-
-    def differentiate_response(self, forces: Complex) -> Complex:
-        """Return the derivatives of the readings by changes of the equations of motion.
-
-        Parameters
-        ----------
-        forces
-            (dM λ² + dC λ + dK) v of every mode v, SI, shape (load, coordinate, change, mode).
-
-        Returns
-        -------
-        ndarray
-            σ and τ, τ per second, as from `differentiate_modes`; shape (load, channel, change, 2 mode).
-        """
-
-    def with_changes(self, readings: Complex) -> tuple[Real, Real]:
-        """Return gradient and information of the parameters and of changes of the readings behind them.
-
-        Parameters
-        ----------
-        readings
-            Derivatives by the changes, SI, shape (load, channel, change, 2 mode).
-
-        Returns
-        -------
-        gradient, information
-            Shapes (parameter + change,) and its square.
         """

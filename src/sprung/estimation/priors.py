@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, evaluate_quantity
+from sprung.vehicle import evaluate_quantity, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -55,11 +55,11 @@ class Coordinates:
 
     @cached_property
     def _logarithmic(self) -> NDArray[np.bool_]:
-        return np.array([PARAMETERS[name].positive for name in self.names])
+        return np.array([parameter_of(name).positive for name in self.names])
 
     @cached_property
     def _vanishing(self) -> NDArray[np.bool_]:
-        return np.array([PARAMETERS[name].vanishes_at_infinity for name in self.names])
+        return np.array([parameter_of(name).vanishes_at_infinity for name in self.names])
 
     def values(self, u: Real) -> Real:
         """Parameter values, SI, at coordinates."""
@@ -232,7 +232,7 @@ _SIZES = {"N/(m kg)": 100.0}
 
 def _reference(name: str, typical: Mapping[str, float]) -> float:
     """Scale of a parameter's coordinate, SI; 1 for those that are fitted by their logarithms."""
-    parameter = PARAMETERS[name]
+    parameter = parameter_of(name)
     if parameter.positive:
         return 1.0
     if not parameter.scales:

@@ -18,6 +18,9 @@ BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 USUAL_ENGINE = 0.1
 """Part of the sprung mass that an engine on mounts usually is."""
 
+USUAL_ENGINE_FREQUENCY = 10.0
+"""Natural frequency of a usual engine on its mounts, Hz."""
+
 USUAL_MOUNT = 12.0
 """Rate of a usual damper mount over that of the spring."""
 
@@ -40,32 +43,29 @@ _MOUNT_DAMPING = 0.08  # damping ratio of usual engine mounts
 _WHEEL_SHARE = 0.035  # of the total mass in each wheel: between a car's 0.027 and a bus's 0.06
 
 
-class Mounting(NamedTuple):
-    """How an engine may be mounted, before the fit.
+def usual_engine(mass: float, frequency: float = USUAL_ENGINE_FREQUENCY, place: float = 0.0) -> dict[str, float]:
+    """Return the parameters of an engine on usual mounts, before the fit.
 
-    Attributes
+    Parameters
     ----------
+    mass
+        kg.
     frequency
         On its mounts, the body held, Hz.
     place
         Forward of the front axle, m.
+
+    Returns
+    -------
+    dict
+        SI, by name.
     """
-
-    frequency: float = 10.0
-    place: float = 0.0
-
-    def engine(self, mass: float) -> dict[str, float]:
-        """Return the parameters of an engine of a mass in kg, SI, by name."""
-        omega = 2 * np.pi * self.frequency
-        return {"m_e": mass, "k_e": mass * omega**2, "c_e": 2 * _MOUNT_DAMPING * mass * omega, "x_e": self.place}
+    omega = 2 * np.pi * frequency
+    return {"m_e": mass, "k_e": mass * omega**2, "c_e": 2 * _MOUNT_DAMPING * mass * omega, "x_e": place}
 
 
-USUAL_MOUNTING = Mounting()
-"""The mounting of a start where no other is given."""
-
-
-def mountings_of(wheelbase: float) -> list[Mounting]:
-    """Return the usual mountings of engines: above either axle.
+def engine_mountings(wheelbase: float) -> list[tuple[float, float]]:
+    """Return the usual mountings of engines, above either axle.
 
     Parameters
     ----------
@@ -74,9 +74,10 @@ def mountings_of(wheelbase: float) -> list[Mounting]:
 
     Returns
     -------
-    list of Mounting
+    list of tuple
+        Frequency, Hz, and place, m, as `usual_engine` takes them.
     """
-    return [Mounting(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
+    return [(frequency, place) for frequency in _MOUNTED for place in (0.0, -wheelbase)]
 
 
 def usual_rubber(values: Mapping[str, float]) -> dict[str, float]:
@@ -173,8 +174,8 @@ def start_grid(size: VehicleSize, known: Mapping[str, KnownValue], engine: bool 
     for body, hop, damping in product(BODY_FREQUENCIES, HOP_FREQUENCIES, DAMPING_RATIOS):
         values = {**usual_vehicle(size, body, hop, damping), **NEUTRAL}
         values |= usual_rubber(values)
-        for mounting in mountings_of(size.wheelbase) if engine else [USUAL_MOUNTING]:
-            values |= mounting.engine(USUAL_ENGINE * size.sprung_mass)
+        for mounting in engine_mountings(size.wheelbase) if engine else [(USUAL_ENGINE_FREQUENCY, 0.0)]:
+            values |= usual_engine(USUAL_ENGINE * size.sprung_mass, *mounting)
             yield values | {name: one.value for name, one in known.items() if name in values}
 
 

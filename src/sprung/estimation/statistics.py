@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
-from sprung.estimation.objective import HasModalResponse
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay, Moments, pool_moments
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, LinearModel, Sensor, is_of_sensor
+from sprung.vehicle import LinearModel, Sensor, is_of_sensor, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -112,7 +111,9 @@ class FitStatistics:
 
     def moved(self, step: Real) -> Real:
         """Return parameter values, SI, a step of the coordinates away, shape (parameter,)."""
-        logarithmic, scales = np.array([(PARAMETERS[name].positive, PARAMETERS[name].scales) for name in self.names]).T
+        logarithmic, scales = np.array(
+            [(parameter_of(name).positive, parameter_of(name).scales) for name in self.names]
+        ).T
         # What scales everything is taken apart: it multiplies those that are not fitted by their logarithms as well.
         alike = float(step @ self.scaling) / max(float(self.scaling @ self.scaling), np.finfo(float).tiny)
         rest = step - alike * self.scaling
@@ -144,14 +145,14 @@ class FitStatistics:
     @property
     def scaling(self) -> Real:
         """The direction of the coordinates in which every mass and rate grows alike, which no acceleration shows."""
-        scales = np.array([PARAMETERS[name].scales for name in self.names])
+        scales = np.array([parameter_of(name).scales for name in self.names])
         return np.where(scales, self.values / self.slopes, 0.0)
 
     def size(self, name: str) -> float:
         """Size of a parameter: its value, or, where that may be zero, what would matter beside others."""
         at = self.names.index(name)
         value = abs(float(self.values[at]))
-        return value if PARAMETERS[name].positive else max(value, abs(float(self.slopes[at])))
+        return value if parameter_of(name).positive else max(value, abs(float(self.slopes[at])))
 
     def spread(self, direction: Real, value: float) -> float | None:
         """Return the standard uncertainty of a function of the coordinates.
@@ -258,12 +259,10 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     information, _, null_space = problem.system(optimum, inflation)
     eigenvalues, vectors = np.linalg.eigh(information)
     rounding = RANK * eigenvalues.max(initial=0.0)
-    if eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
-        match optimum.at:
-            case HasModalResponse() as at:
-                basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
-                bias = basis.T @ at.noise_bias_of_information() @ basis
-                eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
-            case _:
-                pass  # a stepped motion follows its initial states: nothing is known of a bias
+    # A stepped motion follows its initial states: nothing is known of a bias.
+    modal = optimum.at.modal
+    if modal is not None and eigenvalues.size and eigenvalues[0] < _BEYOND_DOUBT:
+        basis = problem.priors.coordinates.derivatives(optimum.u)[:, None] * null_space
+        bias = basis.T @ modal.noise_bias_of_information() @ basis
+        eigenvalues, vectors = np.linalg.eigh(information - _BIAS_FACTOR * bias)
     return np.where(eigenvalues < rounding, 0.0, eigenvalues), null_space @ vectors

@@ -37,6 +37,7 @@ class TimeSteppingAt:
     weights: Real
 
     is_reversible = False
+    modal = None
 
     @property
     def objective(self) -> TimeSteppingObjective:

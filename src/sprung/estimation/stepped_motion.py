@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Prediction, Stepper, Trajectory, differentiate_motions, segments_of
+from sprung.vehicle import Stepper, Trajectory, differentiate_motions, segments_of
 
 if TYPE_CHECKING:
     from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -45,16 +45,21 @@ class SteppedMotion:
     stepper: Stepper
     trajectory: Trajectory
 
-    def predict(self, change: Real) -> Prediction:
-        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
+    def predict(self, change: Real) -> tuple[Real, Real]:
+        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown).
+
+        Returns
+        -------
+        starts, transitions
+            As `integrate_near` takes them.
+        """
         _, by_unknown, transitions = self.linearised
         steps = len(self.trajectory.states) - 1
         number, length = segments_of(steps, self.objective.every)
         first = np.minimum(np.arange(number) * length, steps)
         starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
-        return Prediction(
-            np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True), transitions
-        )
+        moved = np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True)
+        return moved, transitions
 
     @cached_property
     def _inputs(self) -> Real:
@@ -124,7 +129,7 @@ class SteppedMotion:
 
     @cached_property
     def linearised(self) -> tuple[Real, Real, Real]:
-        """The products by window, and what predicts motions nearby: `Sensitivities.starts` and `Sensitivities.transitions`."""
+        """The products by window, and what predicts motions nearby: starts and transitions of `differentiate_motions`."""
         objective = self.objective
         S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
         channels, shared = len(S), objective.sensors.shared
@@ -142,9 +147,11 @@ class SteppedMotion:
             longer = [skipped * time for time in objective.times]
             stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values[:shared])
             trajectory = Trajectory(*(part[::skipped] for part in trajectory))
-        found = differentiate_motions(stepper, trajectory, outputs, objective.every // skipped)
+        moved_drops, starts, transitions = differentiate_motions(
+            stepper, trajectory, outputs, objective.every // skipped
+        )
         products = []
-        for drop, (moved, samples) in enumerate(zip(found.outputs, objective.samples, strict=True)):
+        for drop, (moved, samples) in enumerate(zip(moved_drops, objective.samples, strict=True)):
             inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
             if self._gravity:
                 readings -= self._gravity * (inputs[:, None, 1:3] @ moved[:samples, channels:])
@@ -162,4 +169,4 @@ class SteppedMotion:
             windows = np.split(columns, np.minimum(ends, samples), axis=1)
             products.append([np.swapaxes(window, 1, 2) @ window for window in windows])
         by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
-        return by_window, found.starts, found.transitions
+        return by_window, starts, transitions

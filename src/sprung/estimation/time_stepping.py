@@ -21,7 +21,6 @@ from sprung.preprocess import FreeDecay
 from sprung.vehicle import (
     ElementInput,
     NonlinearModel,
-    Prediction,
     Readout,
     Stepper,
     coordinates,
@@ -171,10 +170,12 @@ class TimeSteppingObjective:
         begin[:, : self.states.shape[1]] += self.states[:, : begin.shape[1]]
         return self.at_states(values, weights, begin)
 
-    def at_states(self, values: Real, weights: Real, begin: Real, near: Prediction | None = None) -> TimeSteppingAt:
+    def at_states(
+        self, values: Real, weights: Real, begin: Real, near: tuple[Real, Real] | None = None
+    ) -> TimeSteppingAt:
         """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory).
 
-        A prediction of the motions saves time.
+        What is known of the motions, as from `SteppedMotion.predict`, saves time.
         """
         stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
         states, memories = np.split(begin, [self.state_size], axis=1)
@@ -182,7 +183,7 @@ class TimeSteppingObjective:
         if near is None:
             trajectory = stepper.integrate(states, memories, steps)
         else:
-            trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
+            trajectory = integrate_near(stepper, states, memories, steps, self.every, *near)
         return TimeSteppingAt(SteppedMotion(self, values, begin, stepper, trajectory), weights)
 
     def sag(self, values: Real) -> Real:

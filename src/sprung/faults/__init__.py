@@ -6,19 +6,18 @@ fitted, and none is accepted on suspicion: it has to explain the recordings, bey
 well.
 """
 
+from sprung.faults.candidate_fit import CandidateFit, decays_without_wheel_sensors
 from sprung.faults.consistency import Consistency, consistency_of, largest_expected_gain, score_faults_of
 from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolate import Isolated, isolate
-from sprung.faults.isolation import FaultIsolation, decays_without_wheel_sensors
+from sprung.faults.isolate import isolate
 from sprung.faults.residual_table import is_explained, reference_noise, residual_table
 from sprung.faults.statements.search import examine
 
 __all__ = [
+    "CandidateFit",
     "Consistency",
-    "FaultIsolation",
     "Hypothesis",
-    "Isolated",
     "consistency_of",
     "decays_without_wheel_sensors",
     "detect_drift",

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
 from sprung.faults.channel_prediction import ChannelPrediction
@@ -17,7 +18,6 @@ from sprung.faults.consistency import NEGLIGIBLE
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.faults.residual_table import ResidualTable
 
 Real = NDArray[np.float64]
@@ -47,22 +47,22 @@ class ChannelDeletion:
 
     Attributes
     ----------
-    isolation
-        The campaign.
+    base
+        The fit with it.
     channel
         Index of the channel.
     candidate
         The fit without it.
     """
 
-    isolation: FaultIsolation
+    base: CandidateFit
     channel: int
     candidate: CandidateFit
 
     @property
     def name(self) -> str:
         """Of the channel."""
-        return self.isolation.campaign.sensors[self.channel].channel
+        return self.base.campaign.sensors[self.channel].channel
 
     @property
     def correction(self) -> Correction:
@@ -73,8 +73,8 @@ class ChannelDeletion:
     def prediction(self) -> ChannelPrediction:
         """The channel beside the motion of that vehicle."""
         states = dict(zip((decay.file for decay in self.candidate.decays), self.candidate.fit.states, strict=True))
-        decays = [decay for decay in self.isolation.decays if decay.usable[self.channel] and decay.file in states]
-        drifts = bool(self.isolation.base.drifting[self.channel])
+        decays = [decay for decay in self.base.decays if decay.usable[self.channel] and decay.file in states]
+        drifts = bool(self.base.drifting[self.channel])
         return ChannelPrediction(
             self.candidate, self.channel, decays, np.array([states[decay.file] for decay in decays]), drifts
         )
@@ -90,13 +90,13 @@ class ChannelDeletion:
 
     def table(self, residual: Real) -> ResidualTable:
         """Return the residuals of all channels, given those of this one in each of its decays, shape (decay,)."""
-        rows = [self.isolation.recordings.index(decay.file) for decay in self.prediction.decays]
-        counts = self.isolation.base.table.counts[rows][:, [self.channel]]
+        rows = [self.base.recordings.index(decay.file) for decay in self.prediction.decays]
+        counts = self.base.table.counts[rows][:, [self.channel]]
         return self.candidate.table.with_part(rows, [self.channel], residual[:, None], counts)
 
     def hypotheses(self) -> Iterator[Hypothesis]:
         """Yield what may be wrong with the channel, each with the residuals that it predicts."""
-        noise = float(self.isolation.noise.level[self.channel])
+        noise = float(self.base.noise.level[self.channel])
         silent = flat(self.prediction, noise)
         if silent is not None:
             yield self._left_out(silent)
@@ -110,7 +110,7 @@ class ChannelDeletion:
 
     def _explains_much(self, hypothesis: ChannelHypothesis) -> bool:
         """Whether a hypothesis leaves little of what the channel reads beyond its noise."""
-        noise = self.isolation.noise.level[self.channel] ** 2 * self.prediction.record.size
+        noise = self.base.noise.level[self.channel] ** 2 * self.prediction.record.size
         return bool(hypothesis.residual.sum() - noise < _SHARE * (self.prediction.energy - noise))
 
     def scored(self, scores: Sequence[FaultScore]) -> Iterator[ChannelCorrection]:
@@ -129,12 +129,12 @@ class ChannelDeletion:
                     if not hypothesis.allows(numbers):
                         continue
                     correction = ChannelCorrection.of(
-                        self, hypothesis, hypothesis.correction, numbers, candidate=self.isolation.base
+                        self, hypothesis, hypothesis.correction, numbers, candidate=self.base
                     )
                     gain = sum(score.gain for score in own)
                     yield replace(
                         correction,
-                        table=self.isolation.base.table,
+                        table=self.base.table,
                         score_gain=gain,
                         is_beyond_prior=own[0].is_beyond_prior,
                         required=own[0].required,
@@ -194,7 +194,7 @@ class ChannelCorrection(Hypothesis):
         table = deletion.table(hypothesis.residual)
         if candidate is not None:
             # The residuals count in the units of the channel as it was recorded.
-            rows, counts = range(len(deletion.isolation.recordings)), candidate.table.counts[:, [deletion.channel]]
+            rows, counts = range(len(deletion.base.recordings)), candidate.table.counts[:, [deletion.channel]]
             residual = hypothesis.reading(numbers) ** 2 * candidate.table.residual[:, [deletion.channel]]
             table = candidate.table.with_part(rows, [deletion.channel], residual, counts)
         return cls(
@@ -211,13 +211,13 @@ class ChannelCorrection(Hypothesis):
             numbers=numbers,
         )
 
-    def confirm(self, isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
+    def confirm(self, base: CandidateFit) -> tuple[Hypothesis | None, int]:
         """Fit the campaign with the channel corrected, and its numbers along with it.
 
         Parameters
         ----------
-        isolation
-            The campaign.
+        base
+            The fit of the campaign as it is.
 
         Returns
         -------
@@ -228,9 +228,9 @@ class ChannelCorrection(Hypothesis):
         """
         deletion, hypothesis = self.deletion, self.hypothesis
         numbers, scores = self.numbers, list[FaultScore]()
-        candidate = isolation.fit(self.correction, self.candidate.fit)
+        candidate = base.refit(self.correction, self.candidate.fit)
         fits = 1
-        explains = self.is_beyond_prior or candidate.misfit <= _HALF * isolation.base.misfit
+        explains = self.is_beyond_prior or candidate.misfit <= _HALF * base.misfit
         if self.score_gain > 0 and not explains:
             return None, fits  # the score test was made too far away
         while numbers:
@@ -241,7 +241,7 @@ class ChannelCorrection(Hypothesis):
             # Where the residuals are noise already, the numbers are settled in the fit of all drops.
             if candidate.is_explained or fits > _REFITS or numbers == before:
                 break
-            candidate = isolation.fit(self.correct(numbers), candidate.fit)
+            candidate = base.refit(self.correct(numbers), candidate.fit)
             fits += 1
         if not _is_relevant(hypothesis, numbers) or not hypothesis.allows(numbers):
             return None, fits

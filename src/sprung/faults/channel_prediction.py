@@ -12,7 +12,7 @@ from scipy.fft import dct
 from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
-from sprung.faults.isolation import DRIFT_SPAN, CandidateFit
+from sprung.faults.candidate_fit import DRIFT_SPAN, CandidateFit
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Rows, Sensor, coordinates

@@ -13,20 +13,17 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FitResult, HasModalResponse, lift_priors, score_added
+from sprung.estimation import ClosedFormAt, FitResult, lift_priors, score_added
 from sprung.selection import required_gain
 from sprung.vehicle import (
-    SENSOR_DELAY,
-    SENSOR_GAIN,
-    SENSOR_X,
-    SENSOR_Y,
     Heights,
     LinearModel,
     Load,
     Rows,
     Sensor,
-    SensorUnknown,
+    SensorQuantity,
     is_of_sensor,
+    sensor_unknown,
 )
 
 Real = NDArray[np.float64]
@@ -116,27 +113,26 @@ def score_faults(
     tuple of FaultScore
         Those that the records determine; none where modal coordinates do not exist, as with nonlinear forces.
     """
-    match fit.iterate.at:
-        case HasModalResponse() as at:
-            lifted = {score[:4]: score for score in _lifted_scores(fit, sensors)}
-            changes = [one for one in _changes(fit, at, sensors, loads, heights) if one[0] not in lifted]
-            test = score_added(fit, *at.with_changes(np.concatenate([readings for _, readings in changes], axis=2)))
-            numbers = zip(test.values.tolist(), test.stds.tolist(), test.max_shifts.tolist(), strict=True)
-            scores = [
-                FaultScore(*labels, *estimate)
-                for (labels, _), estimate, determined in zip(changes, numbers, test.determined, strict=True)
-                if determined
-            ]
-            return tuple(sorted((*lifted.values(), *scores), key=lambda score: score.gain, reverse=True))
-        case _:
-            return ()
+    at = fit.iterate.at.modal
+    if at is None:
+        return ()
+    lifted = {score[:4]: score for score in _lifted_scores(fit, sensors)}
+    changes = [one for one in _changes(fit, at, sensors, loads, heights) if one[0] not in lifted]
+    test = score_added(fit, *at.with_changes(np.concatenate([readings for _, readings in changes], axis=2)))
+    numbers = zip(test.values.tolist(), test.stds.tolist(), test.max_shifts.tolist(), strict=True)
+    scores = [
+        FaultScore(*labels, *estimate)
+        for (labels, _), estimate, determined in zip(changes, numbers, test.determined, strict=True)
+        if determined
+    ]
+    return tuple(sorted((*lifted.values(), *scores), key=lambda score: score.gain, reverse=True))
 
 
-_KINDS: Mapping[SensorUnknown, tuple[Kind, int]] = {
-    SENSOR_GAIN: ("gain", 0),
-    SENSOR_X: ("position", 0),
-    SENSOR_Y: ("position", 1),
-    SENSOR_DELAY: ("late", 0),
+_KINDS: Mapping[SensorQuantity, tuple[Kind, int]] = {
+    "gain": ("gain", 0),
+    "x": ("position", 0),
+    "y": ("position", 1),
+    "delay": ("late", 0),
 }
 """Faults that lie beyond what is stated of the unknowns of a sensor."""
 
@@ -150,8 +146,8 @@ def _lifted_scores(fit: FitResult, sensors: Sequence[Sensor]) -> Iterator[FaultS
     """
     lifts = lift_priors(fit, [name for name in fit.names if is_of_sensor(name)])
     for sensor in sensors:
-        for unknown, (kind, axis) in _KINDS.items():
-            if (lifted := lifts.get(f"{unknown.prefix}{sensor.channel}")) is not None:
+        for quantity, (kind, axis) in _KINDS.items():
+            if (lifted := lifts.get(sensor_unknown(quantity, sensor.channel))) is not None:
                 yield FaultScore(kind, sensor.channel, axis, 0, *lifted, uncertainties=len(lifts))
 
 
@@ -159,7 +155,7 @@ _Labels = tuple[Kind, str, int, int]
 
 
 def _changes(
-    fit: FitResult, at: HasModalResponse, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
+    fit: FitResult, at: ClosedFormAt, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
 ) -> Iterator[tuple[_Labels, Complex]]:
     """Yield what each change is, and its derivatives of the readings, (load, channel, 1, 2 mode)."""
     modes, m = at.modes, at.modes.poles.shape[-1]

@@ -9,10 +9,10 @@ from typing import Literal
 import numpy as np
 
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.consistency import SIGNIFICANT
 from sprung.faults.correction import Correction
 from sprung.faults.fault_scores import FaultScore
-from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.faults.residual_table import ResidualTable
 
 Remedy = Literal["corrected", "left out", "named"]
@@ -47,6 +47,8 @@ class Hypothesis:
         What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
     is_beyond_prior
         Whether its numbers lie beyond what the campaign states of a sensor with an uncertainty.
+    is_sufficient
+        Whether what it leaves is at its own place, and perhaps gone once the corrected recordings are preprocessed again.
     required
         Gain in twice the log-likelihood that it needs by the error budget.
     """
@@ -62,6 +64,7 @@ class Hypothesis:
     is_fitted: bool = False
     score_gain: float = 0.0
     is_beyond_prior: bool = False
+    is_sufficient: bool = False
     required: float = SIGNIFICANT
 
     @property
@@ -69,13 +72,13 @@ class Hypothesis:
         """Whether the residuals are noise alone if it holds."""
         return self.table.is_explained(self.candidate.noise)
 
-    def confirm(self, isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
+    def confirm(self, base: CandidateFit) -> tuple[Hypothesis | None, int]:
         """Fit the campaign with the correction.
 
         Parameters
         ----------
-        isolation
-            The campaign.
+        base
+            The fit of the campaign as it is.
 
         Returns
         -------
@@ -86,7 +89,7 @@ class Hypothesis:
         """
         if self.remedy != "corrected":
             return self, 0
-        candidate = isolation.fit(self.correction, self.candidate.fit)
+        candidate = base.refit(self.correction, self.candidate.fit)
         return replace(self, table=candidate.table, candidate=candidate, is_fitted=True, score_gain=0.0), 1
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:  # noqa: ARG002 (one form for all)

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, torsion_test
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel_deletion import ChannelDeletion
 from sprung.faults.consistency import SHARE, SIGNIFICANT
 from sprung.faults.correction import Correction, exclude_drops, mask_channel
 from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
-from sprung.faults.isolation import FaultIsolation
 from sprung.progress import Progress, Step, silent
 from sprung.selection import WORTH_A_FIT
 
@@ -34,139 +34,118 @@ _STATEMENT = 0.1
 """Share of a misfit that a wrong statement may leave: it explains the recordings wholly or is none."""
 
 
-@dataclass(frozen=True, eq=False)
-class Isolated:
-    """Faults that were isolated.
-
-    Attributes
-    ----------
-    hypotheses
-        One after the other; empty where nothing explains the recordings.
-    is_explained
-        Whether the residuals are noise alone once they are corrected.
-    fits
-        How many fits were made.
-    is_flexible_body
-        Whether the body twists: no model term but that of a flexible body can explain what is left.
-    """
-
-    hypotheses: tuple[Hypothesis, ...]
-    is_explained: bool
-    fits: int
-    is_flexible_body: bool = False
-
-
-def isolate(isolation: FaultIsolation, progress: Progress = silent) -> Isolated:
+def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypothesis, ...], int]:
     """Isolate what is wrong, one fault after the other.
 
     Parameters
     ----------
-    isolation
-        The campaign with the fit that is inconsistent with it.
+    base
+        The fit that is inconsistent with its campaign.
     progress
         Called with each step that begins.
 
     Returns
     -------
-    Isolated
+    hypotheses
+        One after the other; empty where nothing explains the recordings. They explain them wholly where the residuals of the
+        last one's fit are noise alone.
+    fits
+        How many fits were made.
     """
-    first, fits = isolation, 0
+    first, fits = base, 0
     accepted: list[Hypothesis] = []
     sufficient = 0
     while len(accepted) < _MOST_FAULTS:
-        best, more = most_likely(isolation, progress)
+        best, more = most_likely(base, progress)
         fits += more
         if best is None or (not best.is_specific and any(not one.is_specific for one in accepted)):
             break
         if not best.is_specific and best.candidate.is_explained and any(one.overlaps(best) for one in accepted):
             # What is left at the place of a correction may be gone once the recordings are corrected and preprocessed again.
-            return Isolated(tuple(accepted), True, fits)
+            return (*accepted[:-1], replace(accepted[-1], is_sufficient=True)), fits
         accepted.append(best)
-        if best.candidate.is_explained or best.candidate.misfit < SHARE * first.base.misfit:
+        if best.candidate.is_explained or best.candidate.misfit < SHARE * first.misfit:
             sufficient = len(accepted)
         if best.candidate.is_explained or best.remedy == "named":
             break
-        isolation = isolation.after(best.candidate)
+        base = best.candidate
     hypotheses = tuple(accepted[:sufficient])
-    if not first.base.is_explained and all(not hypothesis.is_specific for hypothesis in hypotheses):
+    if not first.is_explained and all(not hypothesis.is_specific for hypothesis in hypotheses):
         fault = torsion_test(first)
         if fault is not None:
-            named = Hypothesis(fault, "named", Correction(), first.base.table, first.base)
-            return Isolated((named,), False, fits, is_flexible_body=True)
-    explained = bool(hypotheses) and hypotheses[-1].candidate.is_explained
-    return Isolated(hypotheses, explained, fits)
+            return (Hypothesis(fault, "named", Correction(), first.table, first),), fits
+    return hypotheses, fits
 
 
-def most_likely(isolation: FaultIsolation, progress: Progress = silent) -> tuple[Hypothesis | None, int]:
+def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypothesis | None, int]:
     """Return the most likely hypothesis, and how many fits were made; None where none is convincing.
 
     Where another hypothesis explains the recordings about as well, the best one is only named, and the other one with it.
 
     Parameters
     ----------
-    isolation, progress
+    base, progress
         As for `isolate`.
     """
     progress(Step("testing the statements about loads and masses"))
-    best, fits = _wrong_statement(isolation)
+    best, fits = _wrong_statement(base)
     if best is not None:
         return best, fits
-    is_near = isolation.base.is_explained
-    ranked = [*_by_scores(isolation), *load_position(isolation), *high_passes(isolation)]
-    deletions = () if is_near else _deletions(isolation, progress)
+    is_near = base.is_explained
+    ranked = [*_by_scores(base), *load_position(base), *high_passes(base)]
+    deletions = () if is_near else _deletions(base, progress)
     limit = deletions[0].limit.cost if deletions else np.inf
     # Where the fit is far away, score tests are not to be trusted: only what explains everything counts, and more than any
     # channel or drop would that is left out.
     if is_near or min((one.score() for one in ranked), default=np.inf) < limit:
-        best, ranked, more = _confirm_best(isolation, ranked, _MOST_FITS if is_near else 1)
+        best, ranked, more = _confirm_best(base, ranked, _MOST_FITS if is_near else 1)
         fits += more
         if best is not None and (is_near or best.candidate.is_explained):
-            return _with_rival(isolation, best, ranked), fits
+            return _with_rival(base, best, ranked), fits
     best = None
-    for hypotheses, made in _groups(isolation, deletions, progress):
-        other, ranked, more = _confirm_best(isolation, [*ranked, *hypotheses])
+    for hypotheses, made in _groups(base, deletions, progress):
+        other, ranked, more = _confirm_best(base, [*ranked, *hypotheses])
         fits += made + more
         if other is not None and (best is None or other.score() < best.score()):
             best = other
         if best is not None and best.candidate.is_explained:
             break
-    best = best or _left_over(isolation, ranked)
-    return (None if best is None else _with_rival(isolation, best, ranked)), fits
+    best = best or _left_over(base, ranked)
+    return (None if best is None else _with_rival(base, best, ranked)), fits
 
 
 def _groups(
-    isolation: FaultIsolation, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
+    base: CandidateFit, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
 ) -> Iterator[tuple[list[Hypothesis], int]]:
     """Yield hypotheses about single channels and drops, and those about exchanged ones; and how many fits each group took.
 
     The group that is predicted to explain the recordings better comes first. Nothing that is exchanged is a small fault.
     """
-    if isolation.base.is_explained:
-        yield _of_parts(isolation, _deletions(isolation, progress), progress)
+    if base.is_explained:
+        yield _of_parts(base, _deletions(base, progress), progress)
         return
-    limit = deletions[0].limit if deletions else isolation.base.table
-    is_alone = limit.is_explained(isolation.noise)
+    limit = deletions[0].limit if deletions else base.table
+    is_alone = limit.is_explained(base.noise)
     if is_alone:
-        yield _of_parts(isolation, deletions, progress)
+        yield _of_parts(base, deletions, progress)
     progress(Step("testing for exchanged loads and channels"))
-    exchanges = _with_refined(isolation, [*exchanged_loads(isolation), *exchanged_channels(isolation)])
+    exchanges = _with_refined(base, [*exchanged_loads(base), *exchanged_channels(base)])
     is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
     if is_likelier or is_alone:
         yield exchanges, 0
     # Where the body twists, each of its sensors contradicts the others: no part is to be examined.
-    if not is_alone and torsion_test(isolation) is None:
-        yield _of_parts(isolation, deletions, progress)
+    if not is_alone and torsion_test(base) is None:
+        yield _of_parts(base, deletions, progress)
     if not (is_likelier or is_alone):
         yield exchanges, 0
 
 
-def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]:
+def _wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     """Return the one statement about loads or masses that explains the recordings wholly, being otherwise."""
-    base = isolation.base
     promising = sorted(
         (
             hypothesis
-            for hypothesis in (*load_frames(isolation), *known_quantities(isolation))
+            for hypothesis in (*load_frames(base), *known_quantities(base))
             if hypothesis.candidate.misfit <= SHARE * base.misfit
             and base.table.cost - hypothesis.table.cost > SIGNIFICANT
         ),
@@ -174,7 +153,7 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
     )
     confirmed: list[Hypothesis] = []
     for hypothesis in promising[:_MOST_STATEMENTS]:
-        other, _ = hypothesis.confirm(isolation)
+        other, _ = hypothesis.confirm(base)
         gain = 0.0 if other is None else base.table.cost - other.table.cost
         if other is None or other.candidate.misfit > _STATEMENT * base.misfit:
             continue
@@ -186,36 +165,34 @@ def _wrong_statement(isolation: FaultIsolation) -> tuple[Hypothesis | None, int]
     return (confirmed[0] if confirmed and not is_ambiguous else None), len(promising[:_MOST_STATEMENTS])
 
 
-def _by_scores(isolation: FaultIsolation) -> list[Hypothesis]:
+def _by_scores(base: CandidateFit) -> list[Hypothesis]:
     """Return the channel hypotheses of small size that gain by their score tests."""
-    base = isolation.base
     hypotheses: list[Hypothesis] = []
-    for channel, sensor in enumerate(isolation.campaign.sensors):
+    for channel, sensor in enumerate(base.campaign.sensors):
         own = [score for score in base.scores if score.where == sensor.channel]
         if any(score.gain > score.required for score in own):
-            hypotheses += ChannelDeletion(isolation, channel, base).scored(own)
+            hypotheses += ChannelDeletion(base, channel, base).scored(own)
     return hypotheses
 
 
-def _deletions(isolation: FaultIsolation, progress: Progress) -> list[ChannelDeletion | DropDeletion]:
+def _deletions(base: CandidateFit, progress: Progress) -> list[ChannelDeletion | DropDeletion]:
     """Return each channel and each drop left out, by a few steps; first the one whose deletion gains most."""
     progress(Step("leaving out each channel and each drop"))
-    table = isolation.base.table
+    table = base.table
     channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
     deletions: list[ChannelDeletion | DropDeletion] = []
     for channel in channels if len(channels) > 1 else ():
-        deletions.append(ChannelDeletion(isolation, channel, isolation.delete(mask_channel(channel))))
+        deletions.append(ChannelDeletion(base, channel, base.delete(mask_channel(channel))))
     for drop in drops if len(drops) > 1 else ():
-        candidate = isolation.delete(exclude_drops(isolation.recordings[drop]))
-        deletions.append(DropDeletion(isolation, drop, candidate, DROP_HYPOTHESES))
+        candidate = base.delete(exclude_drops(base.recordings[drop]))
+        deletions.append(DropDeletion(base, drop, candidate, DROP_HYPOTHESES))
     return sorted(deletions, key=lambda deletion: deletion.limit.cost)
 
 
 def _of_parts(
-    isolation: FaultIsolation, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
+    base: CandidateFit, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
 ) -> tuple[list[Hypothesis], int]:
     """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
-    base = isolation.base
     gains = [base.table.cost - deletion.limit.cost for deletion in deletions]
     hypotheses: list[Hypothesis] = []
     fits, is_found = 0, False
@@ -223,7 +200,7 @@ def _of_parts(
         if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * gains[0]):
             break
         progress(Step(f"fitting without {deletion.name}"))
-        candidate = isolation.fit(deletion.correction)
+        candidate = base.refit(deletion.correction)
         hypotheses += replace(deletion, candidate=candidate).hypotheses()
         fits += 1
         # Once it is known what, left out, leaves noise alone, only what was expected to gain as much is another cause.
@@ -232,16 +209,16 @@ def _of_parts(
     return hypotheses, fits
 
 
-def _with_refined(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+def _with_refined(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
     """Return hypotheses of which one step from far away tells the residuals, the best few after some steps more."""
     ranked = sorted(hypotheses, key=lambda hypothesis: hypothesis.score())
-    candidates = (isolation.refine(one.correction, one.candidate.fit) for one in ranked[:_MOST_FITS])
+    candidates = (base.refine(one.correction, one.candidate.fit) for one in ranked[:_MOST_FITS])
     refined = [replace(one, table=new.table, candidate=new) for one, new in zip(ranked, candidates, strict=False)]
     return [*refined, *ranked[_MOST_FITS:]]
 
 
 def _confirm_best(
-    isolation: FaultIsolation, hypotheses: Sequence[Hypothesis], most: int = _MOST_FITS
+    base: CandidateFit, hypotheses: Sequence[Hypothesis], most: int = _MOST_FITS
 ) -> tuple[Hypothesis | None, list[Hypothesis], int]:
     """Fit the most likely specific hypotheses, one after the other, until one is convincing.
 
@@ -254,24 +231,23 @@ def _confirm_best(
     fits
         How many were made.
     """
-    remaining, rest, fits = [one for one in hypotheses if _is_promising(isolation, one)], list(hypotheses), 0
+    remaining, rest, fits = [one for one in hypotheses if _is_promising(base, one)], list(hypotheses), 0
     while remaining and fits < most:
         best = best_of(remaining, SIGNIFICANT)
         remaining.remove(best)
         rest.remove(best)
-        confirmed, made = best.confirm(isolation)
+        confirmed, made = best.confirm(base)
         fits += made
         if confirmed is None:
             continue
         rest.append(confirmed)
-        if _is_convincing(isolation, confirmed, rest):
+        if _is_convincing(base, confirmed, rest):
             return confirmed, rest, fits
     return None, rest, fits
 
 
-def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
+def _is_promising(base: CandidateFit, hypothesis: Hypothesis) -> bool:
     """Whether a fit of a hypothesis may be convincing, by what it predicts."""
-    base = isolation.base
     gain = base.table.cost - hypothesis.score()
     # Where what is left is noise, a small fault has to stand out from its colour, as far as its score may understate it.
     expected = WORTH_A_FIT * gain / base.fit.overdispersion if base.is_explained else gain
@@ -281,9 +257,9 @@ def _is_promising(isolation: FaultIsolation, hypothesis: Hypothesis) -> bool:
     )
 
 
-def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
+def _is_convincing(base: CandidateFit, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:
     """Whether a hypothesis explains much of the misfit, and more than chance does."""
-    base, overdispersion = isolation.base, hypothesis.candidate.fit.overdispersion
+    overdispersion = hypothesis.candidate.fit.overdispersion
     gain = base.table.inflated_cost(overdispersion) - hypothesis.score(overdispersion)
     required = max(hypothesis.required, SHARE * base.misfit / overdispersion if base.is_explained else 0.0)
     explains = base.is_explained or hypothesis.candidate.misfit < _FEW * base.misfit
@@ -293,19 +269,19 @@ def _is_convincing(isolation: FaultIsolation, hypothesis: Hypothesis, others: Se
     return gain > required and explains and not is_beaten
 
 
-def _left_over(isolation: FaultIsolation, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
+def _left_over(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> Hypothesis | None:
     """Return what, left out, leaves noise alone, though nothing tells what is wrong with it."""
-    if isolation.base.is_explained:
+    if base.is_explained:
         return None
     unnamed = [one for one in hypotheses if not one.is_specific and one.candidate.is_explained]
     return min(unnamed, key=lambda hypothesis: hypothesis.score(), default=None)
 
 
-def _with_rival(isolation: FaultIsolation, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Hypothesis:
+def _with_rival(base: CandidateFit, best: Hypothesis, hypotheses: Sequence[Hypothesis]) -> Hypothesis:
     """Return the best hypothesis; only named, and together with another one that explains the recordings about as well."""
     overdispersion = best.candidate.fit.overdispersion
     limit = best.score(overdispersion) + best.required
-    largest = np.inf if isolation.base.is_explained else max(SHARE * isolation.base.misfit, best.candidate.misfit)
+    largest = np.inf if base.is_explained else max(SHARE * base.misfit, best.candidate.misfit)
     rivals = [
         other
         for other in hypotheses

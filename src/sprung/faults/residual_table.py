@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import FitResult
-from sprung.preprocess import FreeDecay, estimate_sensor_noise
+from sprung.preprocess import FreeDecay, SensorNoise, estimate_sensor_noise
 from sprung.selection import required_gain
 from sprung.vehicle import is_of_sensor
 
@@ -24,33 +23,10 @@ _CHANCE = 4.0
 """Standard errors by which a residual may exceed the noise at rest by chance."""
 
 _LEAST_NOISE = 1e-3
-"""ReferenceNoise as a part of a channel's signal, below which no model error matters: for records without any."""
+"""Noise as a part of a channel's signal, below which no model error matters: for records without any."""
 
 _FEW = 50
 """Samples at rest below which they say nothing about the noise."""
-
-
-class ReferenceNoise(NamedTuple):
-    """What the sensors read at rest.
-
-    Attributes
-    ----------
-    level
-        m/s², root-mean-square, shape (channel,).
-    correlation
-        Samples of it that determine a variance as well as one independent one, shape (channel,).
-    samples
-        From how many that is known, shape (channel,).
-    """
-
-    level: Real
-    correlation: Real
-    samples: Real
-
-    def of_present(self, table: ResidualTable, other: ReferenceNoise) -> ReferenceNoise:
-        """Return the noise, that of channels without any sample in a table taken from another one."""
-        present = table.counts.any(axis=0)
-        return ReferenceNoise(*(np.where(present, own, before) for own, before in zip(self, other, strict=True)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,24 +62,24 @@ class ResidualTable:
         """Return the same where the records count for less by a factor; what is stated of the sensors counts whole."""
         return (self.cost - self.penalty) / overdispersion + self.penalty
 
-    def explicable(self, noise: ReferenceNoise) -> float:
+    def explicable(self, noise: SensorNoise) -> float:
         """Return what twice the log-likelihood would gain if nothing but noise were left."""
         counts = self.counts.sum(axis=0)
         used = counts > 0
         return self.cost - float(np.sum(counts[used] * np.log(noise.level[used] ** 2)))
 
-    def ratio(self, noise: ReferenceNoise) -> Real:
+    def ratio(self, noise: SensorNoise) -> Real:
         """Return residual over noise, root-mean-square, of each drop and channel; 0 for what is left out."""
         ratio: Real = np.sqrt(self.residual / np.maximum(self.counts, 1)) / noise.level
         return ratio
 
-    def _excess(self, noise: ReferenceNoise) -> Real:
+    def _excess(self, noise: SensorNoise) -> Real:
         """Return the same ratio over its upper limit in noise alone."""
-        errors = noise.correlation * (0.5 / noise.samples + 0.5 / np.maximum(self.counts, 1))
+        errors = noise.per_independent * (0.5 / noise.samples + 0.5 / np.maximum(self.counts, 1))
         excess: Real = self.ratio(noise) / (1 + _CHANCE * np.sqrt(errors))
         return excess
 
-    def misfit(self, noise: ReferenceNoise) -> float:
+    def misfit(self, noise: SensorNoise) -> float:
         """Return what the residuals are beyond noise, and the sensors beyond what is stated, in twice the log-likelihood."""
         excess = max(self.penalty - self._largest_penalty, 0.0)
         return float(np.sum(self.counts * 2 * np.log(np.maximum(self._excess(noise), 1.0)))) + excess
@@ -113,12 +89,12 @@ class ResidualTable:
         """Penalty of sensors that are as stated, by chance: chi-squared, of which each uncertainty is a degree of freedom."""
         return required_gain(self.uncertainties, 1, 1.0)
 
-    def explained_channels(self, noise: ReferenceNoise) -> NDArray[np.bool_]:
+    def explained_channels(self, noise: SensorNoise) -> NDArray[np.bool_]:
         """Of which channels the residuals are noise alone, shape (channel,)."""
         excess = np.minimum(self.ratio(noise) / _EXPLAINED, self._excess(noise))
         return np.asarray(excess.max(axis=0, initial=0.0) < 1)
 
-    def is_explained(self, noise: ReferenceNoise) -> bool:
+    def is_explained(self, noise: SensorNoise) -> bool:
         """Whether the residuals are noise alone, and the sensors what is stated of them."""
         return bool(self.explained_channels(noise).all()) and self.penalty <= self._largest_penalty
 
@@ -156,7 +132,7 @@ def residual_table(recordings: Sequence[str], decays: Sequence[FreeDecay], optim
     return ResidualTable(residual, counts, optimum.sensor_penalty, uncertainties)
 
 
-def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> ReferenceNoise:
+def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> SensorNoise:
     """Return what the sensors read at rest.
 
     Where too little rest was recorded, noise is what of the residuals changes from one sample to the next.
@@ -170,7 +146,7 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
 
     Returns
     -------
-    ReferenceNoise
+    SensorNoise
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
     signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
@@ -180,9 +156,12 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> Referenc
     if few.any():
         differences = [np.nansum(np.diff(record, n=2, axis=1) ** 2, axis=1) for record in optimum.residuals]
         variance = np.where(few, np.sum(differences, axis=0) / 6 / samples, variance)
-    level = np.sqrt(variance + noise.added)
-    level = np.maximum(np.maximum(level, _LEAST_NOISE * signal), np.finfo(float).tiny)
-    return ReferenceNoise(level, np.where(few, 1.0, noise.per_independent), np.maximum(noise.samples, _FEW))
+    least = np.maximum(_LEAST_NOISE * signal, np.finfo(float).tiny ** 0.5) ** 2
+    return noise._replace(
+        variance=np.maximum(variance, least - noise.added),
+        samples=np.maximum(noise.samples, _FEW),
+        per_independent=np.where(few, 1.0, noise.per_independent),
+    )
 
 
 def is_explained(decays: Sequence[FreeDecay], optimum: FitResult) -> bool:

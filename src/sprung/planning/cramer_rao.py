@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation import NO_INFORMATION, RANK, FitStatistics, Unidentifiable, canonical_basis, to_estimates
+from sprung.estimation import (
+    NO_INFORMATION,
+    RANK,
+    FitStatistics,
+    Unidentifiable,
+    canonical_basis,
+    to_estimates,
+    unidentifiable_combinations,
+)
 from sprung.planning.setup import MeasurementSetup
 from sprung.vehicle import is_nuisance
 
@@ -93,7 +101,8 @@ class CramerRaoBound:
             return ()
         eigenvalues, directions = self._directions
         without = canonical_basis(directions[:, eigenvalues < NO_INFORMATION])
-        combinations = to_estimates(self._expected_fit(without).of_vehicle, self.setup.known).unidentifiable
+        expected = self._expected_fit(without).of_vehicle
+        combinations = unidentifiable_combinations(expected, to_estimates(expected, self.setup.known))
         combinations = tuple(own for own in combinations if set(own.parameters) & set(undetermined))
         others = tuple(name for name in undetermined if not any(name in own.parameters for own in combinations))
         if others:

@@ -19,11 +19,10 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints
-from sprung.preprocess import FreeDecay, unknown_baseline
+from sprung.preprocess import FreeDecay, unknown_release
 from sprung.simulation import drop_from_blocks
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
-    PARAMETERS,
     LinearModel,
     Load,
     Readout,
@@ -34,6 +33,7 @@ from sprung.vehicle import (
     Wheel,
     is_nuisance,
     parameter_names,
+    parameter_of,
     seven_degrees_of_freedom,
     stiffened_air_springs,
     uncertainties_of,
@@ -102,7 +102,7 @@ class MeasurementSetup:
         invalid = [
             Problem(f"vehicle {self.vehicle.name}: {name}", "0", "a positive number", "Give it a small value instead.")
             for name, value in zip(self.names, self.values, strict=True)
-            if PARAMETERS[name].positive and not value > 0
+            if parameter_of(name).positive and not value > 0
         ]
         if invalid:
             raise InputError(invalid)
@@ -212,7 +212,7 @@ class MeasurementSetup:
             earlier=np.zeros((len(rows), 0)),
             rate=rate,
             start=first / rate,
-            rest=unknown_baseline(len(rows)),
+            rest=unknown_release(len(rows)),
         )
 
 

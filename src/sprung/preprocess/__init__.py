@@ -6,12 +6,12 @@ from sprung.preprocess.dropped_wheels import merge_dropped_wheels
 from sprung.preprocess.events import DropObservation, Events, MarkedSamples
 from sprung.preprocess.fall import BLOW, IMPACT, WHEEL_SPEED, detect_dropped_channels, measure_fall
 from sprung.preprocess.first_motion import FirstMotion, is_first_motion_consistent
-from sprung.preprocess.flight import Flight, find_flights
+from sprung.preprocess.flight import find_flights
 from sprung.preprocess.high_pass import differentiate_by_cutoff, is_ac_coupled
 from sprung.preprocess.landing import find_steepest_rise
 from sprung.preprocess.prepare import Prepared, exclude_drops, prepare
-from sprung.preprocess.release import Release, StaticBaseline, detect_release, unknown_baseline
-from sprung.preprocess.sensor_noise import Moments, estimate_sensor_noise, pool_moments
+from sprung.preprocess.release import Release, detect_release, unknown_release
+from sprung.preprocess.sensor_noise import Moments, SensorNoise, estimate_sensor_noise, pool_moments
 from sprung.preprocess.slow_motion import extract_slow_motion, find_slower_drops
 
 __all__ = [
@@ -21,14 +21,13 @@ __all__ = [
     "DropObservation",
     "Events",
     "FirstMotion",
-    "Flight",
     "FlightLikelihood",
     "FreeDecay",
     "MarkedSamples",
     "Moments",
     "Prepared",
     "Release",
-    "StaticBaseline",
+    "SensorNoise",
     "align_loggers",
     "detect_dropped_channels",
     "detect_release",
@@ -46,5 +45,5 @@ __all__ = [
     "pool_moments",
     "prepare",
     "quantisation_variance",
-    "unknown_baseline",
+    "unknown_release",
 ]

@@ -79,5 +79,5 @@ def _release_of(part: Recording) -> tuple[float, float] | None:
     found = detect_release(part.values, part.rate, _PEAK_OVER_NOISE)
     if found is None:
         return None
-    peak = np.nanmax(np.abs(part.values - found.rest.level[:, None]))
+    peak = np.nanmax(np.abs(part.values - found.level[:, None]))
     return part.start + found.sample / part.rate, _CLEAR_STD if peak > _LARGE else CLOCK_STD

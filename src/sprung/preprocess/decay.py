@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.campaign import LoggerClock
 from sprung.errors import Fault
 from sprung.preprocess.events import Events
-from sprung.preprocess.release import StaticBaseline, resolution
+from sprung.preprocess.release import Release, resolution
 
 FITTED = "in the fitted vehicle every tyre is down for good"
 """Why a fit uses a decay from elsewhere than the recording alone shows."""
@@ -96,7 +96,7 @@ class FreeDecay:
     earlier: NDArray[np.float64]
     rate: float
     start: float
-    rest: StaticBaseline
+    rest: Release
     faults: tuple[Fault, ...] = ()
     clocks: tuple[LoggerClock, ...] = ()
     high_pass: tuple[float, ...] = ()

@@ -63,7 +63,7 @@ def remove_drift(recording: Recording, release: Release | None, sensors: Sequenc
     """
     if release is None:
         return recording
-    values, rate, noise = recording.values, recording.rate, release.rest.noise
+    values, rate, noise = recording.values, recording.rate, release.noise
     rest, first = noise.shape[1], release.sample - 1 - noise.shape[1]
     end = min(round(_END * rate), (values.shape[1] - release.sample) // 3)
     if end < rest / 4 or rest < 4:
@@ -78,7 +78,7 @@ def remove_drift(recording: Recording, release: Release | None, sensors: Sequenc
     # What still moves at the end, a drift apart, hides its level.
     still = values[:, since:] - slope[:, None] * np.arange(end) / rate
     motion = np.sqrt(np.maximum(still.var(axis=1) - std**2, 0.0))
-    quantisation = release.rest.step / np.sqrt(6)
+    quantisation = release.step / np.sqrt(6)
     inflation = _variance_inflation_of_means(noise)
     error = np.sqrt(inflation * (level_error**2 + last_level_error**2) * std**2 + motion**2 + quantisation**2)
     direct = np.array([sensor.high_pass is None for sensor in sensors])

@@ -43,7 +43,7 @@ def detect_dropped_wheels(recording: Recording, release: Release | None, sensors
     wheels = np.array([sensor.on != "body" for sensor in sensors]) & recording.usable
     if release is None or not wheels.any():
         return {}
-    level, first = release.rest.level, release.sample
+    level, first = release.level, release.sample
     moved = recording.values[:, first : first + int(IMPACT * recording.rate)] - level[:, None]
     onset, depth, speed, *_ = measure_fall(moved, recording.rate, 0, level)
     channels = detect_dropped_channels(level, onset, depth, speed, wheels)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import DropTest, Recording
-from sprung.preprocess.release import StaticBaseline, unknown_baseline
+from sprung.preprocess.release import Release
 from sprung.vehicle import Wheel
 
 
@@ -72,10 +72,8 @@ class DropObservation:
         As it is stated, with its recording as it was read.
     recording
         The whole of it, in SI, corrected; with the channels that clip within the decay.
-    release
-        Position of the first sample that moves; None where no rest was found before it.
     rest
-        What the sensors read before it.
+        The release, and what the sensors read before it.
     marks
         Samples that have a fault.
     dropped
@@ -86,11 +84,15 @@ class DropObservation:
 
     drop: DropTest
     recording: Recording
-    release: int | None = None
-    rest: StaticBaseline = field(default_factory=lambda: unknown_baseline(0))
+    rest: Release
     marks: tuple[MarkedSamples, ...] = ()
     dropped: Mapping[Wheel, bool] = field(default_factory=dict)
     wheels: tuple[Wheel, ...] = ()
+
+    @property
+    def release(self) -> int | None:
+        """Position of the first sample that moves; None where no rest was found before it."""
+        return self.rest.sample or None
 
 
 def mark_samples(code: str, samples: NDArray[np.bool_]) -> tuple[MarkedSamples, ...]:

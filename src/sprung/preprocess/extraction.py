@@ -14,7 +14,7 @@ from sprung.preprocess.decay import FreeDecay
 from sprung.preprocess.events import Events
 from sprung.preprocess.high_pass import integrate_from_rest
 from sprung.preprocess.landing import Landing, detect_landing, measure_suspension_force
-from sprung.preprocess.release import Release, unknown_baseline
+from sprung.preprocess.release import Release, unknown_release
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Wheel
 
@@ -136,7 +136,7 @@ def extract_decay(
         earlier=values[:, landing.possible : first],
         rate=recording.rate,
         start=recording.start + first / recording.rate,
-        rest=unknown_baseline(len(recording.channels)) if release is None else release.rest,
+        rest=unknown_release(len(recording.channels)) if release is None else release,
         faults=tuple(faults),
         clocks=recording.clocks,
         rate_ratios=recording.rate_ratios,

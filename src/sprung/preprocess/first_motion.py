@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from sprung.campaign import Campaign
 from sprung.preprocess.dropped_wheels import detect_dropped_wheels
 from sprung.preprocess.prepare import Prepared
-from sprung.preprocess.release import Release
 from sprung.vehicle import Wheel
 
 Real = NDArray[np.float64]
@@ -70,9 +69,7 @@ class FirstMotion:
         gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
         rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
         dropped = tuple(
-            detect_dropped_wheels(
-                seen.recording, None if seen.release is None else Release(seen.release, seen.rest), campaign.sensors
-            )
+            detect_dropped_wheels(seen.recording, None if seen.release is None else seen.rest, campaign.sensors)
             for seen in prepared.observations
         )
         return cls(body, gained[:, list(body)], dropped, rises)

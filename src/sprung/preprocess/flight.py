@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from sprung.preprocess.decay import FreeDecay
 from sprung.preprocess.events import DropObservation
-from sprung.vehicle import Wheel
 
 _CLEAR = 0.01
 """s after the release by which the blocks are out of the way."""
@@ -20,28 +18,7 @@ FROM_RELEASE = "the blocks are out of the way, and the fall is used too"
 """Reason for the start of a drop that is used from its release on."""
 
 
-class Flight(NamedTuple):
-    """A drop from just after its release on.
-
-    Attributes
-    ----------
-    decay
-        With the samples from then on.
-    wheels
-        Which wheels fell.
-    height
-        Of the blocks, m; None where it is not stated.
-    since
-        Time of the first sample, s after the release.
-    """
-
-    decay: FreeDecay
-    wheels: tuple[Wheel, ...]
-    height: float | None
-    since: float
-
-
-def find_flights(decays: Sequence[FreeDecay], observations: Sequence[DropObservation]) -> list[Flight | None]:
+def find_flights(decays: Sequence[FreeDecay], observations: Sequence[DropObservation]) -> list[FreeDecay | None]:
     """Find the drops that can be used from just after their release on.
 
     Parameters
@@ -53,15 +30,15 @@ def find_flights(decays: Sequence[FreeDecay], observations: Sequence[DropObserva
 
     Returns
     -------
-    list of Flight or None
-        For each decay; None where the fall cannot be used: no release was detected, the campaign states the start, several
-        loggers recorded the drop, or samples of the fall were clipped or replaced.
+    list of FreeDecay or None
+        Each decay with the samples from then on; None where the fall cannot be used: no release was detected, the campaign
+        states the start, several loggers recorded the drop, or samples of the fall were clipped or replaced.
     """
     by_file = {observation.recording.name: observation for observation in observations}
     return [_flight(decay, by_file[decay.file]) for decay in decays]
 
 
-def _flight(decay: FreeDecay, observation: DropObservation) -> Flight | None:
+def _flight(decay: FreeDecay, observation: DropObservation) -> FreeDecay | None:
     drop, recording, release = observation.drop, observation.recording, observation.release
     if release is None or drop.start is not None or decay.clocks or recording.rate != decay.rate:
         return None
@@ -77,9 +54,4 @@ def _flight(decay: FreeDecay, observation: DropObservation) -> Flight | None:
         return None
     start = recording.start + first / decay.rate
     events = replace(decay.events, why_fit=FROM_RELEASE)
-    return Flight(
-        replace(decay, values=values, earlier=values[:, :0], start=start, events=events),
-        observation.wheels,
-        drop.height,
-        (first - release) / decay.rate,
-    )
+    return replace(decay, values=values, earlier=values[:, :0], start=start, events=events)

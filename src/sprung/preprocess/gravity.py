@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Recording
 from sprung.errors import Fault
 from sprung.preprocess.high_pass import AC_LEVEL
-from sprung.preprocess.release import Release, StaticBaseline
+from sprung.preprocess.release import Release
 from sprung.units import STANDARD_GRAVITY, acceleration_factor
 from sprung.vehicle import Sensor
 
@@ -67,7 +67,7 @@ def check_gravity(
     where gravity is about 1 in another one and the channel then moves more like its neighbours, a sign where most of the
     sensors that read gravity read it the other way. The sign of an AC-coupled sensor does not show at rest.
     """
-    rests = [release.rest.level for release in releases if release is not None]
+    rests = [release.level for release in releases if release is not None]
     if not rests:
         return list(recordings), list(releases), tuple(sensors)
     levels = np.array(rests) / STANDARD_GRAVITY
@@ -220,7 +220,8 @@ def _scale_recording(recording: Recording, factors: Real) -> Recording:
 
 
 def _scale_release(release: Release, factors: Real) -> Release:
-    rest = release.rest
-    return Release(
-        release.sample, StaticBaseline(rest.level * factors, rest.noise * factors[:, None], rest.step * np.abs(factors))
+    return release._replace(
+        level=release.level * factors,
+        noise=release.noise * factors[:, None],
+        step=release.step * np.abs(factors),
     )

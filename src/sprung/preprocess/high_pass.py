@@ -49,7 +49,7 @@ def undo_high_pass(recording: Recording, release: Release | None, sensors: Seque
     if release is None or not filtered:
         return recording
     cutoffs = 2 * np.pi * np.array([sensors[channel].high_pass for channel in filtered], dtype=float)
-    moved = recording.values[filtered] - release.rest.level[filtered, None]
+    moved = recording.values[filtered] - release.level[filtered, None]
     values = recording.values.copy()
     values[filtered] += cutoffs[:, None] * cumulative_trapezoid(moved, dx=1 / recording.rate, axis=1, initial=0)
     history = [
@@ -91,7 +91,7 @@ def integrate_from_rest(
     if any(high_pass):
         age = np.arange(sample, -1, -1) / rate
         weights = weights * np.exp(-2 * np.pi * np.array(high_pass)[:, None] * age)
-    moved = values[:, : sample + 1] - release.rest.level[:, None]
+    moved = values[:, : sample + 1] - release.level[:, None]
     integral: Real = (moved * weights).sum(axis=1) / rate
     return integral
 

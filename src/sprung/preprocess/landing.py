@@ -96,7 +96,7 @@ def measure_suspension_force(
     forces: dict[Wheel, float] = {}
     for channel, sensor in enumerate(sensors):
         if sensor.on is not None and sensor.on != "body" and sensor.on in dropped:
-            lowest = float(values[channel, window].min() - release.rest.level[channel])
+            lowest = float(values[channel, window].min() - release.level[channel])
             forces[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
     return forces
 
@@ -143,7 +143,7 @@ def detect_landing(
     ]
     if len(body) < 3:
         return None
-    reading = values[:, release.sample : release.sample + int(_LONGEST * rate)] - release.rest.level[:, None]
+    reading = values[:, release.sample : release.sample + int(_LONGEST * rate)] - release.level[:, None]
     places = np.array([sensors[i].position for i in body], dtype=float)
     plane = np.column_stack([np.ones(len(body)), places[:, :2]])
     half_track = float(np.abs(places[:, 1]).mean())

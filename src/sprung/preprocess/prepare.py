@@ -24,7 +24,7 @@ from sprung.preprocess.exclusion import exclude_copies, exclude_flat_channels
 from sprung.preprocess.extraction import extract_decay, pool_suspension_forces
 from sprung.preprocess.gravity import check_gravity
 from sprung.preprocess.high_pass import undo_high_pass
-from sprung.preprocess.release import detect_release, unknown_baseline
+from sprung.preprocess.release import detect_release, unknown_release
 from sprung.preprocess.spikes import remove_spikes
 from sprung.progress import Progress, Step, counted, silent
 
@@ -100,8 +100,7 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
         observation = DropObservation(
             drop=campaign.drops[i],
             recording=drop.recording,
-            release=None if release is None else release.sample,
-            rest=unknown_baseline(len(sensors)) if release is None else release.rest,
+            rest=unknown_release(len(sensors)) if release is None else release,
             marks=(*mark_samples("clipped", clipped[i]), *mark_samples("spike", despiked[i][1])),
             dropped=dropped[i],
             wheels=drop.wheels,

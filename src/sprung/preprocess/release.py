@@ -32,11 +32,13 @@ _FEWEST = 4
 """Samples of a rest at the least."""
 
 
-class StaticBaseline(NamedTuple):
-    """What the sensors read while the vehicle stood on the blocks.
+class Release(NamedTuple):
+    """The release in one recording, and what the sensors read before it, while the vehicle stood on the blocks.
 
     Attributes
     ----------
+    sample
+        First sample that moves; 0 where the recording shows no rest.
     level
         Mean reading of each channel, m/s², shape (channel,); NaN where the recording shows no rest.
     noise
@@ -45,28 +47,14 @@ class StaticBaseline(NamedTuple):
         Resolution of each channel as recorded, m/s², shape (channel,); NaN where the recording shows no rest.
     """
 
+    sample: int
     level: Real
     noise: Real
     step: Real
 
 
-class Release(NamedTuple):
-    """The release in one recording.
-
-    Attributes
-    ----------
-    sample
-        First sample that moves.
-    rest
-        What the sensors read before it.
-    """
-
-    sample: int
-    rest: StaticBaseline
-
-
-def unknown_baseline(channels: int) -> StaticBaseline:
-    """Return the baseline of a recording that shows no rest.
+def unknown_release(channels: int) -> Release:
+    """Return what is known of the release in a recording that shows no rest: nothing.
 
     Parameters
     ----------
@@ -75,10 +63,10 @@ def unknown_baseline(channels: int) -> StaticBaseline:
 
     Returns
     -------
-    StaticBaseline
+    Release
         NaN everywhere, without samples of noise.
     """
-    return StaticBaseline(np.full(channels, np.nan), np.empty((channels, 0)), np.full(channels, np.nan))
+    return Release(0, np.full(channels, np.nan), np.empty((channels, 0)), np.full(channels, np.nan))
 
 
 def detect_release(
@@ -116,9 +104,9 @@ def detect_release(
     if found is None:
         return None
     level, step = np.full((2, len(values)), np.nan)
-    noise = np.full((len(values), found.rest.noise.shape[1]), np.nan)
-    level[usable], noise[usable], step[usable] = found.rest
-    return Release(found.sample, StaticBaseline(level, noise, step))
+    noise = np.full((len(values), found.noise.shape[1]), np.nan)
+    _, level[usable], noise[usable], step[usable] = found
+    return Release(found.sample, level, noise, step)
 
 
 def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | None) -> Release | None:
@@ -157,7 +145,7 @@ def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | N
     centred = np.arange(rest.shape[1]) - (rest.shape[1] - 1) / 2
     slope = rest @ centred / (centred @ centred)
     mean = rest.mean(axis=1)
-    return Release(sample, StaticBaseline(mean, rest - mean[:, None] - slope[:, None] * centred, step))
+    return Release(sample, mean, rest - mean[:, None] - slope[:, None] * centred, step)
 
 
 def resolution(values: Real) -> Real:

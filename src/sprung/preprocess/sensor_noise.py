@@ -49,6 +49,16 @@ class SensorNoise(NamedTuple):
     added: Real
     per_independent: Real
 
+    @property
+    def level(self) -> Real:
+        """Standard deviation in a decay, m/s², shape (channel,)."""
+        level: Real = np.sqrt(self.variance + self.added)
+        return level
+
+    def where(self, chosen: NDArray[np.bool_], other: SensorNoise) -> SensorNoise:
+        """Return the noise of chosen channels, shape (channel,), that of all others taken from another one."""
+        return SensorNoise(*(np.where(chosen, own, before) for own, before in zip(self, other, strict=True)))
+
 
 def pool_moments(records: Iterable[Real]) -> Moments:
     """Pool variance and covariance of neighbouring samples over records.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sprung.checking import Check
-from sprung.errors import InputError, Omissions
+from sprung.errors import InputError, record_failure
 from sprung.files import atomic_write
 from sprung.report.drawings import draw_check
 from sprung.report.page.check import CHECK_FILE, check_html
@@ -83,11 +83,11 @@ def add_report(result: Result, folder: Path, *, overwrite: bool = False) -> Save
     InputError
         As `save_result`.
     """
-    omissions, page = Omissions(result.omissions), ""
-    with omissions.record_failure("The report", "written"):
+    omissions, page = list(result.omissions), ""
+    with record_failure(omissions, "The report", "written"):
         page, missing = render_report(result)
-        omissions.add(missing)
-    result = replace(result, omissions=omissions.sentences)
+        omissions += [sentence for sentence in missing if sentence not in omissions]
+    result = replace(result, omissions=tuple(omissions))
     files = ({FILE: page.encode()} if page else {}) | result.files()
     atomic_write(folder, files, overwrite=overwrite, obsolete=(FILE, PDF_FILE))
     return SavedResult(result, tuple(folder / name for name in reversed(files)))
@@ -118,14 +118,14 @@ def write_report(folder: Path, pdf: bool = False, *, overwrite: bool = False) ->
     """
     result = load(folder)
     page, missing = render_report(result)
-    omissions = Omissions(missing)
+    omissions = list(missing)
     files = {FILE: page.encode()}
     if pdf:
-        with omissions.record_failure("The report as PDF", "written", unless=(InputError,)):
+        with record_failure(omissions, "The report as PDF", "written", unless=(InputError,)):
             files[PDF_FILE] = pdf_of(result)
     atomic_write(folder, files, overwrite=overwrite)
     written = tuple(folder / name for name in files)
-    return SavedResult(replace(result, omissions=omissions.sentences), written)
+    return SavedResult(replace(result, omissions=tuple(omissions)), written)
 
 
 def write_check(

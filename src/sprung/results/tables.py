@@ -8,7 +8,7 @@ from sprung.estimation import ForceCurve, ModeEstimate
 from sprung.results.records import SensorEstimate, TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
-from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, MOTION_RATIOS, PARAMETERS, WHEEL_LOADS
+from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, MOTION_RATIOS, PARAMETERS, WHEEL_LOADS, parameter_of
 
 TRACE_TITLE = "How the result was reached"
 """Title of the trace wherever it is shown."""
@@ -64,7 +64,7 @@ def meaning_of(name: str) -> str:
     str
     """
     if name in PARAMETERS or name.startswith(LOAD_MASS):
-        return PARAMETERS[name].meaning
+        return parameter_of(name).meaning
     return _DERIVED.get(name, _WHOLE_VEHICLE)
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
@@ -38,21 +37,11 @@ _FIRST_ITERATIONS = 2
 """Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
 
 
-class _Assumption(NamedTuple):
-    """What is assumed of a vehicle under a load."""
+_Assumption = tuple[bool, bool]
+"""Of a vehicle under a load: whether loads are level with the centre of gravity, where no heights are stated; and whether the
+body rests lower on its wheels, not where it is levelled, or where a simulation keeps it level."""
 
-    is_load_level: bool
-    """Whether loads are level with the centre of gravity, where no heights are stated."""
-    sinks: bool
-    """Whether the body rests lower on its wheels; not where it is levelled, or where a simulation keeps it level."""
-
-
-_ASSUMPTIONS = (
-    _Assumption(True, False),
-    _Assumption(True, True),
-    _Assumption(False, True),
-    _Assumption(False, False),
-)
+_ASSUMPTIONS: tuple[_Assumption, ...] = ((True, False), (True, True), (False, True), (False, False))
 """What the recordings decide by their likelihood, the plainest first; the first two where heights are stated."""
 
 
@@ -155,17 +144,17 @@ def _with_geometry(
     structure: ModelStructure, parameters: Mapping[str, float], assumption: _Assumption
 ) -> ModelStructure:
     """Return a structure with the heights that a fitted vehicle shows, and with the sinking of its body under each load."""
-    stated = structure.campaign.heights
+    (is_load_level, sinks), stated = assumption, structure.campaign.heights
     own = start_values(structure, parameters)
     assumed = None
     if not stated.has_effect:
         arm = own["w_h"] / (STANDARD_GRAVITY * own["m_s"]) if "w_h" in own else 0.0
-        centre = stated.cg_height or (_mean_load_height(structure) if assumption.is_load_level else None)
+        centre = stated.cg_height or (_mean_load_height(structure) if is_load_level else None)
         wheels = stated.wheel_height or (centre - arm if centre else _WHEEL_HEIGHT)
         assumed = Heights(wheels + arm, wheels)
     structure = replace(structure, assumed_heights=assumed, sinking={})
     values = np.array([own[name] for name in structure.names])
-    if not assumption.sinks:
+    if not sinks:
         return structure
     models = structure.linear_models
     sinking = {

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_rubber
+from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_engine, usual_rubber
 from sprung.selection.description import TermDescription, Values
 from sprung.selection.model_term import ModelTerm, of_axles
-from sprung.selection.structure import SEAT_LOAD
+from sprung.selection.structure import SEAT_LOAD, ModelStructure
 from sprung.selection.usual_parts import (
     SEAT_FREQUENCY,
     SEAT_LOSS,
@@ -50,6 +50,11 @@ _HOP, _LOSS = 12.0, 0.1
 
 _RIGID = 1e5
 """Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
+
+
+def _engine(own: Values, structure: ModelStructure, share: float = USUAL_ENGINE) -> Values:
+    """Return an engine that is a part of the sprung mass, mounted as the structure has it."""
+    return usual_engine(share * own["m_s"], structure.engine_frequency, structure.engine_place)
 
 
 def _half_distance(values: Values, axle: str) -> float:
@@ -162,8 +167,8 @@ LINEAR_TERMS = (
         negligible=0.02,
         description=TermDescription("an engine of {0} that moves on its mounts", ((lambda p, _: p["m_e"], "kg"),)),
         explains_all=True,
-        undefined=lambda own, structure: structure.engine_mounting.engine(_ALMOST_NO_ENGINE * own["m_s"]),
-        first=lambda own, structure: structure.engine_mounting.engine(USUAL_ENGINE * own["m_s"]),
+        undefined=lambda own, structure: _engine(own, structure, _ALMOST_NO_ENGINE),
+        first=_engine,
         character=lambda p: [natural_frequency(p["k_e"], p["m_e"])],
         band=(5.5, 30.0),
     ),

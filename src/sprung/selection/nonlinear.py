@@ -65,7 +65,10 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
 
 def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str]) -> Iterator[SearchFromBase]:
     """Yield the searches from every base, the simplest first."""
-    plain = replace(plain, stop_gap=search.structure.stop_gap, engine_mounting=search.structure.engine_mounting)
+    found = search.structure
+    plain = replace(
+        plain, stop_gap=found.stop_gap, engine_frequency=found.engine_frequency, engine_place=found.engine_place
+    )
     is_plain = plain.names == search.structure.names
     simplest = search if is_plain else search.refit(plain)
     if ranked:

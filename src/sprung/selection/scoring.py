@@ -88,7 +88,8 @@ def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple
             score = gain, abs(TERMS[term].size(estimates))
             best = replace(
                 search.structure,
-                engine_mounting=variant.engine_mounting,
+                engine_frequency=variant.engine_frequency,
+                engine_place=variant.engine_place,
                 body_frequency=variant.body_frequency,
                 seat_place=variant.seat_place,
             )

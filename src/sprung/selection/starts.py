@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import FitResult, fit_linear, fit_nonlinear, mountings_of
+from sprung.estimation import FitResult, engine_mountings, fit_linear, fit_nonlinear
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection.linear_terms import BENDING, ENGINE, OCCUPANTS, TWIST
@@ -181,7 +181,10 @@ def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float
         return [replace(structure, seat_place=place) for place in _SEAT_PLACES]
     if term != ENGINE:
         return [structure]
-    variants = [replace(structure, engine_mounting=mounting) for mounting in mountings_of(own["a"] + own["b"])]
+    variants = [
+        replace(structure, engine_frequency=frequency, engine_place=place)
+        for frequency, place in engine_mountings(own["a"] + own["b"])
+    ]
     # They differ in their values alone: one compilation of the equations of motion serves all.
     return [variant for variant in variants if has_positive_masses(structure.linear_models, start_values(variant, own))]
 

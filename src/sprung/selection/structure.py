@@ -8,7 +8,7 @@ from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimation import USUAL_MOUNTING, Mounting, UsualValue, VehicleSize
+from sprung.estimation import USUAL_ENGINE_FREQUENCY, UsualValue, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     COORDINATES,
@@ -64,8 +64,8 @@ class ModelStructure:
         Whether wheels may be off the ground, so that the ground is a force beside the others.
     stop_gap
         Compression at which bump stops are met, where a fit begins, m.
-    engine_mounting
-        Mounting of an engine, where a fit begins.
+    engine_frequency, engine_place
+        Natural frequency, Hz, of an engine on its mounts and its place forward of the front axle, m, where a fit begins.
     body_frequency
         Frequency of the body's twist or bending, where a fit begins, Hz.
     seat_place
@@ -89,7 +89,8 @@ class ModelStructure:
     gravity_leakage: bool = False
     unilateral_tyres: bool = False
     stop_gap: float = 1.0
-    engine_mounting: Mounting = USUAL_MOUNTING
+    engine_frequency: float = USUAL_ENGINE_FREQUENCY
+    engine_place: float = 0.0
     body_frequency: float = 12.0
     seat_place: float = 0.45
     carried_at: CarriedAt = "wheels"

@@ -32,21 +32,21 @@ from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
+from sprung.vehicle.nuisances import (
+    LOAD_MASS,
+    SENSOR_UNKNOWNS,
+    SensorQuantity,
+    is_nuisance,
+    is_of_sensor,
+    parameter_of,
+    sensor_unknown,
+)
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameters import (
     EXTRA_PARAMETERS,
-    LOAD_MASS,
     NEUTRAL,
     PARAMETERS,
-    SENSOR_DELAY,
-    SENSOR_GAIN,
-    SENSOR_UNKNOWNS,
-    SENSOR_X,
-    SENSOR_Y,
     Parameter,
-    SensorUnknown,
-    is_nuisance,
-    is_of_sensor,
     parameter_names,
     parameters_of_term,
     separate_track_names,
@@ -54,7 +54,7 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
-from sprung.vehicle.segments import Prediction, integrate_near, segments_of
+from sprung.vehicle.segments import integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import Sensor, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
@@ -78,11 +78,7 @@ __all__ = [
     "PARAMETERS",
     "REFINED",
     "SCHOOL_BUS",
-    "SENSOR_DELAY",
-    "SENSOR_GAIN",
     "SENSOR_UNKNOWNS",
-    "SENSOR_X",
-    "SENSOR_Y",
     "TABLE_1_CAR",
     "UNKNOWN_KEY",
     "WHEELS",
@@ -108,12 +104,11 @@ __all__ = [
     "NotNegative",
     "Parameter",
     "Positive",
-    "Prediction",
     "Readout",
     "Row",
     "Rows",
     "Sensor",
-    "SensorUnknown",
+    "SensorQuantity",
     "Stepper",
     "Tracks",
     "Trajectory",
@@ -136,11 +131,13 @@ __all__ = [
     "is_of_sensor",
     "nonlinear_elements",
     "parameter_names",
+    "parameter_of",
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
     "second_order_readings",
     "segments_of",
+    "sensor_unknown",
     "separate_track_names",
     "seven_degrees_of_freedom",
     "state_matrix",

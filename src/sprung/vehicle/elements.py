@@ -14,6 +14,7 @@ from typing import Literal
 
 from sprung.display import shown
 from sprung.vehicle import kinematics
+from sprung.vehicle.damper_curve import damper_curve
 from sprung.vehicle.force_laws import (
     AIR,
     BUMP_STOP,
@@ -23,7 +24,6 @@ from sprung.vehicle.force_laws import (
     REBOUND,
     TYRE_CURVE,
     ForceLaw,
-    damper_curve,
 )
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Row, Wheel

@@ -10,7 +10,6 @@ the height z - x sin θ + y cos θ sin φ + h cos θ cos φ.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,31 +29,11 @@ Array = NDArray[np.float64]
 _PITCH, _ROLL = 1, 2
 """Positions of the angles among the coordinates."""
 
+_VALUE, _RATE, _SECOND = 0, 1, 2
+"""Positions of displacements and of their first and second derivatives by time in signals, shape (3, ..., time)."""
 
 _STILL = 1e-6
 """Pole times step below which a mode does not move within a step."""
-
-
-class _Signal(NamedTuple):
-    """A displacement and its first and second derivatives by time, SI, each of shape (..., time)."""
-
-    value: Array
-    rate: Array
-    second: Array
-
-    def __add__(self, other: _Signal) -> _Signal:  # type: ignore[override]
-        return _Signal(*(one + two for one, two in zip(self, other, strict=True)))
-
-    def __mul__(self, other: _Signal | float) -> _Signal:  # type: ignore[override]
-        if not isinstance(other, _Signal):
-            return _Signal(*(other * one for one in self))
-        rate = self.rate * other.value + self.value * other.rate
-        second = self.second * other.value + 2 * self.rate * other.rate + self.value * other.second
-        return _Signal(self.value * other.value, rate, second)
-
-    def along(self, row: Array) -> _Signal:
-        """Return the signal of a displacement with a row, from that of all coordinates."""
-        return _Signal(*(row @ one for one in self))
 
 
 def body_sinking(empty: LinearModel, loaded: LinearModel, tracks: Tracks, values: Array) -> float:
@@ -123,7 +102,7 @@ def second_order_readings(
     n, m, A = len(matrices.M), model.massive, matrices.state
     # Where no mass is, the velocity follows from the displacements, and there is no acceleration to be known.
     rates = A @ motion
-    signals = _Signal(motion[:n], rates[:n], np.vstack([rates[n:], np.zeros_like(motion[: n - m])]))
+    signals = np.stack([motion[:n], rates[:n], np.vstack([rates[n:], np.zeros_like(motion[: n - m])])])
     forces = _suspension_forces(model, tracks, heights, values, signals) + _inertia_forces(
         model, tracks, heights, load, values, signals
     )
@@ -135,25 +114,25 @@ def second_order_readings(
 
 
 def _sensor_rotation(
-    model: LinearModel, heights: Heights, sensors: Sequence[Sensor], values: Array, signals: _Signal
+    model: LinearModel, heights: Heights, sensors: Sequence[Sensor], values: Array, signals: Array
 ) -> Array:
     """Return what sensors read because they turn with the body: specific force along its axis, and centripetal acceleration."""
-    pitch, roll = (_Signal(*(one[angle] for one in signals)) for angle in (_PITCH, _ROLL))
+    pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
     forward, sideways = _unconstrained_per_angle(model, values)
-    tilt = forward * pitch.value * pitch.second - sideways * roll.value * roll.second
-    leakage = STANDARD_GRAVITY * 0.5 * (pitch.value**2 + roll.value**2)
+    tilt = forward * pitch[_VALUE] * pitch[_SECOND] - sideways * roll[_VALUE] * roll[_SECOND]
+    leakage = STANDARD_GRAVITY * 0.5 * (pitch[_VALUE] ** 2 + roll[_VALUE] ** 2)
     readings = []
     for sensor in sensors:
         if sensor.position is None:
             arm = heights.wheel_arms[1]
-            own = arm * (pitch.value * pitch.second + roll.value * roll.second)
+            own = arm * (pitch[_VALUE] * pitch[_SECOND] + roll[_VALUE] * roll[_SECOND])
         else:
-            own = -_above_centre(heights, sensor.position[2]) * (pitch.rate**2 + roll.rate**2)
+            own = -_above_centre(heights, sensor.position[2]) * (pitch[_RATE] ** 2 + roll[_RATE] ** 2)
         readings.append(tilt + own - leakage)
     return np.array(readings)
 
 
-def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: _Signal) -> Array:
+def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: Array) -> Array:
     """Return the second-order generalised forces of springs and dampers, SI, shape (coordinate, time).
 
     The compression is q = (q₁ + d)(1 + (θ² + φ²)/2) - d to third order, with the linear q₁ and the height d of the wheel's
@@ -161,70 +140,79 @@ def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, val
     """
     arm = heights.wheel_arms[1]
     half = _half_square(signals)
-    tilt = np.zeros_like(signals.value)
-    tilt[[_PITCH, _ROLL]] = signals.value[[_PITCH, _ROLL]]
+    tilt = np.zeros_like(signals[_VALUE])
+    tilt[[_PITCH, _ROLL]] = signals[_VALUE][[_PITCH, _ROLL]]
     springs, dampers = -_travels(model, tracks, "spring", values), -_travels(model, tracks, "damper", values)
     rates, damping = _by_axle(model, "k_s", values), _by_axle(model, "c_s", values)
     matrices = model.matrices(values)
     static = rates * -(springs @ matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY))
-    forces = np.zeros_like(signals.value)
+    forces: Array = np.zeros_like(signals[_VALUE])
     for spring, damper, k, c, held in zip(springs, dampers, rates, damping, static, strict=True):
-        compression = signals.along(spring).value
-        forces -= held * (np.outer(spring, half.value) + compression * tilt)
-        forces -= k * arm * (compression * tilt + np.outer(spring, half.value))
-        forces -= c * arm * (signals.along(damper).rate * tilt + np.outer(damper, half.rate))
+        compression = spring @ signals[_VALUE]
+        forces -= held * (np.outer(spring, half[_VALUE]) + compression * tilt)
+        forces -= k * arm * (compression * tilt + np.outer(spring, half[_VALUE]))
+        forces -= c * arm * ((damper @ signals[_RATE]) * tilt + np.outer(damper, half[_RATE]))
     return forces
 
 
 def _inertia_forces(
-    model: LinearModel, tracks: Tracks, heights: Heights, load: Load, values: Array, signals: _Signal
+    model: LinearModel, tracks: Tracks, heights: Heights, load: Load, values: Array, signals: Array
 ) -> Array:
     """Return the second-order generalised inertia forces of wheels and items of the load, SI, shape (coordinate, time).
 
     A mass whose displacement along an axis is u₁ + u₂ acts with -m (ü₁ ∂u₂/∂X + ü₂ ∂u₁/∂X).
     """
     if not heights.has_effect:
-        return np.zeros_like(signals.value)
-    units = np.eye(len(signals.value))
-    pitch, roll = (signals.along(units[angle]) for angle in (_PITCH, _ROLL))
+        return np.zeros_like(signals[_VALUE])
+    units = np.eye(len(signals[_VALUE]))
+    pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
     by_pitch, by_roll = units[_PITCH], units[_ROLL]
     forward, sideways = _unconstrained_per_angle(model, values)
     own = dict(zip(model.names, values.tolist(), strict=True))
-    forces = np.zeros_like(signals.value)
+    forces: Array = np.zeros_like(signals[_VALUE])
     arm = heights.wheel_arms[1]
     masses = _by_axle(model, "m_u", values)
     for station, row, mass in zip(WHEELS, -_travels(model, tracks, "spring", values), masses, strict=True):
-        x, q = own["a"] if station[0] == "f" else -own["b"], signals.along(row)
+        x, q = own["a"] if station[0] == "f" else -own["b"], row @ signals
         # Both wheels of an axle cancel what their half-distance adds.
-        first, second = (sideways - arm) * by_roll, q * roll * -1.0
-        slope = -(np.outer(by_roll, q.value) + np.outer(row, roll.value))
-        forces -= mass * ((first @ signals.second) * slope + np.outer(first, second.second))
-        first, second = (forward + arm) * by_pitch, q * pitch + pitch * pitch * (-0.5 * x)
-        slope = np.outer(by_pitch, q.value - x * pitch.value) + np.outer(row, pitch.value)
-        forces -= mass * ((first @ signals.second) * slope + np.outer(first, second.second))
+        first, second = (sideways - arm) * by_roll, -_product(q, roll)
+        slope = -(np.outer(by_roll, q[_VALUE]) + np.outer(row, roll[_VALUE]))
+        forces -= mass * ((first @ signals[_SECOND]) * slope + np.outer(first, second[_SECOND]))
+        first, second = (forward + arm) * by_pitch, _product(q, pitch) - 0.5 * x * _product(pitch, pitch)
+        slope = np.outer(by_pitch, q[_VALUE] - x * pitch[_VALUE]) + np.outer(row, pitch[_VALUE])
+        forces -= mass * ((first @ signals[_SECOND]) * slope + np.outer(first, second[_SECOND]))
     for item in (one for one in load.items if one.position is not None):
         x, y, z = item.position or (0.0, 0.0, 0.0)
         x, height = x + own["a"], _above_centre(heights, z)
         vertical = units[0] - x * by_pitch + y * by_roll
         parts = [
-            (vertical, _half_square(signals) * -height, -height * _tilt(units, signals)),
-            ((sideways - height) * by_roll, roll * roll * (-0.5 * y), -y * np.outer(by_roll, roll.value)),
-            ((forward + height) * by_pitch, pitch * pitch * (-0.5 * x), -x * np.outer(by_pitch, pitch.value)),
+            (vertical, -height * _half_square(signals), -height * _tilt(units, signals)),
+            ((sideways - height) * by_roll, -0.5 * y * _product(roll, roll), -y * np.outer(by_roll, roll[_VALUE])),
+            ((forward + height) * by_pitch, -0.5 * x * _product(pitch, pitch), -x * np.outer(by_pitch, pitch[_VALUE])),
         ]
         for first, second, slope in parts:
-            forces -= item.mass * ((first @ signals.second) * slope + np.outer(first, second.second))
+            forces -= item.mass * ((first @ signals[_SECOND]) * slope + np.outer(first, second[_SECOND]))
     return forces
 
 
-def _half_square(signals: _Signal) -> _Signal:
+def _product(one: Array, other: Array) -> Array:
+    """Return the product of two signals, by Leibniz's rule."""
+    rate = one[_RATE] * other[_VALUE] + one[_VALUE] * other[_RATE]
+    second = one[_SECOND] * other[_VALUE] + 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
+    return np.stack([one[_VALUE] * other[_VALUE], rate, second])
+
+
+def _half_square(signals: Array) -> Array:
     """Return half the sum of both squared angles."""
-    pitch, roll = (_Signal(*(one[angle] for one in signals)) for angle in (_PITCH, _ROLL))
-    return (pitch * pitch + roll * roll) * 0.5
+    pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
+    half: Array = 0.5 * (_product(pitch, pitch) + _product(roll, roll))
+    return half
 
 
-def _tilt(units: Array, signals: _Signal) -> Array:
+def _tilt(units: Array, signals: Array) -> Array:
     """Return the gradient of half the sum of both squared angles, shape (coordinate, time)."""
-    return units[:, [_PITCH, _ROLL]] @ signals.value[[_PITCH, _ROLL]]
+    tilt: Array = units[:, [_PITCH, _ROLL]] @ signals[_VALUE][[_PITCH, _ROLL]]
+    return tilt
 
 
 def _unconstrained_per_angle(model: LinearModel, values: Array) -> tuple[float, float]:

@@ -14,7 +14,7 @@ from sprung.vehicle.checked_record import checked_record
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import Wheel
-from sprung.vehicle.parameters import LOAD_MASS
+from sprung.vehicle.nuisances import LOAD_MASS
 
 _NOTHING = 1e-3
 """kg in practice none: a coordinate needs some mass."""

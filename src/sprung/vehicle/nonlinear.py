@@ -27,27 +27,6 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-class CompiledLaw(NamedTuple):
-    """Elements of one law, one for each of some rows.
-
-    Attributes
-    ----------
-    law
-        Their force law.
-    rows
-        Rows on which they act, a slice where these are adjacent.
-    memories
-        Their memories among those of all elements, empty where the law has none.
-    positions
-        Positions of the law's parameters in the list, shape (parameter, element).
-    """
-
-    law: ForceLaw
-    rows: slice | Index
-    memories: slice
-    positions: Index
-
-
 class NonlinearForces(NamedTuple):
     """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,).
 
@@ -58,7 +37,8 @@ class NonlinearForces(NamedTuple):
     rows
         The different rows of the elements' travels.
     laws
-        Elements by law.
+        Each law with its elements: the rows on which they act, a slice where these are adjacent; their memories among those of
+        all elements, empty where the law has none; and the positions of its parameters in the list, shape (parameter, element).
     memory_rows
         Row of each memory, shape (memory,).
     weightless, levelled
@@ -67,7 +47,7 @@ class NonlinearForces(NamedTuple):
     """
 
     rows: Rows
-    laws: tuple[CompiledLaw, ...]
+    laws: tuple[tuple[ForceLaw, slice | Index, slice, Index], ...]
     memory_rows: Index
     weightless: Array
     levelled: Array
@@ -90,7 +70,7 @@ class NonlinearForces(NamedTuple):
             law, first = alike[0].law, len(memory_rows)
             memory_rows += at * law.has_memory
             positions = np.array([[names.index(name) for name in element.parameters] for element in alike]).T
-            laws.append(CompiledLaw(law, _adjacent(at), slice(first, len(memory_rows)), positions))
+            laws.append((law, _adjacent(at), slice(first, len(memory_rows)), positions))
         rows = Rows.of([element.row for element in distinct.values()], names)
         weightless, levelled = (
             np.array([float(element.origin == origin) for element in distinct.values()])
@@ -110,7 +90,7 @@ class NonlinearForces(NamedTuple):
 
     def parameters(self, values: Array) -> tuple[Array, ...]:
         """Return the parameters of each law, shape (parameter, element), from all parameters, SI, shape (parameter,)."""
-        return tuple(values[law.positions] for law in self.laws)
+        return tuple(values[positions] for *_, positions in self.laws)
 
     def evaluate(self, parameters: Sequence[Array], given: ElementInput) -> ElementForce:
         """Return the force of each row.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import cache
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
 
@@ -27,211 +27,163 @@ class Parameter(NamedTuple):
     """Whether the effect of its term vanishes where it is infinite: the rate of a spring in series, or a modal mass."""
 
 
-LOAD_MASS = "mass of "
-"""First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
-
-
-class SensorUnknown(NamedTuple):
-    """What is uncertain of a sensor, and an unknown of a fit."""
-
-    quantity: Literal["gain", "x", "y", "delay"]
-    """In results."""
-    unit: str
-    """SI."""
-    meaning: str
-    """In words."""
-
-    @property
-    def prefix(self) -> str:
-        """First words of its name among the parameters of a fit, which the name of the channel follows."""
-        return f"{self.quantity} of "
-
-
-SENSOR_GAIN = SensorUnknown("gain", "1", "part by which a channel reads too much")
-"""The gain of a sensor."""
-SENSOR_X = SensorUnknown("x", "m", "how much further forward than stated a body sensor sits")
-"""The place of a sensor along the vehicle."""
-SENSOR_Y = SensorUnknown("y", "m", "how much further left than stated a body sensor sits")
-"""The place of a sensor across the vehicle."""
-SENSOR_DELAY = SensorUnknown("delay", "s", "how much later than the other channels a channel is")
-"""The delay of a sensor."""
-SENSOR_UNKNOWNS = (SENSOR_GAIN, SENSOR_X, SENSOR_Y, SENSOR_DELAY)
-"""What may be uncertain of a sensor."""
-
-
-class _Parameters(dict[str, Parameter]):
-    """The parameters by name; masses of loads and unknowns of sensors have names of which only the first words are fixed."""
-
-    def __missing__(self, name: str) -> Parameter:
-        if name.startswith(LOAD_MASS):
-            return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
-        for unknown in SENSOR_UNKNOWNS:
-            if name.startswith(unknown.prefix):
-                return Parameter(unknown.unit, unknown.meaning, False, False, True)
-        raise KeyError(name)
-
-
-PARAMETERS: Mapping[str, Parameter] = _Parameters(
-    {
-        "m_s": Parameter("kg", "sprung mass", True),
-        "I_yy": Parameter("kg m^2", "pitch inertia of the sprung mass", True),
-        "I_xx": Parameter("kg m^2", "roll inertia of the sprung mass", True),
-        "m_uf": Parameter("kg", "unsprung mass, each front wheel", True),
-        "m_ur": Parameter("kg", "unsprung mass, each rear wheel", True),
-        "k_sf": Parameter("N/m", "spring rate, each front wheel", True),
-        "k_sr": Parameter("N/m", "spring rate, each rear wheel", True),
-        "k_tf": Parameter("N/m", "tyre rate, each front wheel", True),
-        "k_tr": Parameter("N/m", "tyre rate, each rear wheel", True),
-        "c_sf": Parameter("N s/m", "damper rate, each front wheel", True),
-        "c_sr": Parameter("N s/m", "damper rate, each rear wheel", True),
-        "a": Parameter("m", "centre of gravity of the sprung mass to front axle", False),
-        "b": Parameter("m", "centre of gravity of the sprung mass to rear axle", False),
-        "t_f": Parameter("m", "half-distance of springs and dampers, front", False),
-        "t_r": Parameter("m", "half-distance of springs and dampers, rear", False),
-        "t_f1": Parameter("m", "half-distance of the front dampers", False),
-        "t_r1": Parameter("m", "half-distance of the rear dampers", False),
-        "t_f2": Parameter("m", "half-distance of the front springs", False),
-        "t_r2": Parameter("m", "half-distance of the rear springs", False),
-        "c_tf": Parameter("N s/m", "tyre damping, each front wheel", True, False),
-        "c_tr": Parameter("N s/m", "tyre damping, each rear wheel", True, False),
-        "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
-        "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
-        "w_h": Parameter(
-            "N m",
-            "weight of the body times the height of its centre of gravity above lateral support",
-            True,
-            False,
-            True,
-        ),
-        "y_s": Parameter("m", "centre of gravity of the sprung mass, left of the centreline", False, False, True),
-        "d_ksf": Parameter("N/m", "left front spring rate above the mean of both", True, False, True),
-        "d_ksr": Parameter("N/m", "left rear spring rate above the mean of both", True, False, True),
-        "d_ktf": Parameter("N/m", "left front tyre rate above the mean of both", True, False, True),
-        "d_ktr": Parameter("N/m", "left rear tyre rate above the mean of both", True, False, True),
-        "d_csf": Parameter("N s/m", "left front damper rate above the mean of both", True, False, True),
-        "d_csr": Parameter("N s/m", "left rear damper rate above the mean of both", True, False, True),
-        "n_f": Parameter(
-            "1", "place of springs and dampers on a rigid front axle, part of its wheels' half-distance", False
-        ),
-        "n_r": Parameter(
-            "1", "place of springs and dampers on a rigid rear axle, part of its wheels' half-distance", False
-        ),
-        "n_f1": Parameter("1", "place of the dampers on a rigid front axle, part of its wheels' half-distance", False),
-        "n_r1": Parameter("1", "place of the dampers on a rigid rear axle, part of its wheels' half-distance", False),
-        "n_f2": Parameter("1", "place of the springs on a rigid front axle, part of its wheels' half-distance", False),
-        "n_r2": Parameter("1", "place of the springs on a rigid rear axle, part of its wheels' half-distance", False),
-        "m_xf": Parameter(
-            "kg",
-            "what rolls with a rigid front axle beside its unsprung masses, as a mass at each wheel",
-            True,
-            False,
-            True,
-        ),
-        "m_xr": Parameter(
-            "kg",
-            "what rolls with a rigid rear axle beside its unsprung masses, as a mass at each wheel",
-            True,
-            False,
-            True,
-        ),
-        "m_e": Parameter("kg", "engine that moves on its mounts, a part of the sprung mass", True, False),
-        "k_e": Parameter("N/m", "engine mounts, all together", True),
-        "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
-        "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
-        "k_df": Parameter(
-            "N/m",
-            "rate of the rubber mount in series with the damper, each front wheel",
-            True,
-            vanishes_at_infinity=True,
-        ),
-        "k_dr": Parameter(
-            "N/m",
-            "rate of the rubber mount in series with the damper, each rear wheel",
-            True,
-            vanishes_at_infinity=True,
-        ),
-        "c_df": Parameter("N s/m", "damping of the rubber mount of the damper, each front wheel", True, False),
-        "c_dr": Parameter("N s/m", "damping of the rubber mount of the damper, each rear wheel", True, False),
-        "k_zf": Parameter("N/m", "spring rate that relaxes, beside the spring of each front wheel", True, False),
-        "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
-        "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
-        "c_zr": Parameter("N s/m", "damping in series with the relaxing spring rate, each rear wheel", True),
-        "I_w": Parameter(
-            "kg m^2",
-            "modal inertia of the body's twist, for the angle between the axles",
-            True,
-            vanishes_at_infinity=True,
-        ),
-        "k_w": Parameter("N m", "stiffness of the body's twist, for the angle between the axles", True),
-        "c_w": Parameter("N m s", "damping of the body's twist, for the angle between the axles", True),
-        "a_w": Parameter("m", "node of the body's twist, ahead of the middle between the axles", False, False, True),
-        "m_v": Parameter(
-            "kg",
-            "modal mass of the body's bending, for the rise of its middle above its axles",
-            True,
-            vanishes_at_infinity=True,
-        ),
-        "k_v": Parameter("N/m", "stiffness of the body's bending, for the rise of its middle above its axles", True),
-        "c_v": Parameter("N s/m", "damping of the body's bending, for the rise of its middle above its axles", True),
-        "b_v": Parameter(
-            "1",
-            "rise of the centre of gravity as the body bends, over that of the middle above its axles",
-            False,
-            False,
-            True,
-        ),
-        "p_v": Parameter(
-            "1/m", "mean pitch of the body as it bends, over the rise of its middle above its axles", False, False, True
-        ),
-        "m_o": Parameter("kg", "people on soft seats, a part of the sprung mass", True, False),
-        "k_o": Parameter("N/m", "seats of these people, all together", True),
-        "c_o": Parameter("N s/m", "damping of the seats of these people, all together", True, False),
-        "x_o": Parameter("m", "people on soft seats, forward of the front axle", False, False, True),
-        "y_o": Parameter("m", "people on soft seats, left of the centreline", False, False, True),
-        "w_l": Parameter(
-            "1/s^2", "rate of the seats under a load, over the mass on them", False, vanishes_at_infinity=True
-        ),
-        "c_l": Parameter("1/s", "damping of the seats under a load, over the mass on them", False, False),
-        "F_f": Parameter("N", "dry friction, each front wheel", True, False),
-        "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
-        "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
-        "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
-        "r_f": Parameter("1", "rebound damping over compression damping, front", False),
-        "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
-        "v_kf": Parameter("m/s", "velocity at which the curve of the front dampers has its knee", False),
-        "v_kr": Parameter("m/s", "velocity at which the curve of the rear dampers has its knee", False),
-        "q_f": Parameter("1", "damping beyond the knee over that before it, front", False),
-        "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
-        "w_kf": Parameter("m/s", "half the width over which the knee of the front dampers is rounded", False, False),
-        "w_kr": Parameter("m/s", "half the width over which the knee of the rear dampers is rounded", False, False),
-        "p_f": Parameter(
-            "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
-        ),
-        "p_r": Parameter(
-            "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
-        ),
-        "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
-        "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
-        "e_lf": Parameter("1/m", "the same of front springs that a valve levels under every load", False, False),
-        "e_lr": Parameter("1/m", "the same of rear springs that a valve levels under every load", False, False),
-        "g_f": Parameter(
-            "N/(m kg)", "growth of the rate of a levelled front spring per mass that it carries", False, False
-        ),
-        "g_r": Parameter(
-            "N/(m kg)", "growth of the rate of a levelled rear spring per mass that it carries", False, False
-        ),
-        "h_tf": Parameter(
-            "1/m", "growth of the front tyre rate with deflection, as a part of k_tf per metre", False, False, True
-        ),
-        "h_tr": Parameter(
-            "1/m", "growth of the rear tyre rate with deflection, as a part of k_tr per metre", False, False, True
-        ),
-        "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
-        "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
-        "x_bf": Parameter("m", "compression from rest at which the front bump stops are met", False),
-        "x_br": Parameter("m", "compression from rest at which the rear bump stops are met", False),
-    }
-)
+PARAMETERS: Mapping[str, Parameter] = {
+    "m_s": Parameter("kg", "sprung mass", True),
+    "I_yy": Parameter("kg m^2", "pitch inertia of the sprung mass", True),
+    "I_xx": Parameter("kg m^2", "roll inertia of the sprung mass", True),
+    "m_uf": Parameter("kg", "unsprung mass, each front wheel", True),
+    "m_ur": Parameter("kg", "unsprung mass, each rear wheel", True),
+    "k_sf": Parameter("N/m", "spring rate, each front wheel", True),
+    "k_sr": Parameter("N/m", "spring rate, each rear wheel", True),
+    "k_tf": Parameter("N/m", "tyre rate, each front wheel", True),
+    "k_tr": Parameter("N/m", "tyre rate, each rear wheel", True),
+    "c_sf": Parameter("N s/m", "damper rate, each front wheel", True),
+    "c_sr": Parameter("N s/m", "damper rate, each rear wheel", True),
+    "a": Parameter("m", "centre of gravity of the sprung mass to front axle", False),
+    "b": Parameter("m", "centre of gravity of the sprung mass to rear axle", False),
+    "t_f": Parameter("m", "half-distance of springs and dampers, front", False),
+    "t_r": Parameter("m", "half-distance of springs and dampers, rear", False),
+    "t_f1": Parameter("m", "half-distance of the front dampers", False),
+    "t_r1": Parameter("m", "half-distance of the rear dampers", False),
+    "t_f2": Parameter("m", "half-distance of the front springs", False),
+    "t_r2": Parameter("m", "half-distance of the rear springs", False),
+    "c_tf": Parameter("N s/m", "tyre damping, each front wheel", True, False),
+    "c_tr": Parameter("N s/m", "tyre damping, each rear wheel", True, False),
+    "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
+    "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
+    "w_h": Parameter(
+        "N m",
+        "weight of the body times the height of its centre of gravity above lateral support",
+        True,
+        False,
+        True,
+    ),
+    "y_s": Parameter("m", "centre of gravity of the sprung mass, left of the centreline", False, False, True),
+    "d_ksf": Parameter("N/m", "left front spring rate above the mean of both", True, False, True),
+    "d_ksr": Parameter("N/m", "left rear spring rate above the mean of both", True, False, True),
+    "d_ktf": Parameter("N/m", "left front tyre rate above the mean of both", True, False, True),
+    "d_ktr": Parameter("N/m", "left rear tyre rate above the mean of both", True, False, True),
+    "d_csf": Parameter("N s/m", "left front damper rate above the mean of both", True, False, True),
+    "d_csr": Parameter("N s/m", "left rear damper rate above the mean of both", True, False, True),
+    "n_f": Parameter(
+        "1", "place of springs and dampers on a rigid front axle, part of its wheels' half-distance", False
+    ),
+    "n_r": Parameter(
+        "1", "place of springs and dampers on a rigid rear axle, part of its wheels' half-distance", False
+    ),
+    "n_f1": Parameter("1", "place of the dampers on a rigid front axle, part of its wheels' half-distance", False),
+    "n_r1": Parameter("1", "place of the dampers on a rigid rear axle, part of its wheels' half-distance", False),
+    "n_f2": Parameter("1", "place of the springs on a rigid front axle, part of its wheels' half-distance", False),
+    "n_r2": Parameter("1", "place of the springs on a rigid rear axle, part of its wheels' half-distance", False),
+    "m_xf": Parameter(
+        "kg",
+        "what rolls with a rigid front axle beside its unsprung masses, as a mass at each wheel",
+        True,
+        False,
+        True,
+    ),
+    "m_xr": Parameter(
+        "kg",
+        "what rolls with a rigid rear axle beside its unsprung masses, as a mass at each wheel",
+        True,
+        False,
+        True,
+    ),
+    "m_e": Parameter("kg", "engine that moves on its mounts, a part of the sprung mass", True, False),
+    "k_e": Parameter("N/m", "engine mounts, all together", True),
+    "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
+    "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
+    "k_df": Parameter(
+        "N/m",
+        "rate of the rubber mount in series with the damper, each front wheel",
+        True,
+        vanishes_at_infinity=True,
+    ),
+    "k_dr": Parameter(
+        "N/m",
+        "rate of the rubber mount in series with the damper, each rear wheel",
+        True,
+        vanishes_at_infinity=True,
+    ),
+    "c_df": Parameter("N s/m", "damping of the rubber mount of the damper, each front wheel", True, False),
+    "c_dr": Parameter("N s/m", "damping of the rubber mount of the damper, each rear wheel", True, False),
+    "k_zf": Parameter("N/m", "spring rate that relaxes, beside the spring of each front wheel", True, False),
+    "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
+    "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
+    "c_zr": Parameter("N s/m", "damping in series with the relaxing spring rate, each rear wheel", True),
+    "I_w": Parameter(
+        "kg m^2",
+        "modal inertia of the body's twist, for the angle between the axles",
+        True,
+        vanishes_at_infinity=True,
+    ),
+    "k_w": Parameter("N m", "stiffness of the body's twist, for the angle between the axles", True),
+    "c_w": Parameter("N m s", "damping of the body's twist, for the angle between the axles", True),
+    "a_w": Parameter("m", "node of the body's twist, ahead of the middle between the axles", False, False, True),
+    "m_v": Parameter(
+        "kg",
+        "modal mass of the body's bending, for the rise of its middle above its axles",
+        True,
+        vanishes_at_infinity=True,
+    ),
+    "k_v": Parameter("N/m", "stiffness of the body's bending, for the rise of its middle above its axles", True),
+    "c_v": Parameter("N s/m", "damping of the body's bending, for the rise of its middle above its axles", True),
+    "b_v": Parameter(
+        "1",
+        "rise of the centre of gravity as the body bends, over that of the middle above its axles",
+        False,
+        False,
+        True,
+    ),
+    "p_v": Parameter(
+        "1/m", "mean pitch of the body as it bends, over the rise of its middle above its axles", False, False, True
+    ),
+    "m_o": Parameter("kg", "people on soft seats, a part of the sprung mass", True, False),
+    "k_o": Parameter("N/m", "seats of these people, all together", True),
+    "c_o": Parameter("N s/m", "damping of the seats of these people, all together", True, False),
+    "x_o": Parameter("m", "people on soft seats, forward of the front axle", False, False, True),
+    "y_o": Parameter("m", "people on soft seats, left of the centreline", False, False, True),
+    "w_l": Parameter(
+        "1/s^2", "rate of the seats under a load, over the mass on them", False, vanishes_at_infinity=True
+    ),
+    "c_l": Parameter("1/s", "damping of the seats under a load, over the mass on them", False, False),
+    "F_f": Parameter("N", "dry friction, each front wheel", True, False),
+    "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
+    "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
+    "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
+    "r_f": Parameter("1", "rebound damping over compression damping, front", False),
+    "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
+    "v_kf": Parameter("m/s", "velocity at which the curve of the front dampers has its knee", False),
+    "v_kr": Parameter("m/s", "velocity at which the curve of the rear dampers has its knee", False),
+    "q_f": Parameter("1", "damping beyond the knee over that before it, front", False),
+    "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
+    "w_kf": Parameter("m/s", "half the width over which the knee of the front dampers is rounded", False, False),
+    "w_kr": Parameter("m/s", "half the width over which the knee of the rear dampers is rounded", False, False),
+    "p_f": Parameter(
+        "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
+    ),
+    "p_r": Parameter(
+        "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
+    ),
+    "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
+    "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
+    "e_lf": Parameter("1/m", "the same of front springs that a valve levels under every load", False, False),
+    "e_lr": Parameter("1/m", "the same of rear springs that a valve levels under every load", False, False),
+    "g_f": Parameter(
+        "N/(m kg)", "growth of the rate of a levelled front spring per mass that it carries", False, False
+    ),
+    "g_r": Parameter("N/(m kg)", "growth of the rate of a levelled rear spring per mass that it carries", False, False),
+    "h_tf": Parameter(
+        "1/m", "growth of the front tyre rate with deflection, as a part of k_tf per metre", False, False, True
+    ),
+    "h_tr": Parameter(
+        "1/m", "growth of the rear tyre rate with deflection, as a part of k_tr per metre", False, False, True
+    ),
+    "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
+    "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
+    "x_bf": Parameter("m", "compression from rest at which the front bump stops are met", False),
+    "x_br": Parameter("m", "compression from rest at which the rear bump stops are met", False),
+}
 """Every parameter that the models know, in the order in which tables show them."""
 
 EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
@@ -315,36 +267,6 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
     other: Tracks = "shared" if tracks == "separate" else "separate"
     elsewhere = set(inboard_shares(other).values())
     return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
-
-
-def is_of_sensor(name: str) -> bool:
-    """Whether a parameter is an unknown of a sensor.
-
-    Parameters
-    ----------
-    name
-        Of any parameter.
-
-    Returns
-    -------
-    bool
-    """
-    return name.startswith(tuple(unknown.prefix for unknown in SENSOR_UNKNOWNS))
-
-
-def is_nuisance(name: str) -> bool:
-    """Whether a parameter belongs to a load or to a sensor, not to the vehicle.
-
-    Parameters
-    ----------
-    name
-        Of any parameter.
-
-    Returns
-    -------
-    bool
-    """
-    return name.startswith(LOAD_MASS) or is_of_sensor(name)
 
 
 @cache

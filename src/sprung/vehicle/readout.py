@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 from sprung.display import shown
 from sprung.vehicle.kinematics import body_point
 from sprung.vehicle.model import Rows
-from sprung.vehicle.parameters import SENSOR_DELAY, SENSOR_GAIN, SENSOR_UNKNOWNS, SENSOR_X, SENSOR_Y
+from sprung.vehicle.nuisances import SENSOR_UNKNOWNS, sensor_unknown
 from sprung.vehicle.sensor import Sensor
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_GAIN, _X, _Y, _DELAY = (SENSOR_UNKNOWNS.index(kind) for kind in (SENSOR_GAIN, SENSOR_X, SENSOR_Y, SENSOR_DELAY))
+_GAIN, _X, _Y, _DELAY = range(len(SENSOR_UNKNOWNS))
 
 
 @shown
@@ -61,7 +61,7 @@ class Readout:
         """
         index = {name: i for i, name in enumerate(names)}
         positions = np.array(
-            [[index.get(f"{kind.prefix}{one.channel}", -1) for kind in SENSOR_UNKNOWNS] for one in sensors],
+            [[index.get(sensor_unknown(quantity, one.channel), -1) for quantity in SENSOR_UNKNOWNS] for one in sensors],
             dtype=np.int64,
         ).reshape(-1, len(SENSOR_UNKNOWNS))
         own = len(names) - int(np.sum(positions >= 0))

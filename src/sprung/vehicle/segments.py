@@ -10,8 +10,6 @@ H. G. Bock, Springer Series in Chemical Physics 18 (1981) 102.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,21 +25,6 @@ _MOST_PASSES = 9
 
 _CLOSED = 1e-10
 """Gap between segments, as a part of the largest state, that is none."""
-
-
-class Prediction(NamedTuple):
-    """Motions that are known roughly.
-
-    Attributes
-    ----------
-    starts
-        State and memories at the start of each segment, SI and dimensionless, shape (drop, segment, start).
-    transitions
-        The end of each segment by its start, SI, shape (drop, segment, start, start).
-    """
-
-    starts: Array
-    transitions: Array
 
 
 def segments_of(steps: int, every: int) -> tuple[int, int]:
@@ -65,9 +48,9 @@ def segments_of(steps: int, every: int) -> tuple[int, int]:
 
 
 def integrate_near(
-    stepper: Stepper, states: Array, memories: Array, steps: int, every: int, near: Prediction
+    stepper: Stepper, states: Array, memories: Array, steps: int, every: int, starts: Array, transitions: Array
 ) -> Trajectory:
-    """Integrate motions from their initial states, near to a prediction.
+    """Integrate motions from their initial states that are known roughly.
 
     Parameters
     ----------
@@ -79,8 +62,11 @@ def integrate_near(
         How many.
     every
         Steps from one sample to the next.
-    near
-        The prediction.
+    starts
+        State and memories at the start of each segment, as far as they are known, SI and dimensionless, shape (drop, segment,
+        start).
+    transitions
+        The end of each segment by its start, SI, shape (drop, segment, start, start).
 
     Returns
     -------
@@ -89,7 +75,7 @@ def integrate_near(
     """
     number, length = segments_of(steps, every)
     slots, (kind, slot) = stepper.slots, stepper.places
-    starts, state = near.starts.copy(), states.shape[1]
+    starts, state = starts.copy(), states.shape[1]
     starts[:, 0] = np.concatenate([states, memories], axis=1)
     scale = np.maximum(np.abs(starts).max(axis=(0, 1)), np.finfo(float).tiny)
 
@@ -105,7 +91,7 @@ def integrate_near(
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
         changes = np.zeros_like(starts)
         for segment in range(number - 1):
-            moved = near.transitions[:, segment] @ changes[:, segment, :, None]
+            moved = transitions[:, segment] @ changes[:, segment, :, None]
             changes[:, segment + 1] = ends[:, segment] - starts[:, segment + 1] + moved[..., 0]
         previous, error = error, float(np.max(np.abs(changes) / scale))
         if error <= _CLOSED:

@@ -10,12 +10,11 @@ the changes of these states are put together afterwards (multiple shooting; H. G
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementForce, ElementInput
+from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.segments import segments_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 
@@ -23,26 +22,10 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
-class Sensitivities(NamedTuple):
-    """Derivatives of motions by the parameters, the initial states and the initial memories, in this order.
-
-    Attributes
-    ----------
-    outputs
-        Of each drop in turn, shape (sample, output, unknown).
-    starts
-        Of state and memories at the start of each segment, shape (drop, segment, start, unknown).
-    transitions
-        The end of each segment by its start, shape (drop, segment, start, start).
-    """
-
-    outputs: Iterator[Array]
-    starts: Array
-    transitions: Array
-
-
-def differentiate_motions(stepper: Stepper, trajectory: Trajectory, outputs: Array, every: int) -> Sensitivities:
-    """Differentiate motions and what is read of them.
+def differentiate_motions(
+    stepper: Stepper, trajectory: Trajectory, outputs: Array, every: int
+) -> tuple[Iterator[Array], Array, Array]:
+    """Differentiate motions and what is read of them by the parameters, the initial states and the initial memories.
 
     Parameters
     ----------
@@ -58,197 +41,188 @@ def differentiate_motions(stepper: Stepper, trajectory: Trajectory, outputs: Arr
 
     Returns
     -------
-    Sensitivities
+    outputs
+        Derivatives of the outputs of each drop in turn, shape (sample, output, unknown), the unknowns in this order.
+    starts
+        Those of state and memories at the start of each segment, shape (drop, segment, start, unknown).
+    transitions
+        The end of each segment by its start, shape (drop, segment, start, start).
     """
-    segments = _Segments.of(stepper, trajectory, every)
-    readings, ends = segments.differentiate(outputs, every)
+    number, length = segments_of(len(trajectory.states) - 1, every)
+    readings, ends = _differentiate_segments(stepper, *_cut(stepper, trajectory, number, length), outputs, every)
     kind, slot = stepper.places
     start, parameters, samples = ends.shape[-2], len(stepper.values), (len(trajectory.states) - 1) // every + 1
-    ends = ends.reshape(len(ends), -1, segments.number, *ends.shape[2:])[kind, slot]
+    ends = ends.reshape(len(ends), -1, number, *ends.shape[2:])[kind, slot]
     starts = np.zeros_like(ends)
     starts[:, 0, :, parameters:] = np.eye(start)
-    for segment in range(1, segments.number):
+    for segment in range(1, number):
         end = ends[:, segment - 1]
         starts[:, segment] = end[..., :start] @ starts[:, segment - 1]
         starts[:, segment, :, :parameters] += end[..., start:]
 
     def of_drops() -> Iterator[Array]:
-        for drop, first in enumerate(slot * segments.number):
-            own = readings[:, kind[drop], :, first : first + segments.number]
-            local = np.moveaxis(own, 2, 0).reshape(segments.number, -1, own.shape[-1])
+        for drop, first in enumerate(slot * number):
+            own = readings[:, kind[drop], :, first : first + number]
+            local = np.moveaxis(own, 2, 0).reshape(number, -1, own.shape[-1])
             whole = local[..., :start] @ starts[drop]
             whole[..., :parameters] += local[..., start:]
             yield whole.reshape(-1, outputs.shape[1], start + parameters)[:samples]
 
-    return Sensitivities(of_drops(), starts, ends[..., :start])
+    return of_drops(), starts, ends[..., :start]
 
 
-class _Segments(NamedTuple):
-    """Motions cut into segments of equal length, and the slopes of the forces along them.
+def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> tuple[Array, ElementInput]:
+    """Cut motions into a number of segments of so many steps; a *place* is a segment of one drop of a kind.
 
-    The first axis of its arrays is the step, from 0 to the length of a segment; a *place* is a segment of one drop of a kind.
-
-    Attributes
-    ----------
-    stepper
-        What stepped.
-    number
-        Of segments of each drop.
+    Returns
+    -------
     motion
         {x, u, 1}, shape (step + 1, kind, place, state + row + 1).
     given
         Input of the forces at each step, as of the step that ends there; at the first one without any increment.
-    found
-        Forces and their slopes.
     """
+    steps = len(trajectory.states) - 1
+    times = np.arange(length + 1)[:, None] + length * np.arange(number)
 
-    stepper: Stepper
-    number: int
-    motion: Array
-    given: ElementInput
-    found: ElementForce
+    def cut(values: Array, times: Index) -> Array:
+        chosen = np.moveaxis(values[np.minimum(times, steps)][:, :, stepper.slots], 1, 3)
+        return chosen.reshape(*chosen.shape[:2], chosen.shape[2] * chosen.shape[3], chosen.shape[4])
 
-    @classmethod
-    def of(cls, stepper: Stepper, trajectory: Trajectory, every: int) -> _Segments:
-        """Cut motions into segments, each of a whole number of samples."""
-        steps = len(trajectory.states) - 1
-        number, length = segments_of(steps, every)
-        times = np.arange(length + 1)[:, None] + length * np.arange(number)
-
-        def cut(values: Array, times: Index) -> Array:
-            chosen = np.moveaxis(values[np.minimum(times, steps)][:, :, stepper.slots], 1, 3)
-            return chosen.reshape(*chosen.shape[:2], chosen.shape[2] * chosen.shape[3], chosen.shape[4])
-
-        states, forces = cut(trajectory.states, times), cut(trajectory.forces, times)
-        motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
-        travel, rate = np.split(motion @ np.swapaxes(stepper.inputs, 1, 2), 2, axis=-1)
-        memories = cut(trajectory.memories, np.maximum(times - 1, times[:1]))
-        given = ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), memories)
-        return cls(stepper, number, motion, given, stepper.forces.evaluate(stepper.parameters, given))
-
-    def differentiate(self, outputs: Array, every: int) -> tuple[Array, Array]:
-        """Differentiate by the state and the memories at the start of each segment, and by the parameters.
-
-        Parameters
-        ----------
-        outputs
-            Linear functions of {x, u}, shape (kind, output, state + row).
-        every
-            Steps from one sample to the next.
-
-        Returns
-        -------
-        readings
-            Outputs at each sample, shape (sample, kind, output, place, start + parameter).
-        ends
-            State and memories at the end, shape (kind, place, start, start + parameter).
-        """
-        stepper, forces, found = self.stepper, self.stepper.forces, self.found
-        length, (kinds, places, size) = len(self.motion) - 1, self.motion.shape[1:]
-        rows, own = forces.number, forces.memory_rows
-        state, memories = size - 1 - rows, len(own)
-        start = state + memories
-        unknowns = start + len(stepper.values)
-        by_parameter = slice(start, None)
-        geometry, driving = _Drive.of(stepper.input_slopes, start), _Drive.of(stepper.step_slopes, start)
-        # Slopes of the forces and memories, ready to multiply changes (kind, row, place, unknown).
-        by_rate = _for_changes(found.by_rate)
-        by_memory, by_increment, kept = map(
-            _for_changes, (found.by_memory, found.memory_by_travel, found.memory_by_memory)
-        )
-        by_increment[0] = 0.0
-        by_travel = _for_changes(found.by_travel)
-        by_travel[:, :, own] += by_memory * by_increment
-
-        def multiply(matrices: Array, changes: Array) -> Array:
-            product = matrices @ changes.reshape(kinds, changes.shape[1], -1)
-            return product.reshape(kinds, -1, places, unknowns)
-
-        def force_changes(k: int, inputs: Array, memory: Array, travel: Array, inverse: Array) -> tuple[Array, Array]:
-            """Return changes of the forces, and of memories less those by the change of the travel over the step."""
-            by_parameters, remembered = forces.differentiate(stepper.values, _at(self.given, k))
-            memory = kept[k] * memory - by_increment[k] * travel
-            memory[..., by_parameter] += np.swapaxes(remembered, 1, 2)
-            right = by_travel[k] * inputs[:, :rows]
-            right += by_rate[k] * inputs[:, rows:]
-            right[..., by_parameter] += np.swapaxes(by_parameters, 1, 2)
-            right[:, own] += by_memory[k] * memory
-            return np.swapaxes(inverse @ np.swapaxes(right, 1, 2), 1, 2), memory
-
-        # Changes of state and forces, and of memories, by row, place and unknown.
-        changes = np.zeros((kinds, size - 1, places, unknowns))
-        memory = np.zeros((kinds, memories, places, unknowns))
-        for i in range(start):
-            (changes[:, i] if i < state else memory[:, i - state])[..., i] = 1.0
-        inputs = multiply(stepper.by_state, changes[:, :state])
-        geometry.add(inputs, self.motion[0])
-        inverse = self._inverses(stepper.directly_by_force, by_travel[:1], by_rate[:1])[0]
-        changes[:, state:], memory = force_changes(0, inputs, memory, inputs[:, own], inverse)
-        travel = inputs[:, own] + multiply(stepper.directly_by_force[:, own], changes[:, state:])
-        inverses = self._inverses(stepper.input_by_force, by_travel, by_rate)
-        readings = np.empty((length // every, kinds, outputs.shape[1], places, unknowns))
-        for k in range(length):
-            if k % every == 0:
-                readings[k // every] = multiply(outputs, changes)
-            ends = multiply(stepper.transition, changes)
-            here, there = self.motion[k], self.motion[k + 1]
-            driving.add(ends, np.concatenate([here[..., :-1], there[..., state:]], axis=-1))
-            inputs = multiply(stepper.by_state, ends)
-            geometry.add(inputs, there)
-            forced, memory = force_changes(k + 1, inputs, memory, travel, inverses[k + 1])
-            changes[:, :state] = ends + multiply(stepper.by_force, forced)
-            changes[:, state:] = forced
-            travel = inputs[:, own] + multiply(stepper.input_by_force[:, own], forced)
-            memory += by_increment[k + 1] * travel
-        return readings, np.swapaxes(np.concatenate([changes[:, :state], memory], axis=1), 1, 2)
-
-    def _inverses(self, by_force: Array, by_travel: Array, by_rate: Array) -> Array:
-        """Return what solves for forces that act on their own travels and rates.
-
-        Parameters
-        ----------
-        by_force
-            Travels and rates by the forces, shape (kind, 2 row, row).
-        by_travel, by_rate
-            Slopes of the forces, shape (step, kind, row, place, 1).
-
-        Returns
-        -------
-        ndarray
-            Shape (step, kind, place, row, row).
-        """
-        travel, rate = np.split(by_force[:, None], 2, axis=2)
-        effect = np.swapaxes(by_travel, 2, 3) * travel + np.swapaxes(by_rate, 2, 3) * rate
-        return np.asarray(np.linalg.inv(np.eye(by_force.shape[-1]) - effect), dtype=np.float64)
+    states, forces = cut(trajectory.states, times), cut(trajectory.forces, times)
+    motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
+    travel, rate = np.split(motion @ np.swapaxes(stepper.inputs, 1, 2), 2, axis=-1)
+    memories = cut(trajectory.memories, np.maximum(times - 1, times[:1]))
+    return motion, ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), memories)
 
 
-class _Drive(NamedTuple):
-    """What parameters change in linear functions that others' changes go through.
+def _differentiate_segments(
+    stepper: Stepper, motion: Array, given: ElementInput, outputs: Array, every: int
+) -> tuple[Array, Array]:
+    """Differentiate by the state and the memories at the start of each segment, and by the parameters.
 
-    Attributes
+    Parameters
+    ----------
+    stepper
+        What stepped.
+    motion, given
+        From `_cut`.
+    outputs
+        Linear functions of {x, u}, shape (kind, output, state + row).
+    every
+        Steps from one sample to the next.
+
+    Returns
+    -------
+    readings
+        Outputs at each sample, shape (sample, kind, output, place, start + parameter).
+    ends
+        State and memories at the end, shape (kind, place, start, start + parameter).
+    """
+    forces, found = stepper.forces, stepper.forces.evaluate(stepper.parameters, given)
+    length, (kinds, places, size) = len(motion) - 1, motion.shape[1:]
+    rows, own = forces.number, forces.memory_rows
+    state, memories = size - 1 - rows, len(own)
+    start = state + memories
+    unknowns = start + len(stepper.values)
+    by_parameter = slice(start, None)
+    geometry, driving = _driven(stepper.input_slopes, start), _driven(stepper.step_slopes, start)
+    # Slopes of the forces and memories, ready to multiply changes (kind, row, place, unknown).
+    by_rate = _for_changes(found.by_rate)
+    by_memory, by_increment, kept = map(_for_changes, (found.by_memory, found.memory_by_travel, found.memory_by_memory))
+    by_increment[0] = 0.0
+    by_travel = _for_changes(found.by_travel)
+    by_travel[:, :, own] += by_memory * by_increment
+
+    def multiply(matrices: Array, changes: Array) -> Array:
+        product = matrices @ changes.reshape(kinds, changes.shape[1], -1)
+        return product.reshape(kinds, -1, places, unknowns)
+
+    def force_changes(k: int, inputs: Array, memory: Array, travel: Array, inverse: Array) -> tuple[Array, Array]:
+        """Return changes of the forces, and of memories less those by the change of the travel over the step."""
+        by_parameters, remembered = forces.differentiate(stepper.values, _at(given, k))
+        memory = kept[k] * memory - by_increment[k] * travel
+        memory[..., by_parameter] += np.swapaxes(remembered, 1, 2)
+        right = by_travel[k] * inputs[:, :rows]
+        right += by_rate[k] * inputs[:, rows:]
+        right[..., by_parameter] += np.swapaxes(by_parameters, 1, 2)
+        right[:, own] += by_memory[k] * memory
+        return np.swapaxes(inverse @ np.swapaxes(right, 1, 2), 1, 2), memory
+
+    # Changes of state and forces, and of memories, by row, place and unknown.
+    changes = np.zeros((kinds, size - 1, places, unknowns))
+    memory = np.zeros((kinds, memories, places, unknowns))
+    for i in range(start):
+        (changes[:, i] if i < state else memory[:, i - state])[..., i] = 1.0
+    inputs = multiply(stepper.by_state, changes[:, :state])
+    _add_driven(inputs, *geometry, motion[0])
+    inverse = _inverses(stepper.directly_by_force, by_travel[:1], by_rate[:1])[0]
+    changes[:, state:], memory = force_changes(0, inputs, memory, inputs[:, own], inverse)
+    travel = inputs[:, own] + multiply(stepper.directly_by_force[:, own], changes[:, state:])
+    inverses = _inverses(stepper.input_by_force, by_travel, by_rate)
+    readings = np.empty((length // every, kinds, outputs.shape[1], places, unknowns))
+    for k in range(length):
+        if k % every == 0:
+            readings[k // every] = multiply(outputs, changes)
+        ends = multiply(stepper.transition, changes)
+        here, there = motion[k], motion[k + 1]
+        _add_driven(ends, *driving, np.concatenate([here[..., :-1], there[..., state:]], axis=-1))
+        inputs = multiply(stepper.by_state, ends)
+        _add_driven(inputs, *geometry, there)
+        forced, memory = force_changes(k + 1, inputs, memory, travel, inverses[k + 1])
+        changes[:, :state] = ends + multiply(stepper.by_force, forced)
+        changes[:, state:] = forced
+        travel = inputs[:, own] + multiply(stepper.input_by_force[:, own], forced)
+        memory += by_increment[k + 1] * travel
+    return readings, np.swapaxes(np.concatenate([changes[:, :state], memory], axis=1), 1, 2)
+
+
+def _inverses(by_force: Array, by_travel: Array, by_rate: Array) -> Array:
+    """Return what solves for forces that act on their own travels and rates.
+
+    Parameters
+    ----------
+    by_force
+        Travels and rates by the forces, shape (kind, 2 row, row).
+    by_travel, by_rate
+        Slopes of the forces, shape (step, kind, row, place, 1).
+
+    Returns
+    -------
+    ndarray
+        Shape (step, kind, place, row, row).
+    """
+    travel, rate = np.split(by_force[:, None], 2, axis=2)
+    effect = np.swapaxes(by_travel, 2, 3) * travel + np.swapaxes(by_rate, 2, 3) * rate
+    return np.asarray(np.linalg.inv(np.eye(by_force.shape[-1]) - effect), dtype=np.float64)
+
+
+def _driven(slopes: Array, start: int) -> tuple[Array, slice]:
+    """Arrange what parameters change in linear functions that others' changes go through, for `_add_driven`.
+
+    Parameters
     ----------
     slopes
-        Derivatives of the functions, shape (kind, argument, result · parameter); of parameters that change them.
+        Derivatives by each parameter, shape (kind, parameter, result, argument).
+    start
+        How many unknowns come before the parameters.
+
+    Returns
+    -------
+    slopes
+        Those by the parameters that change the functions, shape (kind, argument, result · parameter).
     columns
         Which columns these are of all unknowns.
     """
+    which = np.flatnonzero(slopes.any(axis=(0, 2, 3)))
+    first, last = (which[0], which[-1] + 1) if which.size else (0, 0)
+    arranged = np.ascontiguousarray(slopes[:, first:last].transpose(0, 3, 2, 1))
+    return arranged.reshape(*arranged.shape[:2], -1), slice(start + int(first), start + int(last))
 
-    slopes: Array
-    columns: slice
 
-    @classmethod
-    def of(cls, slopes: Array, start: int) -> _Drive:
-        """Prepare derivatives by each parameter, (kind, parameter, result, argument); their columns follow so many others."""
-        which = np.flatnonzero(slopes.any(axis=(0, 2, 3)))
-        first, last = (which[0], which[-1] + 1) if which.size else (0, 0)
-        arranged = np.ascontiguousarray(slopes[:, first:last].transpose(0, 3, 2, 1))
-        columns = slice(start + int(first), start + int(last))
-        return cls(arranged.reshape(*arranged.shape[:2], -1), columns)
-
-    def add(self, results: Array, arguments: Array) -> None:
-        """Add to changes (kind, result, place, unknown) what parameters change at arguments (kind, place, argument)."""
-        change = (arguments @ self.slopes).reshape(*arguments.shape[:2], results.shape[1], -1)
-        results[..., self.columns] += np.swapaxes(change, 1, 2)
+def _add_driven(results: Array, slopes: Array, columns: slice, arguments: Array) -> None:
+    """Add to changes (kind, result, place, unknown) what parameters change at arguments (kind, place, argument)."""
+    change = (arguments @ slopes).reshape(*arguments.shape[:2], results.shape[1], -1)
+    results[..., columns] += np.swapaxes(change, 1, 2)
 
 
 def _for_changes(slopes: Array) -> Array:

@@ -15,7 +15,7 @@ from sprung.vehicle import kinematics
 from sprung.vehicle.checked_record import checked_record
 from sprung.vehicle.kinematics import Row
 from sprung.vehicle.load import Finite, Positive
-from sprung.vehicle.parameters import SENSOR_DELAY, SENSOR_GAIN, SENSOR_X, SENSOR_Y
+from sprung.vehicle.nuisances import SensorQuantity, sensor_unknown
 
 LARGEST_PLACE = 1.0
 """Largest standard uncertainty of a position, m."""
@@ -115,13 +115,15 @@ class Sensor:
         """
         tilt = math.radians(self.tilt_std)
         place = math.hypot(self.position_std, tilt * _PENDULUM) if self.position is not None else 0.0
-        known = {
-            SENSOR_GAIN: KnownValue(-(tilt**2), math.hypot(self.gain_std, _TAIL * tilt**2)),
-            SENSOR_X: KnownValue(0.0, place),
-            SENSOR_Y: KnownValue(0.0, place),
-            SENSOR_DELAY: KnownValue(0.0, self.delay_std),
+        known: dict[SensorQuantity, KnownValue] = {
+            "gain": KnownValue(-(tilt**2), math.hypot(self.gain_std, _TAIL * tilt**2)),
+            "x": KnownValue(0.0, place),
+            "y": KnownValue(0.0, place),
+            "delay": KnownValue(0.0, self.delay_std),
         }
-        return {f"{kind.prefix}{self.channel}": value for kind, value in known.items() if not value.is_exact}
+        return {
+            sensor_unknown(quantity, self.channel): value for quantity, value in known.items() if not value.is_exact
+        }
 
 
 def uncertainties_of(sensors: Iterable[Sensor]) -> dict[str, KnownValue]:

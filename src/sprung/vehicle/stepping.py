@@ -173,14 +173,14 @@ class Stepper:
         inputs = self.by_state @ ends
         inputs[..., -1] += self.inputs[..., -1]
         predictor = _transposed(np.concatenate([ends, inputs], axis=1))
-        by_force, feedback = _transposed(self.by_force), _Feedback.of(self.input_by_force, forces)
+        by_force, feedback = _transposed(self.by_force), _feedback(self.input_by_force, forces)
         motions = np.ones((steps + 1, *shape, state + rows + 1))
         kept = np.empty((steps + 1, *shape, forces.memories))
         motions[0, ..., :state], kept[0] = states, memories
         predicted = np.empty((*shape, state + 2 * rows))
         with np.errstate(over="ignore", invalid="ignore"):
             at_start = states @ _transposed(self.by_state) + self.inputs[:, None, :, -1]
-            held, force = _Feedback.of(self.directly_by_force, forces), np.zeros((*shape, rows))
+            held, force = _feedback(self.directly_by_force, forces), np.zeros((*shape, rows))
             found, travel = self._solve(at_start, at_start[..., :rows], memories, force, held)
             force = before = motions[0, ..., state:-1] = found.force
             for k in range(steps):
@@ -192,7 +192,12 @@ class Stepper:
         return motions, kept
 
     def _solve(
-        self, predicted: Array, before: Array, memories: Array, force: Array, feedback: _Feedback
+        self,
+        predicted: Array,
+        before: Array,
+        memories: Array,
+        force: Array,
+        feedback: tuple[Array, Array, Array, Array],
     ) -> tuple[ElementForce, Array]:
         """Return forces and travels that depend on each other.
 
@@ -205,12 +210,13 @@ class Stepper:
         force
             The forces to begin with, shape (kind, slot, row).
         feedback
-            What the forces add to travels and rates.
+            What the forces add to travels and rates, from `_feedback`.
         """
         rows, memory_rows = force.shape[-1], self.forces.memory_rows
+        by_force, own_travel, own_rate, memory_travel = feedback
         earlier: tuple[Array, Array] | None = None
         for left in reversed(range(_MOST_EVALUATIONS)):
-            end = predicted + force @ feedback.by_force
+            end = predicted + force @ by_force
             travel = end[..., :rows]
             given = ElementInput(travel, end[..., rows:], travel - before, memories)
             found = self.forces.evaluate(self.parameters, given)
@@ -218,9 +224,9 @@ class Stepper:
             if not left or not np.abs(error).max(initial=0.0) > _SOLVED * np.abs(found.force).max(initial=0.0):
                 break
             # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
-            slope = found.by_travel * feedback.own_travel + found.by_rate * feedback.own_rate
+            slope = found.by_travel * own_travel + found.by_rate * own_rate
             if len(memory_rows):
-                slope[..., memory_rows] += found.by_memory * found.memory_by_travel * feedback.memory_travel
+                slope[..., memory_rows] += found.by_memory * found.memory_by_travel * memory_travel
             correction = error / (1.0 - slope)
             if earlier is not None:
                 # Where a kink lies between, Newton's method may go back and forth: the secant does not.
@@ -231,11 +237,11 @@ class Stepper:
         return found, travel
 
 
-class _Feedback(NamedTuple):
-    """What forces add to travels and rates.
+def _feedback(by_force: Array, forces: NonlinearForces) -> tuple[Array, Array, Array, Array]:
+    """Return what forces add to travels and rates, from these by the forces, shape (kind, 2 row, row).
 
-    Attributes
-    ----------
+    Returns
+    -------
     by_force
         Travels and rates by the forces, shape (kind, row, 2 row).
     own_travel, own_rate
@@ -243,17 +249,8 @@ class _Feedback(NamedTuple):
     memory_travel
         Travel of the row of each memory by its own force, shape (kind, 1, memory).
     """
-
-    by_force: Array
-    own_travel: Array
-    own_rate: Array
-    memory_travel: Array
-
-    @classmethod
-    def of(cls, by_force: Array, forces: NonlinearForces) -> _Feedback:
-        """Prepare travels and rates by the forces, shape (kind, 2 row, row)."""
-        travel, rate = (np.diagonal(part, axis1=1, axis2=2)[:, None] for part in np.split(by_force, 2, axis=1))
-        return cls(_transposed(by_force), travel.copy(), rate.copy(), travel[..., forces.memory_rows])
+    travel, rate = (np.diagonal(part, axis1=1, axis2=2)[:, None] for part in np.split(by_force, 2, axis=1))
+    return _transposed(by_force), travel.copy(), rate.copy(), travel[..., forces.memory_rows]
 
 
 def _transposed(matrices: Array) -> Array:

@@ -8,15 +8,15 @@ from itertools import combinations
 import numpy as np
 
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import exchange_channels
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import FaultIsolation
 
 
-def exchanged_channels(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+def exchanged_channels(base: CandidateFit) -> Iterator[Hypothesis]:
     """Exchange each two channels; the residuals follow from the direct estimate and one step."""
-    sensors = isolation.campaign.sensors
-    used = np.flatnonzero(isolation.base.table.counts.any(axis=0)).tolist()
+    sensors = base.campaign.sensors
+    used = np.flatnonzero(base.table.counts.any(axis=0)).tolist()
     for first, second in combinations(used, 2):
         if sensors[first].on == sensors[second].on != "body":
             continue
@@ -24,5 +24,5 @@ def exchanged_channels(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         what = "the two channels are exchanged, as the fit of all channels shows; corrected"
         fault = Fault("exchanged", names, what, "Exchange the two in the campaign file, or their cables.")
         correction = exchange_channels(first, second, sensors)
-        candidate = isolation.step(correction)
+        candidate = base.step(correction)
         yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)

@@ -8,35 +8,35 @@ from dataclasses import replace
 import numpy as np
 
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import relabel_loads
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import CandidateFit, FaultIsolation
 
 _ROUNDS = 4
 
 _DO = "Correct load = ... of these drops in the campaign file."
 
 
-def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+def exchanged_loads(base: CandidateFit) -> Iterator[Hypothesis]:
     """Exchange the loads of all drops, and those of the drops that another load explains better."""
-    stated = {decay.file: decay.load for decay in isolation.decays}
+    stated = {decay.file: decay.load for decay in base.decays}
     loads = sorted(set(stated.values()))
     if len(loads) < 2:
         return
     if len(loads) == 2:
         opposite = dict(zip(loads, loads[::-1], strict=True))
         correction = relabel_loads({file: opposite[load] for file, load in stated.items()})
-        candidate = isolation.step(correction)
+        candidate = base.step(correction)
         what = f"loads '{loads[0]}' and '{loads[1]}' are exchanged in all drops; corrected"
         fault = Fault("load-exchanged", f"all drops, {loads[0]} and {loads[1]}", what, _DO)
         yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
-    labels, candidate = stated, isolation.base
+    labels, candidate = stated, base
     for _ in range(_ROUNDS):
-        better = _most_likely_loads(isolation, candidate, loads)
+        better = _most_likely_loads(base, candidate, loads)
         if better == labels or len(set(better.values())) < 2:
             break
         labels = better
-        candidate = isolation.step(relabel_loads(labels), candidate.fit)
+        candidate = base.step(relabel_loads(labels), candidate.fit)
     moved = {file: load for file, load in labels.items() if load != stated[file]}
     if moved and len(moved) < len(stated):
         what = "these drops move as if their loads were exchanged; corrected"
@@ -44,9 +44,9 @@ def exchanged_loads(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         yield Hypothesis(fault, "corrected", relabel_loads(moved), candidate.table, candidate)
 
 
-def _most_likely_loads(isolation: FaultIsolation, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:
+def _most_likely_loads(base: CandidateFit, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:
     """Return for each drop the load with which this vehicle explains it best."""
-    decays, weights = isolation.decays, candidate.fit.weights
+    decays, weights = base.decays, candidate.fit.weights
     costs = [
         candidate.fit.residual_sums_of([replace(decay, load=load) for decay in decays]) @ weights for load in loads
     ]

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import state_corners
 from sprung.faults.high_pass import NEGLIGIBLE, corner_fault, score_corners, stated_corner
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import FaultIsolation
 
 _ROUNDS = 8
 """Steps in which the corners converge."""
@@ -25,14 +25,14 @@ _CONVERGED = 1e-4
 """Change of the corners at which they have converged, Hz."""
 
 
-def high_passes(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+def high_passes(base: CandidateFit) -> Iterator[Hypothesis]:
     """State the corners with which the recordings are most likely for all sensors that may be AC-coupled.
 
     Where all sensors have the same high-pass, none of them contradicts the others: the motion of each mode is changed alike
     in all of them. The transient of the high-pass after the fall determines the corner.
     """
-    sensors = isolation.campaign.sensors
-    candidate = isolation.base
+    sensors = base.campaign.sensors
+    candidate = base
     scores = score_corners(candidate.decays, candidate.fit, sensors)
     if scores is None or len(scores.channels) < 2:
         return
@@ -47,7 +47,7 @@ def high_passes(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         if np.abs(corners - previous).max() < _CONVERGED:
             break
         correction = state_corners(dict(zip(which, map(stated_corner, corners.tolist()), strict=True)))
-        candidate = isolation.step(correction, candidate.fit)
+        candidate = base.step(correction, candidate.fit)
         scores = score_corners(candidate.decays, candidate.fit, candidate.campaign.sensors)
     if scores is None:
         return
@@ -58,7 +58,7 @@ def high_passes(isolation: FaultIsolation) -> Iterator[Hypothesis]:
     changed = {which[index]: stated_corner(float(corners[index])) for index in differs}
     correction = state_corners(changed)
     if len(differs) < len(which):
-        candidate = isolation.step(correction, candidate.fit)
+        candidate = base.step(correction, candidate.fit)
     fault = corner_fault(
         [sensors[which[index]] for index in differs], corners[differs].tolist(), stds[differs].tolist()
     )

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import Correction
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS
 
@@ -17,9 +17,9 @@ _LOAD_INCLUDED = 0.02
 """Relative distance from the mass of the vehicle with a load, within which a mass is taken to include the load."""
 
 
-def known_quantities(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+def known_quantities(base: CandidateFit) -> Iterator[Hypothesis]:
     """Exchange the masses of the axles, and leave out each known quantity."""
-    known = isolation.campaign.known
+    known = base.campaign.known
     front, rear = (known.get(name) for name in ("front_axle_mass", "rear_axle_mass"))
     if front is not None and rear is not None:
         what = (
@@ -28,19 +28,19 @@ def known_quantities(isolation: FaultIsolation) -> Iterator[Hypothesis]:
         )
         where = "known.front_axle_mass, known.rear_axle_mass"
         fault = Fault("known", where, what, "Exchange the two in the campaign file.")
-        yield _stating(isolation, fault, {**known, "front_axle_mass": rear, "rear_axle_mass": front})
+        yield _stating(base, fault, {**known, "front_axle_mass": rear, "rear_axle_mass": front})
     for name, stated in known.items():
         rest = {key: value for key, value in known.items() if key != name}
-        hypothesis = _stating(isolation, Fault("known", f"known.{name}", "", ""), rest)
+        hypothesis = _stating(base, Fault("known", f"known.{name}", "", ""), rest)
         yield replace(hypothesis, fault=_contradicted(name, stated, hypothesis.candidate))
 
 
-def _stating(isolation: FaultIsolation, fault: Fault, known: Mapping[str, KnownValue]) -> Hypothesis:
+def _stating(base: CandidateFit, fault: Fault, known: Mapping[str, KnownValue]) -> Hypothesis:
     def described(campaign: Campaign) -> Campaign:
         return replace(campaign, known=known)
 
     correction = Correction(description=described)
-    candidate = isolation.step(correction, isolation.base.fit)
+    candidate = base.step(correction, base.fit)
     return Hypothesis(fault, "corrected", correction, candidate.table, candidate)
 
 

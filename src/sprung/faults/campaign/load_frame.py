@@ -7,17 +7,17 @@ from dataclasses import replace
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import Correction
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import FaultIsolation
 from sprung.vehicle import Load
 
 Place = tuple[float, float, float]
 
 
-def load_frames(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+def load_frames(base: CandidateFit) -> Iterator[Hypothesis]:
     """State the places of each load in each other frame."""
-    campaign = isolation.campaign
+    campaign = base.campaign
     for load in campaign.loads:
         for what, do, transform in _frames(campaign):
             if not any(item.position is not None and transform(item.position) != item.position for item in load.items):
@@ -29,7 +29,7 @@ def load_frames(isolation: FaultIsolation) -> Iterator[Hypothesis]:
                 f"{do} in the campaign file.",
             )
             correction = _in_frame(load, transform)
-            candidate = isolation.step(correction, isolation.base.fit)
+            candidate = base.step(correction, base.fit)
             yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import Correction, move_load_item
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import CandidateFit, FaultIsolation
 
 _ROUNDS = 4
 
@@ -21,18 +21,18 @@ _NEGLIGIBLE = 0.02
 _DIRECTIONS = (("back", "forward"), ("to the right", "to the left"))
 
 
-def load_position(isolation: FaultIsolation) -> Iterator[Hypothesis]:
+def load_position(base: CandidateFit) -> Iterator[Hypothesis]:
     """Move the item of a load for which that gains most; the place is only named, as mass and place are hardly told apart."""
-    first = _best_score(isolation.base, None)
+    first = _best_score(base, None)
     if first is None:
         return
     score: FaultScore | None = first
-    candidate, distance = isolation.base, 0.0
+    candidate, distance = base, 0.0
     for _ in range(_ROUNDS):
         if score is None or score.gain < 1:
             break
         distance += max(min(score.value, _LONGEST_STEP), -_LONGEST_STEP)
-        candidate = isolation.step(_moved(first, distance), candidate.fit)
+        candidate = base.step(_moved(first, distance), candidate.fit)
         score = _best_score(candidate, first)
     if abs(distance) < _NEGLIGIBLE:
         return

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sprung.errors import Fault
-from sprung.faults.isolation import FaultIsolation
+from sprung.faults.candidate_fit import CandidateFit
 
 _SHARE = 0.7
 """Share of the residual of the body's channels in the shape of a twist, from which it is one."""
@@ -14,13 +14,13 @@ _PARTICIPATION = 0.05
 """Share of a twist, squared, that a sensor has to show for it to count."""
 
 
-def torsion_test(isolation: FaultIsolation) -> Fault | None:
+def torsion_test(base: CandidateFit) -> Fault | None:
     """Test whether the body twists.
 
     Parameters
     ----------
-    isolation
-        Of the campaign.
+    base
+        The fit that does not explain the recordings.
 
     Returns
     -------
@@ -28,21 +28,21 @@ def torsion_test(isolation: FaultIsolation) -> Fault | None:
         A fault where the wheels are explained, no sensor of the body is, and the residual of these has the shape of a twist
         about the longitudinal axis. Four and more of them show what no rigid body can do.
     """
-    base, sensors = isolation.base, isolation.campaign.sensors
+    sensors = base.campaign.sensors
     body = [i for i, sensor in enumerate(sensors) if sensor.on == "body" and base.table.counts[:, i].any()]
     wheels = [i for i in range(len(sensors)) if i not in body]
     if len(body) < 3:
         return None
     places = np.array([sensors[i].position for i in body], dtype=float)
-    wheelbase = isolation.campaign.wheelbase
+    wheelbase = base.campaign.wheelbase
     middle = float(places[:, 0].mean()) if wheelbase is None else -wheelbase.value / 2
     shape = (places[:, 0] - middle) * places[:, 1]
     shape /= max(float(np.linalg.norm(shape)), np.finfo(float).tiny)
-    explained = base.table.explained_channels(isolation.noise)
+    explained = base.table.explained_channels(base.noise)
     participating = np.array(body)[shape**2 > _PARTICIPATION]
     if not explained[wheels].all() or explained[participating].any():
         return None
-    excess = -np.diag(isolation.noise.level[body] ** 2 * base.table.counts[:, body].sum(axis=0))
+    excess = -np.diag(base.noise.level[body] ** 2 * base.table.counts[:, body].sum(axis=0))
     for record in base.fit.residuals:
         residual = np.nan_to_num(record[body])
         excess += residual @ residual.T

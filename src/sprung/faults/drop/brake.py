@@ -27,7 +27,7 @@ def brake(deletion: DropDeletion) -> Iterator[Hypothesis]:
 
 def residual_with_free(deletion: DropDeletion, free: Sequence[str]) -> NDArray[np.float64]:
     """Return the residuals of the drop alone where some parameters may differ, (m/s²)², shape (channel,)."""
-    values, sensors = deletion.candidate.fit.parameters, deletion.isolation.campaign.sensors
+    values, sensors = deletion.candidate.fit.parameters, deletion.base.campaign.sensors
     known = {name: KnownValue(value) for name, value in values.items() if name not in free}
     fit = fit_linear([deletion.decay], deletion.candidate.models, sensors, known, start=values, enough=NEAR)
     residual: NDArray[np.float64] = fit.residual_sums[0]

@@ -22,7 +22,7 @@ Real = NDArray[np.float64]
 
 def channel_of_drop(deletion: DropDeletion) -> Iterator[Hypothesis]:
     """Leave each channel out of the drop, where the others then agree with the vehicle, and explain it alone."""
-    candidate, noise = deletion.candidate, deletion.isolation.noise
+    candidate, noise = deletion.candidate, deletion.base.noise
     channels = np.flatnonzero(deletion.counts).tolist()
     masked = [without_channel(deletion.decay, channel) for channel in channels]
     states, residuals = candidate.fit.states_of(masked), candidate.fit.residual_sums_of(masked)

@@ -18,7 +18,7 @@ def exchanged_columns(deletion: DropDeletion) -> Iterator[Hypothesis]:
     pairs = list(combinations(np.flatnonzero(deletion.counts).tolist(), 2))
     if not pairs:
         return
-    sensors = deletion.isolation.campaign.sensors
+    sensors = deletion.base.campaign.sensors
     residuals = deletion.candidate.fit.residual_sums_of([with_exchanged(deletion.decay, *pair) for pair in pairs])
     for pair, residual in zip(pairs, residuals, strict=True):
         names = ", ".join(sensors[channel].channel for channel in pair)

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import Correction, exclude_drops
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolation import CandidateFit, FaultIsolation
 from sprung.faults.residual_table import ResidualTable
 from sprung.preprocess import FreeDecay
 
@@ -28,17 +28,17 @@ class DropDeletion:
 
     Attributes
     ----------
-    isolation
-        The campaign.
+    base
+        The fit with it.
     drop
-        Index of the drop among the isolation's recordings.
+        Index of the drop among the recordings of that fit.
     candidate
         The fit without it.
     kinds
         What yields hypotheses about it.
     """
 
-    isolation: FaultIsolation
+    base: CandidateFit
     drop: int
     candidate: CandidateFit
     kinds: Sequence[DropKind] = ()
@@ -46,12 +46,12 @@ class DropDeletion:
     @property
     def decay(self) -> FreeDecay:
         """Of the drop."""
-        return next(decay for decay in self.isolation.decays if decay.file == self.name)
+        return next(decay for decay in self.base.decays if decay.file == self.name)
 
     @property
     def name(self) -> str:
         """Of the drop's recording."""
-        return self.isolation.recordings[self.drop]
+        return self.base.recordings[self.drop]
 
     @property
     def correction(self) -> Correction:
@@ -61,7 +61,7 @@ class DropDeletion:
     @property
     def counts(self) -> Real:
         """Samples of the drop by channel; shape (channel,)."""
-        counts: Real = self.isolation.base.table.counts[self.drop]
+        counts: Real = self.base.table.counts[self.drop]
         return counts
 
     @cached_property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import dist
 
 from sprung.campaign import Campaign
@@ -21,29 +21,8 @@ SIDES: Mapping[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
 ENDS: Mapping[Wheel, Wheel] = {"fl": "rl", "fr": "rr", "rl": "fl", "rr": "fr"}
 """Front and rear exchanged."""
 
-
-@dataclass(frozen=True, eq=False)
-class CommonCause:
-    """A hypothesis about a whole campaign.
-
-    Attributes
-    ----------
-    fault
-        What it is called, and what to do about it.
-    changed
-        The campaign with it put right.
-    replaces
-        How many single statements it changes: of several hypotheses that explain the same, more stand for less.
-    """
-
-    fault: Fault
-    changed: Campaign
-    replaces: int
-
-    @property
-    def corrected(self) -> Campaign:
-        """The campaign with it put right and named."""
-        return replace(self.changed, faults=(*self.changed.faults, self.fault))
+CommonCause = tuple[Fault, Campaign]
+"""What may be wrong with a whole campaign, and the campaign with it put right."""
 
 
 def with_places(

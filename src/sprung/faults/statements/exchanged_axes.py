@@ -19,4 +19,4 @@ def exchanged_axes(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause
         )
         turned = "" if sign > 0 else " and change the sign of the new y"
         do = f"Exchange x and y in their position = [x, y, z]{turned} in the campaign file."
-        yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))
+        yield Fault("mirrored", join_names(channels), what, do), changed

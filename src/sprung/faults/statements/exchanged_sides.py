@@ -28,7 +28,7 @@ def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCaus
                 "show the others to have fallen. Their wheels were exchanged"
             )
             do = f"Exchange {one} and {two} in wheels = [...] of these drops, or in the names of all sensors."
-            yield CommonCause(Fault("wheels", join_names(names), what, do), replace(campaign, drops=drops), len(names))
+            yield Fault("wheels", join_names(names), what, do), replace(campaign, drops=drops)
         changed, channels = with_stations(campaign, other)
         if channels:
             what = (
@@ -36,7 +36,7 @@ def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCaus
                 "of the other wheels show the fall. They were exchanged"
             )
             do = f"Exchange {one} and {two} in on = ... of the wheel sensors, or their channels."
-            yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))
+            yield Fault("mirrored", join_names(channels), what, do), changed
             changed, body = with_opposite_places(
                 changed,
                 (lambda place: (place[0], -place[1], place[2]))
@@ -50,4 +50,4 @@ def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCaus
             )
             do = f"Exchange {one} and {two} of all sensors, or in wheels = [...] of all drops."
             both = (*body, *channels)
-            yield CommonCause(Fault("mirrored", join_names(both), what, do), changed, len(both))
+            yield Fault("mirrored", join_names(both), what, do), changed

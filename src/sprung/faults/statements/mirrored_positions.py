@@ -17,7 +17,7 @@ def mirrored_positions(campaign: Campaign, wheelbase: float) -> Iterator[CommonC
         "is positive on the left. The sign of y of all of them was changed"
     )
     do = "Change the sign of y in their position = [x, y, z], or exchange the left and right body channels."
-    yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))
+    yield Fault("mirrored", join_names(channels), what, do), changed
 
     exchanged, channels = with_opposite_places(campaign, lambda place: (place[0], -place[1], place[2]))
     if exchanged.sensors != changed.sensors:
@@ -26,7 +26,7 @@ def mirrored_positions(campaign: Campaign, wheelbase: float) -> Iterator[CommonC
             "that it should not. They were exchanged"
         )
         do = "Exchange the left and the right body channels in the campaign file, or their cables."
-        yield CommonCause(Fault("mirrored", join_names(channels), what, do), exchanged, len(channels))
+        yield Fault("mirrored", join_names(channels), what, do), exchanged
 
     changed, channels = with_places(campaign, lambda place: (-place[0], place[1], place[2]))
     what = (
@@ -34,7 +34,7 @@ def mirrored_positions(campaign: Campaign, wheelbase: float) -> Iterator[CommonC
         "positive forward of the front axle, negative behind it. The sign of x of all of them was changed"
     )
     do = "Change the sign of x in their position = [x, y, z] in the campaign file."
-    yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))
+    yield Fault("mirrored", join_names(channels), what, do), changed
 
     changed, channels = with_places(
         campaign, lambda place: (-place[0], place[1], place[2]), lambda one: _ahead(one.position, wheelbase)
@@ -44,7 +44,7 @@ def mirrored_positions(campaign: Campaign, wheelbase: float) -> Iterator[CommonC
             "they are said to be ahead of the front axle and move like the rear of the body: x is positive forward of the "
             "front axle, negative behind it. The sign of x of these sensors was changed"
         )
-        yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))
+        yield Fault("mirrored", join_names(channels), what, do), changed
 
 
 def _ahead(place: tuple[float, float, float] | None, wheelbase: float) -> bool:

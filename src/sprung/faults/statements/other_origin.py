@@ -17,7 +17,7 @@ def other_origin(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]:
         "further back, which is the wheelbase; x counts from the front axle. The wheelbase was taken off x of all of them"
     )
     do = f"Take the wheelbase, {wheelbase:g} m, off x in their position = [x, y, z] in the campaign file."
-    yield CommonCause(Fault("position", join_names(channels), what, do), changed, len(channels))
+    yield Fault("position", join_names(channels), what, do), changed
 
     changed, channels = with_opposite_places(campaign, lambda place: (-wheelbase - place[0], place[1], place[2]))
     what = (
@@ -25,4 +25,4 @@ def other_origin(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]:
         "say. All of them were put at the other end"
     )
     do = "Exchange the front and the rear body channels in the campaign file, or x in their position = [x, y, z]."
-    yield CommonCause(Fault("mirrored", join_names(channels), what, do), changed, len(channels))
+    yield Fault("mirrored", join_names(channels), what, do), changed

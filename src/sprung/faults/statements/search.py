@@ -7,8 +7,8 @@ from dataclasses import replace
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault, InputError, Problem
+from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.consistency import SIGNIFICANT
-from sprung.faults.isolation import FaultIsolation
 from sprung.faults.statements.cause import CommonCause
 from sprung.faults.statements.exchanged_axes import exchanged_axes
 from sprung.faults.statements.exchanged_sides import exchanged_sides
@@ -85,13 +85,14 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
         return campaign
     explaining = []
     for hypotheses in _HYPOTHESES:
-        for one in hypotheses(campaign, wheelbase):
-            again = prepared if one.changed.recordings == campaign.recordings else prepare(one.changed)
-            if _consistent(one.changed, again, wheelbase):
-                explaining.append(one)
-    if len(explaining) < 2:
-        return explaining[0].corrected if explaining else campaign
-    return _most_likely(campaign, explaining).corrected
+        for fault, changed in hypotheses(campaign, wheelbase):
+            again = prepared if changed.recordings == campaign.recordings else prepare(changed)
+            if _consistent(changed, again, wheelbase):
+                explaining.append((fault, changed))
+    if not explaining:
+        return campaign
+    fault, changed = explaining[0] if len(explaining) == 1 else _most_likely(campaign, explaining)
+    return replace(changed, faults=(*changed.faults, fault))
 
 
 def _wheelbase(campaign: Campaign) -> float | None:
@@ -135,24 +136,20 @@ def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float)
 def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> CommonCause:
     """Fit the campaign with each correction, and take the one with which the recordings are most likely."""
     fitted = []
-    for one in explaining:
-        base = FaultIsolation.of(choose_structure(one.changed, "shared", ()), prepare(one.changed).decays).base
+    for fault, changed in explaining:
+        base = CandidateFit.of(choose_structure(changed, "shared", ()), prepare(changed).decays)
         samples = max(float(base.table.counts.sum()), 1.0)
-        fitted.append((base.table.cost / samples, samples, base.fit.overdispersion, one))
-    fitted.sort(key=lambda each: each[0])
-    best, samples, overdispersion, first = fitted[0]
-    alike = [one for cost, *_, one in fitted if (cost - best) * samples < SIGNIFICANT * overdispersion]
-    if len(alike) == 1:
-        return first
+        fitted.append((base.table.cost / samples, samples, base.fit.overdispersion, fault, changed))
+    best, samples, overdispersion, fault, changed = min(fitted, key=lambda each: each[0])
     # Of what the recordings cannot tell apart, left and right of a vehicle that is alike on both sides is the same vehicle.
-    ordered = [one for one in explaining if one in alike]
-    first, *others = ordered
-    if all("left" in one.fault.do for one in ordered):
-        also = "; or ".join(one.fault.do.rstrip(".") for one in others)
-        return replace(
-            first, fault=replace(first.fault, do=f"{first.fault.do} The recordings cannot tell whether: {also}.")
-        )
-    raise InputError([_undecided(campaign, [one.fault for one in ordered])])
+    alike = [each[3:] for each in fitted if (each[0] - best) * samples < SIGNIFICANT * overdispersion]
+    if len(alike) == 1:
+        return fault, changed
+    (first, changed), *others = alike
+    if all("left" in other.do for other, _ in alike):
+        also = "; or ".join(other.do.rstrip(".") for other, _ in others)
+        return replace(first, do=f"{first.do} The recordings cannot tell whether: {also}."), changed
+    raise InputError([_undecided(campaign, [other for other, _ in alike])])
 
 
 def _undecided(campaign: Campaign, faults: Sequence[Fault]) -> Problem:

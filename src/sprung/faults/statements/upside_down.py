@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from sprung.campaign import Campaign
 from sprung.errors import Fault
@@ -29,4 +28,4 @@ def upside_down(campaign: Campaign, wheelbase: float) -> Iterator[CommonCause]: 
             f"{name} read upside down: after the release they show a rise, where a vehicle falls. They were turned over"
         )
         do = f"{now} in the campaign file."
-        yield CommonCause(Fault("sign", join_names(channels), what, do), replace(changed), len(channels))
+        yield Fault("sign", join_names(channels), what, do), changed

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
-from sprung.errors import Omissions
+from sprung.errors import record_failure
 from sprung.report.drawing.palette import DARK, LIGHT
 from sprung.report.drawing.picture import Picture
 from sprung.report.drawing.style import role_styles, standalone_style
@@ -70,11 +70,11 @@ def render_report(result: Result, unfolded: bool = False) -> tuple[str, tuple[st
     """
     page = ENVIRONMENT.get_template("page.html")
     record = list(test_record_of(result))
-    omissions = Omissions(result.omissions)
+    omissions = list(result.omissions)
     sections = list(_sections(result, unfolded, omissions))
     html = page.render(
         result=result,
-        omissions=omissions.sentences,
+        omissions=tuple(omissions),
         verdict=verdict_text(result),
         record=record,
         running_head=_css_text(" · ".join([result.name, *(text for name, text in record if name == "Date")])),
@@ -85,7 +85,7 @@ def render_report(result: Result, unfolded: bool = False) -> tuple[str, tuple[st
         roles=Markup("\n".join(role_styles())),  # noqa: S704 (made here)
         script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )
-    return html, omissions.sentences
+    return html, tuple(omissions)
 
 
 def _script() -> str:
@@ -99,7 +99,7 @@ def _css_text(text: str) -> Markup:
     return Markup('"{}"').format(Markup("".join(letters)))  # noqa: S704 (escaped above)
 
 
-def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[Section]:
+def _sections(result: Result, unfolded: bool, omissions: list[str]) -> Iterator[Section]:
     style = standalone_style(halo=False) if unfolded else ""
     parts: tuple[tuple[str, str, str, Callable[[], Context | None]], ...] = (
         (
@@ -138,7 +138,7 @@ def _sections(result: Result, unfolded: bool, omissions: Omissions) -> Iterator[
     for anchor, title, template, context in parts:
         body = None
         # A section that fails does not affect the others: the reason is given at the top.
-        with omissions.record_failure(f'The part "{title}" of the report'):
+        with record_failure(omissions, f'The part "{title}" of the report'):
             shown = context()
             if shown is not None:
                 body = ENVIRONMENT.get_template(template).render(**tools, **shown)

@@ -1,4 +1,4 @@
-"""Fault isolation: the fit that does not explain the recordings, and what other fits of corrected campaigns make of them.
+"""Fits of a campaign as it is and as it would be corrected: what each leaves of the recordings.
 
 All hypotheses are compared on the same samples. Decays are corrected directly; no campaign is preprocessed again here.
 """
@@ -17,8 +17,8 @@ from sprung.estimation import MOST_STEPS, NEAR, FitResult, fit_linear
 from sprung.faults.consistency import score_faults_of
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
-from sprung.faults.residual_table import ReferenceNoise, ResidualTable, reference_noise, residual_table
-from sprung.preprocess import FreeDecay, prepare
+from sprung.faults.residual_table import ResidualTable, reference_noise, residual_table
+from sprung.preprocess import FreeDecay, SensorNoise, prepare
 from sprung.selection import ModelStructure, choose_structure
 from sprung.vehicle import LinearModel
 
@@ -39,12 +39,14 @@ _STARTS = 2
 
 @dataclass(frozen=True, eq=False)
 class CandidateFit:
-    """The fit of a campaign that was corrected, or of a part of it.
+    """The fit of a campaign as it is, as it was corrected, or of a part of it.
 
     Attributes
     ----------
     structure
         The model.
+    recordings
+        Names of all recordings, in order: the rows of every residual table.
     decays
         What was fitted.
     fit
@@ -56,10 +58,27 @@ class CandidateFit:
     """
 
     structure: ModelStructure
+    recordings: tuple[str, ...]
     decays: tuple[FreeDecay, ...]
     fit: FitResult
     table: ResidualTable
-    noise: ReferenceNoise
+    noise: SensorNoise
+
+    @classmethod
+    def of(cls, structure: ModelStructure, decays: Sequence[FreeDecay], fit: FitResult | None = None) -> CandidateFit:
+        """Take up a model of a campaign, its decays and their fit; without a fit they are fitted.
+
+        Parameters
+        ----------
+        structure
+            The model, with its campaign.
+        decays
+            Of all drops that can be used.
+        fit
+            Of them.
+        """
+        fit = _fitted(structure, decays) if fit is None else fit
+        return _candidate(structure, tuple(decay.file for decay in decays), decays, fit)
 
     @property
     def campaign(self) -> Campaign:
@@ -99,56 +118,7 @@ class CandidateFit:
         """Scores of all faults of small size, the largest gain first."""
         return score_faults_of(self.campaign, self.decays, self.fit)
 
-
-@dataclass(frozen=True, eq=False)
-class FaultIsolation:
-    """A campaign with a fit that does not explain it.
-
-    Attributes
-    ----------
-    base
-        The fit.
-    recordings
-        Names of all recordings, in order: the rows of every residual table.
-    """
-
-    base: CandidateFit
-    recordings: tuple[str, ...]
-
-    @classmethod
-    def of(cls, structure: ModelStructure, decays: Sequence[FreeDecay], fit: FitResult | None = None) -> FaultIsolation:
-        """Take up a model of a campaign, its decays and their fit; without a fit they are fitted.
-
-        Parameters
-        ----------
-        structure
-            The model, with its campaign.
-        decays
-            Of all drops that can be used.
-        fit
-            Of them.
-        """
-        recordings = tuple(decay.file for decay in decays)
-        return cls(
-            _candidate(structure, recordings, decays, _fitted(structure, decays) if fit is None else fit), recordings
-        )
-
-    @property
-    def campaign(self) -> Campaign:
-        """The campaign as it is."""
-        return self.base.campaign
-
-    @property
-    def decays(self) -> tuple[FreeDecay, ...]:
-        """Its decays."""
-        return self.base.decays
-
-    @property
-    def noise(self) -> ReferenceNoise:
-        """What the sensors read at rest."""
-        return self.base.noise
-
-    def fit(self, correction: Correction, start: FitResult | None = None) -> CandidateFit:
+    def refit(self, correction: Correction, start: FitResult | None = None) -> CandidateFit:
         """Fit the corrected campaign.
 
         Parameters
@@ -158,7 +128,7 @@ class FaultIsolation:
         start
             A fit near by; without one the search begins anew.
         """
-        return self._fit(correction, start, MOST_STEPS)
+        return self._corrected(correction, start, MOST_STEPS)
 
     def step(self, correction: Correction, start: FitResult | None = None) -> CandidateFit:
         """Fit the corrected campaign by one Gauss-Newton step from a fit, or without one from the direct estimate.
@@ -172,7 +142,7 @@ class FaultIsolation:
         start
             A fit near by.
         """
-        return self._fit(correction, start, 1)
+        return self._corrected(correction, start, 1)
 
     def refine(self, correction: Correction, start: FitResult) -> CandidateFit:
         """Continue a Gauss-Newton step by a few more.
@@ -184,7 +154,7 @@ class FaultIsolation:
         start
             Where the step ended.
         """
-        return self._fit(correction, start, _STEPS)
+        return self._corrected(correction, start, _STEPS)
 
     def delete(self, correction: Correction) -> CandidateFit:
         """Estimate the fit without a channel or drop, by a few Gauss-Newton steps.
@@ -197,29 +167,21 @@ class FaultIsolation:
         correction
             Leaves the channel or drop out.
         """
-        if self.base.is_explained:
-            return self.step(correction, self.base.fit)
-        near, anew = self.refine(correction, self.base.fit), self.step(correction)
+        if self.is_explained:
+            return self.step(correction, self.fit)
+        near, anew = self.refine(correction, self.fit), self.step(correction)
         return min(near, anew, key=lambda candidate: candidate.table.cost)
 
-    def after(self, candidate: CandidateFit) -> FaultIsolation:
-        """Return the isolation of what is still wrong with a corrected campaign.
-
-        Parameters
-        ----------
-        candidate
-            Its fit.
-        """
-        return replace(self, base=candidate)
-
-    def _fit(self, correction: Correction, start: FitResult | None, most: int) -> CandidateFit:
-        campaign, before = correction.of_campaign(self.campaign), self.base.structure
+    def _corrected(self, correction: Correction, start: FitResult | None, most: int) -> CandidateFit:
+        campaign, before = correction.of_campaign(self.campaign), self.structure
         decays = correction.of_decays(campaign, self.decays)
         structure = replace(choose_structure(campaign, before.tracks, before.terms), carried_at=before.carried_at)
-        start = self.base.fit if start is None and structure.needs_start else start
+        start = self.fit if start is None and structure.needs_start else start
         candidate = _candidate(structure, self.recordings, decays, _fitted(structure, decays, start, most))
         is_same = correction.samples is None and not correction.corners
-        noise = self.noise if is_same else candidate.noise.of_present(candidate.table, self.noise)
+        noise = (
+            self.noise if is_same else candidate.noise.where(np.asarray(candidate.table.counts.any(axis=0)), self.noise)
+        )
         return replace(candidate, noise=noise)
 
 
@@ -239,10 +201,10 @@ def _fitted(
 
 
 def _candidate(
-    structure: ModelStructure, recordings: Sequence[str], decays: Sequence[FreeDecay], fit: FitResult
+    structure: ModelStructure, recordings: tuple[str, ...], decays: Sequence[FreeDecay], fit: FitResult
 ) -> CandidateFit:
     table, noise = residual_table(recordings, decays, fit), reference_noise(decays, fit)
-    return CandidateFit(structure, tuple(decays), fit, table, noise)
+    return CandidateFit(structure, recordings, tuple(decays), fit, table, noise)
 
 
 def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:

@@ -1,0 +1,94 @@
+"""Parameters of a fit that belong to a load or to a sensor, not to the vehicle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Literal
+
+from sprung.vehicle.parameters import PARAMETERS, Parameter
+
+LOAD_MASS = "mass of "
+"""First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
+
+SensorQuantity = Literal["gain", "x", "y", "delay"]
+"""What may be uncertain of a sensor."""
+
+SENSOR_UNKNOWNS: Mapping[SensorQuantity, Parameter] = {
+    "gain": Parameter("1", "part by which a channel reads too much", False, False, True),
+    "x": Parameter("m", "how much further forward than stated a body sensor sits", False, False, True),
+    "y": Parameter("m", "how much further left than stated a body sensor sits", False, False, True),
+    "delay": Parameter("s", "how much later than the other channels a channel is", False, False, True),
+}
+"""Each of these as an unknown of a fit, where it has the name `sensor_unknown`."""
+
+
+def parameter_of(name: str) -> Parameter:
+    """Return unit and meaning of any parameter of a fit: of the vehicle, the mass of a load, or an unknown of a sensor.
+
+    Parameters
+    ----------
+    name
+        Its name.
+
+    Returns
+    -------
+    Parameter
+
+    Raises
+    ------
+    KeyError
+        If nothing has that name.
+    """
+    if name.startswith(LOAD_MASS):
+        return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
+    for quantity, unknown in SENSOR_UNKNOWNS.items():
+        if name.startswith(sensor_unknown(quantity, "")):
+            return unknown
+    return PARAMETERS[name]
+
+
+def sensor_unknown(quantity: SensorQuantity, channel: str) -> str:
+    """Return the name of an unknown of a sensor among the parameters of a fit.
+
+    Parameters
+    ----------
+    quantity
+        What is uncertain.
+    channel
+        The sensor's.
+
+    Returns
+    -------
+    str
+    """
+    return f"{quantity} of {channel}"
+
+
+def is_of_sensor(name: str) -> bool:
+    """Whether a parameter is an unknown of a sensor.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    bool
+    """
+    return name.startswith(tuple(sensor_unknown(quantity, "") for quantity in SENSOR_UNKNOWNS))
+
+
+def is_nuisance(name: str) -> bool:
+    """Whether a parameter belongs to a load or to a sensor, not to the vehicle.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    bool
+    """
+    return name.startswith(LOAD_MASS) or is_of_sensor(name)
