@@ -53,8 +53,8 @@ def test_readings_to_second_order_are_those_of_a_rigid_body_engine(key: str) -> 
     A = model.matrices(VALUES).state
     state = np.concatenate([DEFLECTIONS[deflected], np.zeros(7)])
     motion = affine_response(A, np.zeros(14), state, 1 / RATE, measured.shape[1])
-    readings = second_order_readings(
-        model, "shared", HEIGHTS._replace(sunk=sunk), load, SENSORS, VALUES, motion, 1 / RATE
+    (readings,) = second_order_readings(
+        model, "shared", HEIGHTS._replace(sunk=sunk), load, SENSORS, VALUES, [motion], 1 / RATE
     )
     left = 0.07 if load is BALLAST else 0.03
     assert np.linalg.norm(measured - readings) < left * np.linalg.norm(measured)

@@ -77,6 +77,8 @@ class Analysis:
         The model that is asked for, as far as it is; None until there is a baseline.
     search
         The model so far, its fit and the decays that it uses; None until there is a baseline.
+    first_term
+        The model term that is tried before all others; None where none is known to explain much.
     isolated
         The fit in which faults were last looked for, and what was found.
     statistics
@@ -102,6 +104,7 @@ class Analysis:
     clock_fit: FitResult | None = None
     requested: ModelStructure | None = None
     search: ModelSearch | None = None
+    first_term: str | None = None
     isolated: tuple[FitResult, tuple[Hypothesis, ...]] | None = None
     statistics: FitStatistics | None = None
     remarks: tuple[str, ...] = ()
@@ -153,6 +156,7 @@ class Analysis:
             preparation=preparation,
             search=None,
             clock_fit=None,
+            first_term=None,
             isolated=None,
             remaining=self.stages,
         )
@@ -175,6 +179,11 @@ class Analysis:
         if self.search is None:
             raise RuntimeError("the baseline is fitted before")
         return self.search
+
+    @property
+    def found(self) -> tuple[Hypothesis, ...]:
+        """What was isolated in the present fit."""
+        return self.isolated[1] if self.isolated is not None and self.isolated[0] is self.fit else ()
 
     @property
     def fit(self) -> FitResult:

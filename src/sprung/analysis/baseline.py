@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.settling import settle_corrections
 from sprung.estimation import CONVERGED, MOST_STEPS, NEAR, FitResult, fit_from_contact, fit_linear
+from sprung.faults import is_explained
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection import (
@@ -64,11 +65,23 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
     smaller = larger
     for term in larger.selected:
         smaller = smaller if term in needed else replace(smaller, structure=smaller.without(term))
-    decays = run.prepared.decays
-    fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
-    near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
-    run = settle_corrections(replace(run, search=near.recorded(needed, fitted=True, taken=True)))
-    return converged(run, progress)
+    found = run
+    # Where a tyre seems to be on the ground too early, the decays begin where the correction explained them.
+    for decays in (run.prepared.decays, _begun_as(candidate.decays, run.prepared.decays)):
+        fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
+        near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
+        search = near.recorded(needed, fitted=True, taken=True)
+        found = converged(settle_corrections(replace(run, search=search, fits=found.fits)), progress)
+        if is_explained(found.decays, found.fit):
+            break
+    return found
+
+
+def _begun_as(fitted: Sequence[FreeDecay], decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
+    """Let decays begin no earlier than those that a correction explains."""
+    starts = {decay.file: decay.start for decay in fitted}
+    shifts = [max(round((starts.get(decay.file, decay.start) - decay.start) * decay.rate), 0) for decay in decays]
+    return tuple(decay.shifted(shift) for decay, shift in zip(decays, shifts, strict=True))
 
 
 def converged(run: Analysis, progress: Progress) -> Analysis:

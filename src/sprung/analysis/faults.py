@@ -17,6 +17,7 @@ from sprung.faults import (
     consistency_of,
     decays_without_wheel_sensors,
     isolate,
+    largest_expected_gain,
     reference_noise,
     residual_table,
 )
@@ -35,18 +36,18 @@ from sprung.selection import (
 _MOST = 0.5
 """Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
 
-_STEPS = 3
+_STEPS, _TERMS = 3, 3
+"""Gauss-Newton steps that are taken with each of so many terms."""
 
 
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains the recordings wholly, before any further model term is tried."""
     consistency = _consistency(run)
-    term, share = _explaining_term(run) if consistency == "misfit" else (None, 0.0)
-    if share > _MOST:
-        why = f"{_STEPS} steps with it explain {100 * share:.0f} % of the misfit"
-        return run.noted("isolate_evident_faults", f"{term} is tried first", why)
+    first = None if consistency in (None, "consistent") else _explaining_term(run, consistency)
+    if first is not None:
+        return replace(run, first_term=first[0]).noted("isolate_evident_faults", f"{first[0]} is tried first", first[1])
     run = _with_isolated(run, consistency, progress)
-    found = _found(run)
+    found = run.found
     if not _explains(found) or any(one.remedy == "named" or not one.is_specific for one in found):
         return run
     return _corrected(run, found, "isolate_evident_faults")
@@ -55,7 +56,7 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
-    found = _found(run)
+    found = run.found
     named = tuple(one.fault for one in found if one.remedy == "named")
     run = replace(run, suspected=tuple(dict.fromkeys((*run.suspected, *named))))
     for fault in named:
@@ -71,35 +72,41 @@ def _consistency(run: Analysis) -> Consistency | None:
     return consistency_of(run.campaign, run.decays, run.fit)
 
 
-def _explaining_term(run: Analysis) -> tuple[str | None, float]:
-    """Return the most promising linear term, and the share of the misfit that it explains after a few Gauss-Newton steps.
+def _explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[str, str] | None:
+    """Return the linear term that is to be tried before faults are isolated, and why; None where there is none.
 
-    The score test ranks the terms; where the fit is far from the recordings, it says little of how much they would gain.
+    It explains most of the misfit, or where there is none, more than any fault of small size is expected to. The score test
+    ranks the terms; where the fit is far from the recordings, it says little of how much they would gain, so that a few
+    Gauss-Newton steps are taken with the best few.
     """
     if run.model.structure.is_time_stepped:
-        return None, 0.0
+        return None
     search, scores = score_terms(
         run.model, run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
     )
-    gains = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
-    term = max(gains, key=gains.__getitem__, default=None)
-    if term is None or gains[term] < search.required(term):
-        return None, 0.0
-    fit = fit_structure(search.with_terms([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
+    expected = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    promising = [term for term, gain in expected.items() if gain >= search.required(term)]
     recordings = [decay.file for decay in run.decays]
     table, noise = residual_table(recordings, run.decays, run.fit), reference_noise(run.decays, run.fit)
-    gain = table.cost - residual_table(recordings, run.decays, fit).cost
-    return term, gain / max(table.explicable(noise), 1.0)
-
-
-def _found(run: Analysis) -> tuple[Hypothesis, ...]:
-    """Return what was isolated in the present fit."""
-    return run.isolated[1] if run.isolated is not None and run.isolated[0] is run.fit else ()
+    gains: dict[str, float] = {}
+    for term in sorted(promising, key=expected.__getitem__, reverse=True)[:_TERMS]:
+        fit = fit_structure(search.with_terms([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
+        gains[term] = table.cost - residual_table(recordings, run.decays, fit).cost
+    if not gains:
+        return None
+    best = max(gains, key=gains.__getitem__)
+    if consistency == "misfit":
+        share = gains[best] / max(table.explicable(noise), 1.0)
+        why = f"{_STEPS} steps with it explain {100 * share:.0f} % of the misfit"
+        return (best, why) if share > _MOST else None
+    fault = largest_expected_gain(run.campaign, run.decays, run.fit)
+    why = f"{_STEPS} steps with it gain {gains[best]:.0f}, the likeliest fault is expected to gain {fault:.0f}"
+    return (best, why) if gains[best] > fault else None
 
 
 def _explains(hypotheses: Sequence[Hypothesis]) -> bool:
     """Whether hypotheses that were isolated one after the other explain the recordings wholly."""
-    return bool(hypotheses) and hypotheses[-1].candidate.is_explained
+    return bool(hypotheses) and (hypotheses[-1].candidate.is_explained or hypotheses[-1].is_sufficient)
 
 
 def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Progress) -> Analysis:

@@ -9,7 +9,12 @@ from sprung.analysis.clocks import synchronise
 from sprung.analysis.faults import isolate_evident_faults, isolate_faults
 from sprung.analysis.flight import use_flight
 from sprung.analysis.preparation import preprocess
-from sprung.analysis.terms import select_finite_rotation, select_linear_terms, select_nonlinear_terms
+from sprung.analysis.terms import (
+    select_finite_rotation,
+    select_first_term,
+    select_linear_terms,
+    select_nonlinear_terms,
+)
 from sprung.analysis.uncertainty import estimate_uncertainty
 from sprung.campaign import Campaign
 from sprung.progress import Progress, silent
@@ -18,6 +23,8 @@ STAGES: tuple[Stage, ...] = (
     preprocess,
     synchronise,
     fit_baseline,
+    isolate_evident_faults,
+    select_first_term,
     isolate_evident_faults,
     select_linear_terms,
     select_finite_rotation,

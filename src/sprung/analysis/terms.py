@@ -7,16 +7,29 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.progress import Progress
-from sprung.selection import ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body
+from sprung.selection import TERMS, ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body, try_term
 from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
 
 
+def select_first_term(run: Analysis, progress: Progress) -> Analysis:
+    """Try the term that explains much of the misfit, if there is one; a body that is flexible is looked for otherwise."""
+    before, term = run.model, run.first_term
+    if term is None or TERMS[term].explains_all:
+        return run
+    search = try_term(replace(before, progress=progress), term)
+    if search.structure.names != before.structure.names:
+        search = from_contact(search)
+    return _with_search(replace(run, first_term=None), before, search, "select_first_term")
+
+
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     """Select the terms that the matrices M, C and K hold."""
     before = run.model
-    search = select_linear(select_flexible_body(replace(before, progress=progress)))
+    search = select_flexible_body(replace(before, progress=progress))
+    if search.fit is not before.fit or not has_flexible_body(run):
+        search = select_linear(search)
     if search.structure.names != before.structure.names:
         search = from_contact(search)
     return _with_search(run, before, search, "select_linear_terms")
@@ -40,6 +53,8 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     before, requested = replace(run.model, progress=progress), run.requested
     if requested is not None and requested.is_nonlinear:
         search = fit_forced_terms(before, requested)
+    elif has_flexible_body(run):
+        search = before
     else:
         wanted, _ = structures(run)
         found, plain = before.structure, wanted.with_terms(wanted.linear_terms)
@@ -52,9 +67,14 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     return _with_search(run, run.model, search, "select_nonlinear_terms")
 
 
+def has_flexible_body(run: Analysis) -> bool:
+    """Whether nothing but a flexible body explains what the present fit leaves, so that no further term is to be tried."""
+    return any(hypothesis.fault.code == "twist" for hypothesis in run.found)
+
+
 def _with_search(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:
     steps = search.steps[len(before.steps) :]
-    fits = sum(step.fitted for step in steps) + (search.structure.names != before.structure.names)
+    fits = sum(step.fitted and not step.joint for step in steps) + (search.structure.names != before.structure.names)
     run = replace(run, search=search, fits=run.fits + fits)
     for step in steps:
         run = run.noted(stage, f"{step.extra}: {_outcome(step)}", step.text)

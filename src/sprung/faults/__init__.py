@@ -7,11 +7,11 @@ well.
 """
 
 from sprung.faults.candidate_fit import CandidateFit, decays_without_wheel_sensors
-from sprung.faults.consistency import Consistency, consistency_of, score_faults_of
+from sprung.faults.consistency import Consistency, consistency_of, largest_expected_gain, score_faults_of
 from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import isolate
-from sprung.faults.residual_table import reference_noise, residual_table
+from sprung.faults.residual_table import is_explained, reference_noise, residual_table
 from sprung.faults.statements.search import examine
 
 __all__ = [
@@ -22,7 +22,9 @@ __all__ = [
     "decays_without_wheel_sensors",
     "detect_drift",
     "examine",
+    "is_explained",
     "isolate",
+    "largest_expected_gain",
     "reference_noise",
     "residual_table",
     "score_faults_of",

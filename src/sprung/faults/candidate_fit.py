@@ -24,8 +24,11 @@ from sprung.vehicle import LinearModel
 
 Real = NDArray[np.float64]
 
-_DRIFT_SPAN, _DRIFT_SHARE = 0.5, 0.75
-"""s over which a drift is constant, unlike a vibration; and the share of a residual's energy that means over it then keep."""
+DRIFT_SPAN = 0.5
+"""s over which a drift is constant, unlike a vibration."""
+
+_DRIFT_SHARE = 0.75
+"""Share of a residual's energy that means over this span keep if it is a drift."""
 
 _STEPS = 3
 """Gauss-Newton steps of a deletion or an exchange where the fit of everything may be far away."""
@@ -102,7 +105,7 @@ class CandidateFit:
         """Of which channels the residual is a drift: means over half a second keep most of it; shape (channel,)."""
         kept = energy = np.zeros(len(self.campaign.sensors))
         for record, decay in zip(self.fit.residuals, self.decays, strict=True):
-            length = max(int(_DRIFT_SPAN * decay.rate), 1)
+            length = max(int(DRIFT_SPAN * decay.rate), 1)
             count = decay.samples // length
             batches = np.nan_to_num(record[:, : count * length]).reshape(len(record), count, length)
             kept = kept + length * np.sum(batches.mean(axis=2) ** 2, axis=1)

@@ -26,7 +26,7 @@ _LONGEST_STEP = {"gain": 0.5, "late": 0.01, "position": 1.0, "corner": 1.0}
 """By how much a number changes at once: a relative gain, s, m and Hz."""
 
 _SHARE = 0.5
-"""Share of a channel's energy that a hypothesis may leave for the vehicle to be fitted with it."""
+"""Share of a channel's energy beyond its noise that a hypothesis may leave for the vehicle to be fitted with it."""
 
 _SHIFT = 1.0
 """Shift of a parameter with one standard uncertainty of a number, in its own, from which the channel is left out instead."""
@@ -74,16 +74,19 @@ class ChannelDeletion:
         """The channel beside the motion of that vehicle."""
         states = dict(zip((decay.file for decay in self.candidate.decays), self.candidate.fit.states, strict=True))
         decays = [decay for decay in self.base.decays if decay.usable[self.channel] and decay.file in states]
-        rows = [self.base.recordings.index(decay.file) for decay in decays]
-        drift = self.base.table.residual[rows, self.channel] if self.base.drifting[self.channel] else None
+        drifts = bool(self.base.drifting[self.channel])
         return ChannelPrediction(
-            self.candidate, self.channel, decays, np.array([states[decay.file] for decay in decays]), drift
+            self.candidate, self.channel, decays, np.array([states[decay.file] for decay in decays]), drifts
         )
 
     @cached_property
     def limit(self) -> ResidualTable:
-        """The residuals of all channels if this one measures any part of the motion, with any delay."""
-        return self.table(self.prediction.least_residual)
+        """The residuals of all channels if this one measures any part of the motion, with any delay, or drifts."""
+        moving = self.table(self.prediction.least_residual)
+        if not self.prediction.drifts:
+            return moving
+        residual, _ = self.prediction.drift
+        return min(moving, self.table(residual), key=lambda table: table.cost)
 
     def table(self, residual: Real) -> ResidualTable:
         """Return the residuals of all channels, given those of this one in each of its decays, shape (decay,)."""
@@ -102,8 +105,13 @@ class ChannelDeletion:
             for hypothesis in kind(self.prediction):
                 if hypothesis.correction is None:
                     yield self._left_out(hypothesis)
-                elif hypothesis.residual.sum() < _SHARE * self.prediction.energy and _is_relevant(hypothesis):
+                elif self._explains_much(hypothesis) and _is_relevant(hypothesis):
                     yield ChannelCorrection.of(self, hypothesis, hypothesis.correction, hypothesis.numbers)
+
+    def _explains_much(self, hypothesis: ChannelHypothesis) -> bool:
+        """Whether a hypothesis leaves little of what the channel reads beyond its noise."""
+        noise = self.base.noise.level[self.channel] ** 2 * self.prediction.record.size
+        return bool(hypothesis.residual.sum() - noise < _SHARE * (self.prediction.energy - noise))
 
     def scored(self, scores: Sequence[FaultScore]) -> Iterator[ChannelCorrection]:
         """Yield the corrections whose numbers follow from score tests at the present fit.
@@ -146,7 +154,7 @@ class ChannelDeletion:
             self.table(hypothesis.residual),
             self.candidate,
             hypothesis.free,
-            is_specific=hypothesis.code not in ("unlike-others", "drift"),
+            is_specific=hypothesis.code != "unlike-others",
         )
 
 
@@ -229,9 +237,9 @@ class ChannelCorrection(Hypothesis):
             scores = deletion.scores_of(hypothesis, candidate.scores)
             if all(score.gain < _CONVERGED for score in scores):
                 break
-            numbers = improved(hypothesis.code, numbers, scores)
+            before, numbers = numbers, improved(hypothesis.code, numbers, scores)
             # Where the residuals are noise already, the numbers are settled in the fit of all drops.
-            if candidate.is_explained or fits > _REFITS:
+            if candidate.is_explained or fits > _REFITS or numbers == before:
                 break
             candidate = base.refit(self.correct(numbers), candidate.fit)
             fits += 1
@@ -290,8 +298,10 @@ def improved(code: str, numbers: Numbers, scores: Sequence[FaultScore]) -> Numbe
     steps = {score.axis: score.value for score in scores}
     unit = numbers[0] if code == "gain" else 1.0  # a score is of the gain that remains
     longest = _LONGEST_STEP.get(code, 0.0)
+    lowest = 0.0 if code == "corner" else -np.inf
     return tuple(
-        number + unit * float(np.clip(steps.get(axis, 0.0), -longest, longest)) for axis, number in enumerate(numbers)
+        max(number + unit * float(np.clip(steps.get(axis, 0.0), -longest, longest)), lowest)
+        for axis, number in enumerate(numbers)
     )
 
 

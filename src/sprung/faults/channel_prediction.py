@@ -8,10 +8,11 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import dct
 from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
-from sprung.faults.candidate_fit import CandidateFit
+from sprung.faults.candidate_fit import DRIFT_SPAN, CandidateFit
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Rows, Sensor, coordinates
@@ -46,16 +47,15 @@ class ChannelPrediction:
         With the channel in them.
     states
         {X, Ẋ} of the vehicle at the start of each, SI, shape (decay, state).
-    drift
-        Where the residual of the channel in a fit of all channels is a drift, its sum of squares in each decay, (m/s²)²,
-        shape (decay,); None where it is none.
+    drifts
+        Whether the residual of the channel in a fit of all channels is slower than any vehicle.
     """
 
     candidate: CandidateFit
     channel: int
     decays: Sequence[FreeDecay]
     states: Real
-    drift: Real | None = None
+    drifts: bool = False
 
     @property
     def sensor(self) -> Sensor:
@@ -139,6 +139,18 @@ class ChannelPrediction:
         """Residual where the channel may measure any part of the motion, and be delayed, (m/s²)², shape (decay,)."""
         both = np.concatenate(self.delayed_motion(0.0))
         return self.residual_of(np.linalg.lstsq(both.T, self.record, rcond=1e-9)[0] @ both)
+
+    @cached_property
+    def drift(self) -> tuple[Real, int]:
+        """Residual beside the stated motion and a slow baseline, (m/s²)², shape (decay,), and the numbers of all baselines.
+
+        The baseline is a sum of cosines with whole numbers of half periods in a decay, all slower than a vehicle vibrates.
+        """
+        left = np.split(self.record - self.stated, self._first[1:])
+        numbers = [int(decay.samples / decay.rate / DRIFT_SPAN) for decay in self.decays]
+        powers = [dct(record, norm="ortho") ** 2 for record in left]
+        residual = [float(power[1 + number :].sum()) for power, number in zip(powers, numbers, strict=True)]
+        return np.array(residual), sum(numbers)
 
     def delay(self, row: Real) -> float:
         """Return the delay of the channel, s, if it measures this row."""

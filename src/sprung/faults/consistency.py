@@ -89,6 +89,18 @@ def score_faults_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitRes
     return tuple(sorted(_scores(campaign, decays, fit)[0], key=lambda score: score.gain, reverse=True))
 
 
+def largest_expected_gain(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResult) -> float:
+    """Return the gain in twice the log-likelihood by the likeliest fault of small size, all corners together being one.
+
+    Parameters
+    ----------
+    campaign, decays, fit
+        As for `consistency_of`.
+    """
+    scores, corners = _scores(campaign, decays, fit)
+    return max([0.0 if corners is None else corners.raw_gain, *(score.gain for score in scores)])
+
+
 def _scores(
     campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResult
 ) -> tuple[tuple[FaultScore, ...], CornerScores | None]:

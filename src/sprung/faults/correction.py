@@ -48,6 +48,8 @@ class Correction:
         By channel the factor on its samples, which is also one on its full scale.
     corners
         By channel the corner of its high-pass instead of the stated one, Hz.
+    exchanged
+        The two channels whose samples it exchanges; empty for none.
     """
 
     description: Description = _unchanged
@@ -55,6 +57,7 @@ class Correction:
     recording: str | None = None
     gains: Mapping[int, float] = field(default_factory=dict)
     corners: Mapping[int, float] = field(default_factory=dict)
+    exchanged: tuple[int, ...] = ()
 
     def of_campaign(self, campaign: Campaign) -> Campaign:
         """Return the corrected campaign."""
@@ -99,10 +102,12 @@ class Correction:
         return replace(recording, values=values, parts=tuple(parts), full_scale=full_scale)
 
     def _of_decay(self, decay: FreeDecay) -> FreeDecay:
-        if self.corners:
+        if self.corners and self.recording in (None, decay.file):
             decay = with_corners(decay, self.corners)
         if self.samples is None or not self._concerns(decay.file):
             return decay
+        if self.exchanged:
+            return with_exchanged(decay, *self.exchanged)
         whole = self.samples(np.concatenate([decay.earlier, decay.values], axis=1), decay.rate)
         earlier, values = np.split(whole, [decay.earlier.shape[1]], axis=1)
         level, noise = decay.rest.level[:, None], decay.rest.noise
@@ -125,7 +130,7 @@ def with_corners(decay: FreeDecay, corners: Mapping[int, float]) -> FreeDecay:
     corners
         By channel, Hz.
     """
-    integral = differentiate_by_cutoff(decay)
+    integral = differentiate_by_cutoff(decay, list(corners))
     stated = np.array(decay.high_pass or np.zeros(len(decay.values)))
     wanted = stated.copy()
     wanted[list(corners)] = list(corners.values())
@@ -136,6 +141,32 @@ def with_corners(decay: FreeDecay, corners: Mapping[int, float]) -> FreeDecay:
         earlier=decay.earlier[:, :0],
         high_pass=tuple(wanted.tolist()),
         initial_velocity=integral[:, 0],
+    )
+
+
+def with_exchanged(decay: FreeDecay, first: int, second: int) -> FreeDecay:
+    """Return a decay with the samples of two channels exchanged, in which each has its own high-pass undone.
+
+    Parameters
+    ----------
+    decay
+        With the high-passes undone that are stated of the channels.
+    first, second
+        Indices of the channels.
+    """
+    stated, order = decay.high_pass, np.arange(len(decay.values))
+    order[[first, second]] = second, first
+    if stated and stated[first] != stated[second]:
+        decay = with_corners(decay, {first: stated[second], second: stated[first]})
+    return replace(
+        decay,
+        values=decay.values[order],
+        earlier=decay.earlier[order],
+        high_pass=stated,
+        initial_velocity=decay.initial_velocity[order] if decay.initial_velocity.size else decay.initial_velocity,
+        rest=decay.rest._replace(
+            level=decay.rest.level[order], noise=decay.rest.noise[order] if decay.rest.noise.size else decay.rest.noise
+        ),
     )
 
 
@@ -210,7 +241,7 @@ def exchange_columns(first: int, second: int, recording: str) -> Correction:
         order[[first, second]] = second, first
         return np.asarray(values[order])
 
-    return Correction(samples=exchanged, recording=recording)
+    return Correction(samples=exchanged, recording=recording, exchanged=(first, second))
 
 
 def describe_sensor(channel: int, sensor: Sensor) -> Correction:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import dct
 from scipy.stats import f as fisher
 
 from sprung.errors import Fault
 from sprung.estimation import FitResult
-from sprung.faults.residual_table import reference_noise, residual_table
+from sprung.faults.residual_table import is_explained
 from sprung.preprocess import FreeDecay, quantisation_variance
 from sprung.vehicle import Sensor
 
@@ -52,9 +52,7 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
     The power of the slowest half periods of the residuals (by a cosine transform, in which white noise is spread evenly) over
     that of those between the body's modes and the wheels' follows Fisher's distribution in noise that has no drift.
     """
-    if not residual_table([decay.file for decay in decays], decays, optimum).is_explained(
-        reference_noise(decays, optimum)
-    ):
+    if not is_explained(decays, optimum):
         return ()
     slow, fast = slowness(decays, optimum)
     fast = np.maximum(fast, quantisation_variance(decays))
@@ -76,10 +74,18 @@ def slowness(decays: Sequence[FreeDecay], optimum: FitResult) -> tuple[Real, Rea
     """Return the mean power, (m/s²)², of the residuals: slowest half periods, and faster ones; shape (channel,) each."""
     slow = fast = drops = np.zeros(len(decays[0].values))
     for record in optimum.residuals:
-        power = np.nan_to_num(dct(record, norm="ortho")[:, 1 : _LAST + 1]) ** 2
+        power = np.nan_to_num(record @ _cosines(record.shape[1])) ** 2
         slow, fast = slow + power[:, :_SLOWEST].mean(axis=1), fast + power[:, _FIRST:].mean(axis=1)
         drops = drops + ~np.isnan(record[:, 0])
     return slow / np.maximum(drops, 1), fast / np.maximum(drops, 1)
+
+
+@lru_cache(maxsize=64)
+def _cosines(samples: int) -> Real:
+    """Return the first cosines of the cosine transform after the constant one, orthonormal, shape (time, half periods)."""
+    phase = np.pi * (np.arange(samples) + 0.5) / samples
+    cosines: Real = np.sqrt(2 / samples) * np.cos(np.outer(phase, np.arange(1, _LAST + 1)))
+    return cosines
 
 
 def _size(decays: Sequence[FreeDecay], power: float) -> float:

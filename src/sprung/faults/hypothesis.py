@@ -47,6 +47,8 @@ class Hypothesis:
         What a fit gains beyond the residuals of the table by a score test, in twice the log-likelihood.
     is_beyond_prior
         Whether its numbers lie beyond what the campaign states of a sensor with an uncertainty.
+    is_sufficient
+        Whether what it leaves is at its own place, and perhaps gone once the corrected recordings are preprocessed again.
     required
         Gain in twice the log-likelihood that it needs by the error budget.
     """
@@ -62,6 +64,7 @@ class Hypothesis:
     is_fitted: bool = False
     score_gain: float = 0.0
     is_beyond_prior: bool = False
+    is_sufficient: bool = False
     required: float = SIGNIFICANT
 
     @property
@@ -117,6 +120,11 @@ class Hypothesis:
         # A number with a stated uncertainty is no free one: the samples do not determine it alone.
         free = 0 if self.is_beyond_prior else self.free
         return cost - gain + free * float(np.log(max(self.table.counts.sum(), 1.0)))
+
+    def overlaps(self, other: Hypothesis) -> bool:
+        """Whether two hypotheses are about a common drop or channel."""
+        own, others = (set(each.fault.where.replace(": ", ", ").split(", ")) for each in (self, other))
+        return bool(own & others)
 
     def concerns_same(self, other: Hypothesis) -> bool:
         """Whether two hypotheses are about the same place, or one is among several of which the other says the same."""

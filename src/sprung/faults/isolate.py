@@ -18,6 +18,7 @@ from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
 from sprung.progress import Progress, Step, silent
+from sprung.selection import WORTH_A_FIT
 
 _FEW = 0.85
 """Share of a misfit that a first fault may leave while a second one is looked for."""
@@ -59,6 +60,9 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
         fits += more
         if best is None or (not best.is_specific and any(not one.is_specific for one in accepted)):
             break
+        if not best.is_specific and best.candidate.is_explained and any(one.overlaps(best) for one in accepted):
+            # What is left at the place of a correction may be gone once the recordings are corrected and preprocessed again.
+            return (*accepted[:-1], replace(accepted[-1], is_sufficient=True)), fits
         accepted.append(best)
         if best.candidate.is_explained or best.candidate.misfit < SHARE * first.misfit:
             sufficient = len(accepted)
@@ -87,14 +91,19 @@ def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypoth
     best, fits = _wrong_statement(base)
     if best is not None:
         return best, fits
+    is_near = base.is_explained
     ranked = [*_by_scores(base), *load_position(base), *high_passes(base)]
-    # Where the fit is far away, score tests are not to be trusted: only what explains everything counts.
-    best, ranked, more = _confirm_best(base, ranked, _MOST_FITS if base.is_explained else 1)
-    fits += more
-    if best is not None and (base.is_explained or best.candidate.is_explained):
-        return _with_rival(base, best, ranked), fits
+    deletions = () if is_near else _deletions(base, progress)
+    limit = deletions[0].limit.cost if deletions else np.inf
+    # Where the fit is far away, score tests are not to be trusted: only what explains everything counts, and more than any
+    # channel or drop would that is left out.
+    if is_near or min((one.score() for one in ranked), default=np.inf) < limit:
+        best, ranked, more = _confirm_best(base, ranked, _MOST_FITS if is_near else 1)
+        fits += more
+        if best is not None and (is_near or best.candidate.is_explained):
+            return _with_rival(base, best, ranked), fits
     best = None
-    for hypotheses, made in _groups(base, progress):
+    for hypotheses, made in _groups(base, deletions, progress):
         other, ranked, more = _confirm_best(base, [*ranked, *hypotheses])
         fits += made + more
         if other is not None and (best is None or other.score() < best.score()):
@@ -105,15 +114,15 @@ def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypoth
     return (None if best is None else _with_rival(base, best, ranked)), fits
 
 
-def _groups(base: CandidateFit, progress: Progress) -> Iterator[tuple[list[Hypothesis], int]]:
+def _groups(
+    base: CandidateFit, deletions: Sequence[ChannelDeletion | DropDeletion], progress: Progress
+) -> Iterator[tuple[list[Hypothesis], int]]:
     """Yield hypotheses about single channels and drops, and those about exchanged ones; and how many fits each group took.
 
     The group that is predicted to explain the recordings better comes first. Nothing that is exchanged is a small fault.
     """
-    progress(Step("leaving out each channel and each drop"))
-    deletions = _deletions(base)
     if base.is_explained:
-        yield _of_parts(base, deletions, progress)
+        yield _of_parts(base, _deletions(base, progress), progress)
         return
     limit = deletions[0].limit if deletions else base.table
     is_alone = limit.is_explained(base.noise)
@@ -124,7 +133,8 @@ def _groups(base: CandidateFit, progress: Progress) -> Iterator[tuple[list[Hypot
     is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
     if is_likelier or is_alone:
         yield exchanges, 0
-    if not is_alone:
+    # Where the body twists, each of its sensors contradicts the others: no part is to be examined.
+    if not is_alone and torsion_test(base) is None:
         yield _of_parts(base, deletions, progress)
     if not (is_likelier or is_alone):
         yield exchanges, 0
@@ -165,8 +175,9 @@ def _by_scores(base: CandidateFit) -> list[Hypothesis]:
     return hypotheses
 
 
-def _deletions(base: CandidateFit) -> list[ChannelDeletion | DropDeletion]:
+def _deletions(base: CandidateFit, progress: Progress) -> list[ChannelDeletion | DropDeletion]:
     """Return each channel and each drop left out, by a few steps; first the one whose deletion gains most."""
+    progress(Step("leaving out each channel and each drop"))
     table = base.table
     channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
     deletions: list[ChannelDeletion | DropDeletion] = []
@@ -184,14 +195,17 @@ def _of_parts(
     """Return the hypotheses about the channels and drops whose deletion gains most, and how many fits were made."""
     gains = [base.table.cost - deletion.limit.cost for deletion in deletions]
     hypotheses: list[Hypothesis] = []
-    fits = 0
+    fits, is_found = 0, False
     for gain, deletion in list(zip(gains, deletions, strict=True))[:_MOST_PARTS]:
-        is_found = any(one.is_specific and one.is_explained for one in hypotheses)
         if gain <= SIGNIFICANT or (is_found and gain < _RIVALS * gains[0]):
             break
         progress(Step(f"fitting without {deletion.name}"))
-        hypotheses += replace(deletion, candidate=base.refit(deletion.correction)).hypotheses()
+        candidate = base.refit(deletion.correction)
+        hypotheses += replace(deletion, candidate=candidate).hypotheses()
         fits += 1
+        # Once it is known what, left out, leaves noise alone, only what was expected to gain as much is another cause.
+        is_named = any(one.is_specific and one.is_explained for one in hypotheses)
+        is_found = is_named if base.is_explained else is_found or candidate.is_explained
     return hypotheses, fits
 
 
@@ -235,8 +249,12 @@ def _confirm_best(
 def _is_promising(base: CandidateFit, hypothesis: Hypothesis) -> bool:
     """Whether a fit of a hypothesis may be convincing, by what it predicts."""
     gain = base.table.cost - hypothesis.score()
+    # Where what is left is noise, a small fault has to stand out from its colour, as far as its score may understate it.
+    expected = WORTH_A_FIT * gain / base.fit.overdispersion if base.is_explained else gain
     explains = base.is_explained or hypothesis.is_beyond_prior or gain > (1 - _FEW) * base.misfit
-    return hypothesis.is_specific and not hypothesis.is_fitted and explains and gain > hypothesis.required
+    return (
+        hypothesis.is_specific and not hypothesis.is_fitted and explains and min(gain, expected) > hypothesis.required
+    )
 
 
 def _is_convincing(base: CandidateFit, hypothesis: Hypothesis, others: Sequence[Hypothesis]) -> bool:

@@ -164,5 +164,18 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> SensorNo
     )
 
 
+def is_explained(decays: Sequence[FreeDecay], optimum: FitResult) -> bool:
+    """Whether the residuals of a fit are noise alone.
+
+    Parameters
+    ----------
+    decays, optimum
+        As for `reference_noise`.
+    """
+    return residual_table([decay.file for decay in decays], decays, optimum).is_explained(
+        reference_noise(decays, optimum)
+    )
+
+
 def _energy(decay: FreeDecay) -> Real:
     return np.where(decay.usable, decay.samples * decay.values.var(axis=1), 0.0)

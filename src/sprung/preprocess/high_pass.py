@@ -96,22 +96,24 @@ def integrate_from_rest(
     return integral
 
 
-def differentiate_by_cutoff(decay: FreeDecay) -> Real:
+def differentiate_by_cutoff(decay: FreeDecay, channels: Sequence[int] | None = None) -> Real:
     """Differentiate a decay's samples by the cut-off of their high-pass.
 
     Parameters
     ----------
     decay
         With the stated high-pass undone.
+    channels
+        Of these channels; without it, of all that do not read gravity, which no high-pass lets through.
 
     Returns
     -------
     ndarray
-        m/s² per rad/s, shape (channel, time); 0 in channels that are left out or read gravity, which no high-pass lets through.
+        m/s² per rad/s, shape (channel, time); 0 in other channels and in those that are left out.
     """
     changes = np.zeros_like(decay.values)
     high_pass = decay.high_pass or (0.0,) * len(changes)
-    for channel in np.flatnonzero(is_ac_coupled(decay)).tolist():
+    for channel in np.flatnonzero(is_ac_coupled(decay)).tolist() if channels is None else channels:
         moved = np.concatenate([decay.earlier[channel], decay.values[channel]]) - decay.rest.level[channel]
         if np.isnan(moved).any():
             continue

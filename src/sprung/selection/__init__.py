@@ -11,9 +11,10 @@ from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
-from sprung.selection.stepwise import select_linear_terms
+from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.selection.term_fits import (
+    WORTH_A_FIT,
     fit_forced_terms,
     fit_requested_terms,
     fit_term,
@@ -28,6 +29,7 @@ __all__ = [
     "SEPARATE_TRACKS",
     "STARTED_LATER",
     "TERMS",
+    "WORTH_A_FIT",
     "ModelSearch",
     "ModelStructure",
     "ModelTerm",
@@ -49,4 +51,5 @@ __all__ = [
     "select_linear_terms",
     "select_nonlinear_terms",
     "select_roll_axis_height",
+    "try_term",
 ]

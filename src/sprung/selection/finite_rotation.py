@@ -15,7 +15,7 @@ import numpy as np
 from sprung.estimation import NEAR
 from sprung.preprocess import FreeDecay
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import fit_structure, start_values
+from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
 from sprung.units import STANDARD_GRAVITY
@@ -28,6 +28,10 @@ that the loads are level with the centre of gravity."""
 
 _PASSES = 2
 """Fits, each with the motion and the geometry of the one before; the second changes little."""
+
+_RATE, _PART = 125.0, 0.5
+"""Hz of the thinned decays in which the correction is tried first, several samples in a period of wheel hop; and the part of
+all samples up to which that saves anything."""
 
 _FIRST_ITERATIONS = 2
 """Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
@@ -65,6 +69,8 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
         return search
     recorded = search.decays
     plainest, *others = _ASSUMPTIONS[:2] if structure.campaign.heights.has_effect else _ASSUMPTIONS
+    if _loses_much(search, plainest):
+        return search
     first, assumption = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS), plainest
     if first.fit.loglikelihood > search.fit.loglikelihood:
         tried = [first, *(_corrected(search, recorded, one, passes=1, most=_FIRST_ITERATIONS) for one in others)]
@@ -79,6 +85,17 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
         anew = _corrected(again, recorded, assumption)
         turned = anew if anew.delta_bic(turned) > 0 else replace(turned, steps=anew.steps)
     return turned if turned.gain_over(search) > search.required_of_switch else search
+
+
+def _loses_much(search: ModelSearch, assumption: _Assumption) -> bool:
+    """Whether the correction loses so much in a part of the samples that it cannot gain in all of them."""
+    thin, part = thinned(search.decays, _RATE, np.inf)
+    if part > _PART:
+        return False
+    before = replace(search, decays=thin).refit(search.structure, most=0)
+    after = _corrected(before, thin, assumption, passes=1, most=0)
+    expected = [2 * one.fit.loglikelihood + one.fit.remaining_gain for one in (before, after)]
+    return expected[1] - expected[0] < -search.required_of_switch
 
 
 def _corrected(
@@ -103,19 +120,21 @@ def _corrected(
     sensors = search.structure.campaign.sensors
     for _ in range(passes):
         fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
-        decays = []
-        for drop, decay in enumerate(recorded):
+        decays = list(recorded)
+        for load, rate in dict.fromkeys((decay.load, decay.rate) for decay in recorded):
+            drops = [drop for drop, decay in enumerate(recorded) if (decay.load, decay.rate) == (load, rate)]
             readings = second_order_readings(
-                structure.linear_models[decay.load],
+                structure.linear_models[load],
                 structure.tracks,
-                structure.heights_of(decay.load),
-                loads[decay.load],
+                structure.heights_of(load),
+                loads[load],
                 sensors,
                 fit.values[: len(structure.names)],  # without what was found of the sensors
-                fit.motion(drop, 0, decay.samples),
-                1 / decay.rate,
+                [fit.motion(drop, 0, recorded[drop].samples) for drop in drops],
+                1 / rate,
             )
-            decays.append(replace(decay, values=decay.values - readings))
+            for drop, reading in zip(drops, readings, strict=True):
+                decays[drop] = replace(recorded[drop], values=recorded[drop].values - reading)
         fitted = fit_structure(structure, decays, fit, NEAR, search.progress, most=most)
         search = replace(search, structure=structure, fit=fitted, decays=tuple(decays))
     return search

@@ -55,6 +55,8 @@ class SelectionStep:
     fitted: bool
     taken: bool
     against: str = ""
+    joint: bool = False
+    """Whether it was fitted together with the term of the step before it."""
 
     @property
     def text(self) -> str:
@@ -150,7 +152,10 @@ class ModelSearch:
         against
             Why they do not stay although they gain enough.
         """
-        more = [SelectionStep(term, gain, self.required(term), fitted, taken, against) for term, gain in gains.items()]
+        more = [
+            SelectionStep(term, gain, self.required(term), fitted, taken, against, joint=fitted and number > 0)
+            for number, (term, gain) in enumerate(gains.items())
+        ]
         return replace(self, steps=(*self.steps, *more))
 
     def refit(

@@ -201,6 +201,6 @@ def thinned(decays: Sequence[FreeDecay], rate: float, duration: float) -> tuple[
     thin = []
     for decay in decays:
         every = max(int(decay.rate / rate), 1)
-        values = decay.values[:, : int(duration * decay.rate) : every]
+        values = decay.values[:, : round(min(duration * decay.rate, decay.samples)) : every]
         thin.append(replace(decay, values=values, rate=decay.rate / every))
     return thin, sum(decay.samples for decay in thin) / sum(decay.samples for decay in decays)

@@ -24,6 +24,9 @@ WORTH_A_FIT = 4.0
 """Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
 gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
 
+_STEPS_FROM_BELOW = 3
+"""Iterations after which the gain of a term is expected whose first step ended below the fit without it."""
+
 _FIRST_ITERATIONS = 8
 """Iterations after which a nonlinear fit has to have explained some of the misfit."""
 
@@ -88,13 +91,16 @@ def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]
     """Take the first Newton step towards one more linear term, and return what the whole fit may gain at the most.
 
     Near the neutral values twice the log-likelihood is quadratic: the step gains what the score test says, and no more is
-    expected after it. A new engine is far from anything: nothing follows from one step.
+    expected after it. What begins at a usual value may begin below the fit without it: some more steps then tell. A new
+    engine is far from anything: nothing follows from a few steps.
     """
     if term == ENGINE:
         return search, np.inf
     first = search.refit(search.with_terms([term]), most=1)
     if not np.isfinite(first.fit.loglikelihood):  # a motion without bounds
         return first, -np.inf
+    if first.fit.loglikelihood < search.fit.loglikelihood:
+        first = first.refit(first.structure, most=_STEPS_FROM_BELOW)
     gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + WORTH_A_FIT * first.fit.remaining_gain
     return first, gain / first.fit.disagreement
 

@@ -68,9 +68,9 @@ def second_order_readings(
     load: Load,
     sensors: Sequence[Sensor],
     values: Array,
-    motion: Array,
+    motions: Sequence[Array],
     step: float,
-) -> Array:
+) -> list[Array]:
     """Return what accelerometers read to second order beyond the linear equations of motion.
 
     Parameters
@@ -87,16 +87,17 @@ def second_order_readings(
         The accelerometers.
     values
         Parameters, SI, shape (parameter,).
-    motion
-        {X, Ẋ} of the linear vehicle, SI, shape (state, time).
+    motions
+        {X, Ẋ} of the linear vehicle in each drop with the load, SI, shape (state, time) each.
     step
         Sampling interval, s.
 
     Returns
     -------
-    ndarray
-        m/s², shape (sensor, time).
+    list of ndarray
+        m/s², shape (sensor, time), one for each drop.
     """
+    motion, ends = np.hstack(motions), np.cumsum([one.shape[1] for one in motions])[:-1]
     matrices = model.matrices(values)
     n, m, A = len(matrices.M), model.massive, matrices.state
     # Where no mass is, the velocity follows from the displacements, and there is no acceleration to be known.
@@ -108,8 +109,8 @@ def second_order_readings(
     rows = Rows.of([sensor.row for sensor in sensors], model.names).at(values)
     inputs = np.zeros_like(motion)
     inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, forces)
-    readings = rows[:, :m] @ _forced_accelerations(A, inputs, step)[n:]
-    return readings + _sensor_rotation(model, heights, sensors, values, signals)
+    readings = rows[:, :m] @ _forced_accelerations(A, inputs, step, ends)[n:]
+    return np.split(readings + _sensor_rotation(model, heights, sensors, values, signals), ends, axis=1)
 
 
 def _sensor_rotation(
@@ -241,8 +242,11 @@ def _by_axle(model: LinearModel, letter: str, values: Array) -> Array:
     return values[[at(station) for station in WHEELS]]
 
 
-def _forced_accelerations(A: Array, inputs: Array, step: float) -> Array:
-    """Return Ẏ of Ẏ = A Y + u from rest, u running linearly between samples; shapes (state, time)."""
+def _forced_accelerations(A: Array, inputs: Array, step: float, ends: Sequence[int] | Array) -> Array:
+    """Return Ẏ of Ẏ = A Y + u from rest, u running linearly between samples; shapes (state, time).
+
+    From rest again behind each of the `ends`.
+    """
     poles, vectors = np.linalg.eig(A)
     modal = np.linalg.solve(vectors, inputs.astype(complex))
     z = poles[:, None] * step
@@ -250,9 +254,16 @@ def _forced_accelerations(A: Array, inputs: Array, step: float) -> Array:
     # Weights of u at the beginning and at the end of a step: integrals of exp(λ (step - t)) times a linear function.
     z = np.where(np.abs(z) < _STILL, _STILL, z)
     before, after = step * (np.exp(z) * (z - 1) + 1) / z**2, step * (np.exp(z) - 1 - z) / z**2
-    added = before * modal[:, :-1] + after * modal[:, 1:]
-    states = np.zeros_like(modal)
-    for state, part, factor in zip(states, added, decay[:, 0], strict=True):
-        state[1:] = lfilter([1.0], [1.0, -factor], part)
+    added = np.zeros_like(modal)
+    added[:, 1:] = before * modal[:, :-1] + after * modal[:, 1:]
+    added[:, ends] = 0.0
+    parts = np.split(added, ends, axis=1)
+    rows = np.zeros((len(poles), len(parts), max(part.shape[1] for part in parts)), dtype=complex)
+    for number, part in enumerate(parts):
+        rows[:, number, : part.shape[1]] = part
+    filtered = np.stack(
+        [lfilter([1.0], [1.0, -factor], row) for row, factor in zip(rows, decay[:, 0].tolist(), strict=True)]
+    )
+    states = np.hstack([filtered[:, number, : part.shape[1]] for number, part in enumerate(parts)])
     forced: Array = (vectors @ (poles[:, None] * states)).real + inputs
     return forced

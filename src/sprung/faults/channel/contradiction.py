@@ -13,7 +13,7 @@ from sprung.faults.channel_prediction import ChannelPrediction
 
 def contradiction(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Take the channel for unrelated to the motion, or for any linear function of it."""
-    if prediction.drift is not None:
+    if prediction.drifts:
         return
     yield _unlike(prediction, "the channel shows something else than the motion that the other channels show", 0)
     row = np.linalg.lstsq(prediction.motion.T, prediction.record, rcond=1e-9)[0]

@@ -13,7 +13,8 @@ DRIFT_DO = "Let sensor and logger warm up before the test, and check that nothin
 
 def drift(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Take the residual of the channel for a drift, where it is as slow as one."""
-    if prediction.drift is None:
+    if not prediction.drifts:
         return
+    residual, free = prediction.drift
     fault = Fault("drift", prediction.sensor.channel, "the baseline drifts, compared with the other channels", DRIFT_DO)
-    yield ChannelHypothesis("drift", lambda *_: fault, prediction.drift)
+    yield ChannelHypothesis("drift", lambda *_: fault, residual, free=free)
