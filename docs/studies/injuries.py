@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from campaigns import Real
 from fleet import DropTest
-from scipy.signal import bilinear, butter, lfilter
+from scipy.signal import bilinear, butter, lfilter, lfilter_zi
 
 import sprung
 from sprung.units import STANDARD_GRAVITY as G
@@ -195,6 +195,18 @@ def late(random: np.random.Generator, rate: float) -> Change:
     return lambda values: np.concatenate([values[:by], values[:-by]])
 
 
+def low_pass(random: np.random.Generator, rate: float) -> Change:
+    """Pass a low-pass of first or second order at 30 to 50 Hz, four times as fast as the samples."""
+    numerator, denominator = butter(int(random.integers(1, 3)), random.uniform(30, 50), fs=4 * rate)
+
+    def how(values: Real) -> Real:
+        finer = np.interp(np.arange(4 * values.size) / 4, np.arange(values.size), values)
+        begin = lfilter_zi(numerator, denominator) * finer[0]
+        return np.asarray(lfilter(numerator, denominator, finer, zi=begin)[0][::4])
+
+    return how
+
+
 def walk(random: np.random.Generator, rate: float) -> Change:
     """Wander slowly: 0.1 m/s² in a second."""
     step = 0.1 / np.sqrt(rate)
@@ -282,6 +294,8 @@ OF_SENSORS: Sequence[Injury] = (
     Injury("sign, AC", ("sign",), "a channel that does not measure gravity is inverted", everywhere("AC", units(-1.0))),
     Injury("gain", ("gain",), "a channel has a gain error of +5 or -5 %", everywhere("any", reads_more)),
     Injury("late", ("late",), "a channel is delayed by 3 to 10 ms", everywhere("any", late)),
+    Injury("low-pass", ("low-pass", "late"), "a channel passed a low-pass of first or second order at 30 to 50 Hz",
+           everywhere("any", low_pass)),
     Injury("corner, DC", ("corner",),
            "a channel stated as DC has a high-pass of 0.05 to 2 Hz", corner_unstated("DC")),
     Injury("corner, AC", ("corner",), "the high-pass of a channel is not stated", corner_unstated("AC")),

@@ -94,6 +94,17 @@ class ChannelDeletion:
         counts = self.base.table.counts[rows][:, [self.channel]]
         return self.candidate.table.with_part(rows, [self.channel], residual[:, None], counts)
 
+    def recorded_residual(
+        self, candidate: CandidateFit, recorded: Callable[[Real, float, Numbers], float], numbers: Numbers
+    ) -> Real:
+        """Return the residual of the recorded channel, in each drop of a fit of corrected samples, shape (drop, 1)."""
+        residual = np.zeros((len(self.base.recordings), 1))
+        for decay, record in zip(candidate.decays, candidate.fit.residuals, strict=True):
+            if decay.usable[self.channel]:
+                drop = self.base.recordings.index(decay.file)
+                residual[drop] = recorded(record[self.channel], decay.rate, numbers)
+        return residual
+
     def hypotheses(self) -> Iterator[Hypothesis]:
         """Yield what may be wrong with the channel, each with the residuals that it predicts."""
         noise = float(self.base.noise.level[self.channel])
@@ -125,7 +136,7 @@ class ChannelDeletion:
             for hypothesis in kind(self.prediction):
                 own = self.scores_of(hypothesis, scores)
                 if own and hypothesis.correction is not None and hypothesis.stated:
-                    numbers = improved(hypothesis.code, hypothesis.stated, own)
+                    numbers = improved(hypothesis, hypothesis.stated, own)
                     if not hypothesis.allows(numbers):
                         continue
                     correction = ChannelCorrection.of(
@@ -142,7 +153,7 @@ class ChannelDeletion:
 
     def scores_of(self, hypothesis: ChannelHypothesis, scores: Sequence[FaultScore]) -> list[FaultScore]:
         """Return the scores of the numbers of a hypothesis about the channel, in their order."""
-        kind = hypothesis.code, self.name
+        kind = hypothesis.scored_as, self.name
         return sorted((score for score in scores if (score.kind, score.where) == kind), key=lambda score: score.axis)
 
     def _left_out(self, hypothesis: ChannelHypothesis) -> Hypothesis:
@@ -196,6 +207,8 @@ class ChannelCorrection(Hypothesis):
             # The residuals count in the units of the channel as it was recorded.
             rows, counts = range(len(deletion.base.recordings)), candidate.table.counts[:, [deletion.channel]]
             residual = hypothesis.reading(numbers) ** 2 * candidate.table.residual[:, [deletion.channel]]
+            if hypothesis.recorded is not None and candidate is not deletion.base:
+                residual = deletion.recorded_residual(candidate, hypothesis.recorded, numbers)
             table = candidate.table.with_part(rows, [deletion.channel], residual, counts)
         return cls(
             with_action(hypothesis.fault(numbers, stds), "corrected"),
@@ -210,6 +223,16 @@ class ChannelCorrection(Hypothesis):
             correct=correct,
             numbers=numbers,
         )
+
+    @property
+    def remaining_gain(self) -> float:
+        """What its own numbers still gain after its fit by their score test, in twice the log-likelihood."""
+        return sum(score.gain for score in self.deletion.scores_of(self.hypothesis, self.candidate.scores))
+
+    @property
+    def first_order(self) -> str:
+        """Code of the fault that it is to the first order of its size: a low-pass is a delay."""
+        return self.hypothesis.scored_as
 
     def confirm(self, base: CandidateFit) -> tuple[Hypothesis | None, int]:
         """Fit the campaign with the channel corrected, and its numbers along with it.
@@ -237,7 +260,9 @@ class ChannelCorrection(Hypothesis):
             scores = deletion.scores_of(hypothesis, candidate.scores)
             if all(score.gain < _CONVERGED for score in scores):
                 break
-            before, numbers = numbers, improved(hypothesis.code, numbers, scores)
+            before, numbers = numbers, improved(hypothesis, numbers, scores)
+            if not hypothesis.allows(numbers):
+                return None, fits
             # Where the residuals are noise already, the numbers are settled in the fit of all drops.
             if candidate.is_explained or fits > _REFITS or numbers == before:
                 break
@@ -277,13 +302,17 @@ class ChannelCorrection(Hypothesis):
         tuple or None
             None where it has no numbers, or where they are there already.
         """
-        code, own = self.hypothesis.code, self.deletion.scores_of(self.hypothesis, scores) if self.numbers else []
+        own = self.deletion.scores_of(self.hypothesis, scores) if self.numbers else []
         if all(score.gain < _CONVERGED for score in own):
             return None
-        numbers = improved(code, self.numbers, own)
+        numbers = improved(self.hypothesis, self.numbers, own)
+        if not self.hypothesis.allows(numbers):
+            return None
         stds = tuple(score.std for score in own)
         better = ChannelCorrection.of(self.deletion, self.hypothesis, self.correct, numbers, stds, self.candidate)
-        return better, self.correct(_change(code, self.numbers, numbers))
+        if self.hypothesis.change is not None:
+            return better, self.hypothesis.change(self.numbers, numbers)
+        return better, self.correct(_change(self.hypothesis.code, self.numbers, numbers))
 
 
 def _change(code: str, before: Numbers, after: Numbers) -> Numbers:
@@ -293,16 +322,16 @@ def _change(code: str, before: Numbers, after: Numbers) -> Numbers:
     return (after[0] - before[0],) if code == "late" else after
 
 
-def improved(code: str, numbers: Numbers, scores: Sequence[FaultScore]) -> Numbers:
+def improved(hypothesis: ChannelHypothesis, numbers: Numbers, scores: Sequence[FaultScore]) -> Numbers:
     """Return the numbers of a hypothesis after one step by their scores."""
-    steps = {score.axis: score.value for score in scores}
-    unit = numbers[0] if code == "gain" else 1.0  # a score is of the gain that remains
-    longest = _LONGEST_STEP.get(code, 0.0)
-    lowest = 0.0 if code == "corner" else -np.inf
-    return tuple(
-        max(number + unit * float(np.clip(steps.get(axis, 0.0), -longest, longest)), lowest)
-        for axis, number in enumerate(numbers)
-    )
+    values = {score.axis: score.value for score in scores}
+    longest = _LONGEST_STEP.get(hypothesis.scored_as, 0.0)
+    steps = tuple(float(np.clip(values.get(axis, 0.0), -longest, longest)) for axis in range(len(numbers)))
+    if hypothesis.improve is not None:
+        return hypothesis.improve(numbers, steps)
+    unit = numbers[0] if hypothesis.code == "gain" else 1.0  # a score is of the gain that remains
+    lowest = 0.0 if hypothesis.code == "corner" else -np.inf
+    return tuple(max(number + unit * step, lowest) for number, step in zip(numbers, steps, strict=True))
 
 
 def with_action(fault: Fault, action: str) -> Fault:

@@ -13,6 +13,7 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
 from sprung.faults.candidate_fit import DRIFT_SPAN, CandidateFit
+from sprung.faults.low_pass import LowPass
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Rows, Sensor, coordinates
@@ -31,6 +32,9 @@ _OFFSET = 0.1
 
 _CORNERS = np.concatenate([[0.0], np.geomspace(0.01, 5.0, 40)])
 """Corners of a high-pass that are tried, Hz."""
+
+_LOW_PASSES = np.geomspace(5.0, 300.0, 30)
+"""Corners of a low-pass that are tried, Hz."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,6 +198,32 @@ class ChannelPrediction:
         best = int(np.argmin([cost(one) for one in _CORNERS.tolist()]))
         between = _CORNERS[[max(best - 1, 0), min(best + 1, len(_CORNERS) - 1)]]
         return float(minimize_scalar(cost, bounds=between.tolist(), method="bounded", options={"xatol": 1e-5}).x)
+
+    def through_low_pass(self, low_pass: LowPass) -> Real:
+        """Return what the channel reads through a low-pass, shape (sample,).
+
+        What the low-pass remembers of the time before each decay fades with its poles, and is fitted.
+        """
+        row, record, fitted = self.row(self.sensor), iter(np.split(self.record, self._first[1:])), []
+        own = low_pass.poles[low_pass.poles.imag >= 0]
+        for decay, (poles, amplitudes, waves) in zip(self.decays, self._waves, strict=True):
+            motion = _centred(((row @ amplitudes) * low_pass.response(poles) @ waves).real)
+            fading = np.exp(own[:, None] * (np.arange(decay.samples) / decay.rate))
+            memory = _centred(np.concatenate([fading.real, fading.imag[own.imag > 0]]))
+            rest = np.linalg.lstsq(memory.T, next(record) - motion, rcond=1e-9)[0]
+            fitted.append(motion + rest @ memory)
+        return np.concatenate(fitted)
+
+    def low_pass(self, order: int) -> LowPass:
+        """Return the low-pass of an order with which the channel is most likely."""
+
+        def cost(corner: float) -> float:
+            return float(self.residual_of(self.through_low_pass(LowPass(corner, order))).sum())
+
+        best = int(np.argmin([cost(one) for one in _LOW_PASSES.tolist()]))
+        between = _LOW_PASSES[[max(best - 1, 0), min(best + 1, len(_LOW_PASSES) - 1)]]
+        found = minimize_scalar(cost, bounds=between.tolist(), method="bounded", options={"xatol": 1e-3})
+        return LowPass(float(found.x), order)
 
 
 def _centred(values: Real) -> Real:

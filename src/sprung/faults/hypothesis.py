@@ -72,6 +72,16 @@ class Hypothesis:
         """Whether the residuals are noise alone if it holds."""
         return self.table.is_explained(self.candidate.noise)
 
+    @property
+    def remaining_gain(self) -> float:
+        """What its own numbers still gain after its fit by their score test, in twice the log-likelihood."""
+        return 0.0
+
+    @property
+    def first_order(self) -> str:
+        """Code of the fault that it is to the first order of its size: its own."""
+        return self.fault.code
+
     def confirm(self, base: CandidateFit) -> tuple[Hypothesis | None, int]:
         """Fit the campaign with the correction.
 

@@ -242,8 +242,25 @@ def _confirm_best(
             continue
         rest.append(confirmed)
         if _is_convincing(base, confirmed, rest):
-            return confirmed, rest, fits
+            alike = [one for one in remaining if one.first_order == best.first_order and one.concerns_same(best)]
+            likeliest, more = _likeliest_alike(base, confirmed, alike)
+            return likeliest, [*rest, likeliest], fits + more
     return None, rest, fits
+
+
+def _likeliest_alike(base: CandidateFit, confirmed: Hypothesis, alike: Sequence[Hypothesis]) -> tuple[Hypothesis, int]:
+    """Fit what is the same as a convincing hypothesis to the first order, such as a low-pass for a delay.
+
+    The first hypothesis stays unless another one is significantly more likely, both with their numbers where they gain most.
+    """
+    pairs = [hypothesis.confirm(base) for hypothesis in alike]
+    limit = _converged_score(confirmed) - SIGNIFICANT * confirmed.candidate.fit.overdispersion
+    others = [one for one, _ in pairs if one is not None and _converged_score(one) < limit]
+    return min(others, key=_converged_score, default=confirmed), sum(made for _, made in pairs)
+
+
+def _converged_score(hypothesis: Hypothesis) -> float:
+    return hypothesis.score() - hypothesis.remaining_gain
 
 
 def _is_promising(base: CandidateFit, hypothesis: Hypothesis) -> bool:

@@ -41,6 +41,15 @@ class ChannelHypothesis:
         How many numbers are estimated, where they are not listed.
     allows
         Whether the numbers are of a usual size, and gravity at rest does not contradict them.
+    first_order
+        Code of the fault that it is to the first order of its size, whose score test is its own; empty for none.
+    improve
+        Returns the numbers after steps of that fault's numbers; None where they are the same numbers.
+    change
+        Returns the correction that leads from corrected numbers to others; None for the correction by their difference.
+    recorded
+        Returns the sum of squares, (m/s²)², that a residual of the corrected samples had in the recording, given it, samples
+        per second and the numbers; None where it follows from the reading.
     """
 
     code: str
@@ -52,6 +61,15 @@ class ChannelHypothesis:
     reading: Callable[[Numbers], float] = lambda _: 1.0
     free: int = 0
     allows: Callable[[Numbers], bool] = lambda _: True
+    first_order: str = ""
+    improve: Callable[[Numbers, Numbers], Numbers] | None = None
+    change: Callable[[Numbers, Numbers], Correction] | None = None
+    recorded: Callable[[Real, float, Numbers], float] | None = None
+
+    @property
+    def scored_as(self) -> str:
+        """Code of the fault whose score test tells its numbers."""
+        return self.first_order or self.code
 
 
 def figures(number: float) -> str:
