@@ -50,6 +50,8 @@ CAR = Vehicle.from_parameters(
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
     | {"k_bf": 3e4, "k_br": 2e4, "x_bf": 0.01, "x_br": 0.015}
     | {"v_kf": 0.1, "v_kr": 0.15, "q_f": 0.4, "q_r": 0.6, "e_f": 6.0, "e_r": 4.0, "h_tf": 6.0, "h_tr": 4.0}
+    | {"u_f": 0.05, "u_r": 0.08, "v_2f": 0.25, "v_2r": 0.3, "q_2f": 0.7, "q_2r": 1.4}
+    | {"v_3f": 0.5, "v_3r": 0.45, "q_3f": 0.5, "q_3r": 0.8}
     | {"w_kf": 0.03, "w_kr": 0.02, "e_lf": 5.0, "e_lr": 7.0, "g_f": 60.0, "g_r": 80.0}
 )
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
@@ -63,7 +65,8 @@ def values_of(extras: tuple[str, ...]) -> tuple[tuple[str, ...], Array]:
 @cache  # many steppers of one model differ in their values alone
 def model_of(extras: tuple[str, ...], load: Load = EMPTY, ground: bool = False) -> NonlinearModel:
     names, _ = values_of(extras)
-    forces = nonlinear_elements("separate", extras) + (ground_contact_elements(extras) if ground else ())
+    forces = nonlinear_elements("separate", extras, load=load.mass_at_wheels(CAR.wheelbase))
+    forces += ground_contact_elements(extras) if ground else ()
     elements = seven_degrees_of_freedom("separate", extras)
     elements += stiffened_air_springs(load.mass_at_wheels(CAR.wheelbase), "separate", extras)
     return NonlinearModel.of(elements, forces, names, load)
@@ -117,6 +120,7 @@ def test_a_load_pushes_with_its_weight() -> None:
         ("friction",), ("rebound",), ("friction", "rebound", "progressive"),
         ("damper-curve", "tyre-curve"), ("rebound", "damper-curve", "air", "bump-stop"),
         ("rebound", "damper-curve", "rounded-knee"),
+        ("damper-curve", "second-knee", "third-knee"),
     ],
 )  # fmt: skip
 def test_against_another_solver(extras: tuple[str, ...]) -> None:
@@ -146,13 +150,15 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
                 force[i] = (own["r_"] - 1) * c * max(v, 0.0)
             elif kind == "damper-curve":
                 ratio = own["r_"] if v > 0 and "rebound" in extras else 1.0
-                knee = own["v_k"]
                 if "rounded-knee" in extras:
-                    width = own["w_k"]
+                    knee, width = own["v_k"], own["w_k"]
                     hinge = [0.5 * (u + np.hypot(u, width)) for u in (abs(v) - knee, -knee)]
                     curve = abs(v) - (1 - own["q_"]) * (hinge[0] - hinge[1])
                 else:
-                    curve = np.interp(abs(v), [0.0, knee, 10.0], [0.0, knee, knee + own["q_"] * (10.0 - knee)])
+                    number = 3 if "third-knee" in extras else 1
+                    knots = np.array([0.0, *(own[name] for name in ("v_k", "v_2", "v_3")[:number]), 10.0])
+                    slopes = np.cumprod([1.0, *(own[name] for name in ("q_", "q_2", "q_3")[:number])])
+                    curve = np.interp(abs(v), knots, np.concatenate([[0.0], np.cumsum(slopes * np.diff(knots))]))
                 force[i] = ratio * c * (np.sign(v) * curve - v)
             elif kind == "air":
                 height = 1 / own["e_"]
@@ -177,11 +183,35 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
     assert np.all(np.abs(trajectory.states[::50, 0] - there.y[:14].T) < 3e-4 * scale)
 
 
+def test_friction_grows_with_the_load() -> None:
+    """What u adds under a load is a larger friction that builds up over the same travel F/s; nothing without a load."""
+    extras = ("friction", "load-friction")
+    names, values = values_of(extras)
+    states, step, steps = some_states(2, 3), 0.002, 100
+    trajectory = stepper(extras, step).integrate(states, np.zeros((2, 8)), steps)
+    carried = dict(zip("fr", BALLAST.mass_at_wheels(CAR.wheelbase), strict=True))
+    assert 2 * sum(carried.values()) == pytest.approx(150.0)
+    larger = dict(zip(names, values.tolist(), strict=True))
+    for axle, mass in carried.items():
+        growth = 1 + larger[f"u_{axle}"] * 9.80665 * mass / larger[f"F_{axle}"]
+        larger |= {
+            f"F_{axle}": growth * larger[f"F_{axle}"],
+            f"s_{axle}": growth * larger[f"s_{axle}"],
+            f"u_{axle}": 0.0,
+        }
+    others = stepper(extras, step, np.array(list(larger.values()))).integrate(states, np.zeros((2, 8)), steps)
+    np.testing.assert_allclose(trajectory.states[:, 1], others.states[:, 1], atol=1e-9)
+    plain, none = values_of(("friction",))
+    empty = stepper(("friction",), step, none).integrate(states, np.zeros((2, 4)), steps)
+    assert plain == tuple(name for name in names if name[0] != "u")
+    np.testing.assert_allclose(trajectory.states[:, 0], empty.states[:, 0], atol=1e-9)
+
+
 @pytest.mark.parametrize("ground", [False, True])
 def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     extras = tuple(extra for extra in EXTRAS if extra not in (*LINEAR_EXTRAS, "bump-stop"))
     names, values = values_of(extras)
-    states, memories, step, steps = some_states(2, 1), np.full((2, 4), 0.3), 0.002, 60
+    states, memories, step, steps = some_states(2, 1), np.full((2, 8), 0.3), 0.002, 60
     if ground:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
@@ -190,7 +220,7 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
     by_drop, starts, _ = differentiate_motions(before, trajectory, every_output, 1)
     found = np.stack(list(by_drop), axis=1)
-    assert found.shape == (steps + 1, 2, outputs, len(names) + 18)
+    assert found.shape == (steps + 1, 2, outputs, len(names) + 22)
     number, length = segments_of(steps, 1)
     assert 1 < number < number * length
     for segment in range(number):
@@ -219,10 +249,10 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
         check(unknown, np.array([moved(unknown, size), moved(unknown, -size)]), size)
     # Initial states and memories: all that are moved go side by side.
     start, size = np.hstack([states, memories]), 1e-6
-    starts = (start + size * np.concatenate([np.eye(18), -np.eye(18)])[:, None]).reshape(72, 18)
-    there = stepper(extras, step, ground=ground, pairs=36).integrate(starts[:, :14], starts[:, 14:], steps)
-    ends = np.concatenate([there.states, there.forces], axis=2).reshape(steps + 1, 2, 18, 2, outputs)
-    for place in range(18):
+    starts = (start + size * np.concatenate([np.eye(22), -np.eye(22)])[:, None]).reshape(88, 22)
+    there = stepper(extras, step, ground=ground, pairs=44).integrate(starts[:, :14], starts[:, 14:], steps)
+    ends = np.concatenate([there.states, there.forces], axis=2).reshape(steps + 1, 2, 22, 2, outputs)
+    for place in range(22):
         check(len(names) + place, np.moveaxis(ends[:, :, place], 1, 0), size)
 
 

@@ -92,7 +92,7 @@ def _of_drop(
     derivatives = derivatives[..., np.tile(upper, 2)] * np.tile(np.where(poles.imag > 0, 2.0, 1.0), 2)
     state, motion = fit.states[drop], fit.motion(drop, 0, decay.samples)[:, ::every]
     neutral = np.array([values[name] for name in model.names])
-    force_rows = -np.linalg.solve(model.linear.matrices(neutral).leading, model.forces.rows.at(neutral).T)
+    force_rows = -np.linalg.solve(model.linear.matrices(neutral).leading, model.forces.directions(neutral).T)
     driven = highest_derivatives(len(force_rows), model.linear.massive)
     participation, direct = left[:, driven] @ force_rows, at.sensor_rows @ force_rows
 

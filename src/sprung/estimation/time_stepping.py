@@ -212,11 +212,13 @@ class TimeSteppingObjective:
         impossible = np.abs(memories) > _MOST_MEMORY
         if not impossible.any():
             return None
-        rows = forces.rows.at(values)
-        travel = X @ rows.T
+        travel = X @ forces.rows.at(values).T
         still = np.zeros_like(travel)  # a friction's force is its memory, whatever the rate
         answer = forces.evaluate(forces.parameters(values), ElementInput(travel, still, still, memories))
-        lost = np.where(impossible, memories, 0.0) * answer.by_memory @ rows[forces.memory_rows]
+        directions = np.array([model.forces.directions(values) for model in self.models_by_kind])[self.kind]
+        lost = np.einsum(
+            "dm,dmx->dx", np.where(impossible, memories, 0.0) * answer.by_memory, directions[:, forces.memory_rows]
+        )
         stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
         X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
         return np.hstack([X, V, np.where(impossible, 0.0, memories)]) - self.sag(values)

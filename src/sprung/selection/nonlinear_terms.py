@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from sprung.selection.description import TermDescription
+import math
+
+from sprung.selection.description import TermDescription, Values
 from sprung.selection.model_term import ModelTerm, of_axles
+from sprung.selection.structure import ModelStructure
 
 BUMP_STOP = "bump-stop"
 """A term with starts of its own."""
@@ -24,8 +27,38 @@ _KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
 """m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the
 width of its rounding as a part of the velocity."""
 
+_NEXT_KNEE = 2.5
+"""Velocity of a further knee over that of the one before, at the start of a fit."""
+
+_LOAD_FRICTION = 0.03
+"""Friction per weight carried at the start of a fit: coil springs on struts have 0.01 to 0.03, leaf springs 0.03 to 0.1."""
+
 _REBOUND, _TYRE_GROWTH = 0.8, 0.2
 """Usual excess of rebound over compression damping, and growth of a tyre's rate."""
+
+
+def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
+    """Return the term of a further knee of the damper curves, given the indices of the knee before it."""
+
+    def first(own: Values, _: ModelStructure) -> Values:
+        velocities = {f"v_{number}{axle}": _NEXT_KNEE * own.get(f"v_{before}{axle}", _KNEE) for axle in "fr"}
+        return velocities | {f"q_{number}{axle}": math.sqrt(own.get(f"q_{ratio}{axle}", 1.0)) for axle in "fr"}
+
+    return ModelTerm(
+        f"{word}-knee",
+        of_axles(lambda p, axle: 1 - p[f"q_{number}{axle}"]),
+        typical=_KNEE_LOSS,
+        spread=1.6,
+        negligible=0.04,
+        description=TermDescription(
+            f"{{axle}} damper curves with a {word} knee, {{0}} of their rate beyond {{1}}",
+            ((lambda p, axle: p[f"q_{number}{axle}"], "1"), (lambda p, axle: p[f"v_{number}{axle}"], "m/s")),
+            again="{axle} ones with {0} beyond {1}",
+            neutral=1.0,
+        ),
+        undefined=lambda _, __: {f"v_{number}{axle}": _NEXT_KNEE * _KNEE for axle in "fr"},
+        first=first,
+    )
 
 
 NONLINEAR_TERMS = (
@@ -45,6 +78,19 @@ NONLINEAR_TERMS = (
         held="s_",
         undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
         first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
+    ),
+    ModelTerm(
+        "load-friction",
+        of_axles(lambda p, axle: p[f"u_{axle}"]),
+        typical=0.05,
+        spread=2.0,
+        negligible=0.005,
+        description=TermDescription(
+            "dry friction that grows by {0} of the load on each {axle} wheel",
+            ((lambda p, axle: 100 * p[f"u_{axle}"], "%"),),
+            again="by {0} on each {axle} wheel",
+        ),
+        first=lambda _, __: {"u_f": _LOAD_FRICTION, "u_r": _LOAD_FRICTION},
     ),
     ModelTerm(
         "rebound",
@@ -88,6 +134,8 @@ NONLINEAR_TERMS = (
         ),
         first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
     ),
+    _further_knee(2, "second", "k", ""),
+    _further_knee(3, "third", "2", "2"),
     ModelTerm(
         "progressive",
         of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]),

@@ -106,7 +106,7 @@ class ModelSearch:
         return required_gain(0, _HYPOTHESES, self.samples)
 
     def open_terms(self, among: Sequence[str]) -> list[str]:
-        """Terms that the recordings are to decide about and that the model has not.
+        """Terms about which the recordings decide and that the model has not; none that refines a term that is absent.
 
         Parameters
         ----------

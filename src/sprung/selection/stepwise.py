@@ -37,7 +37,7 @@ _ROUNDS = 2 * len(TERMS)
 _EXPLAINED = 0.7
 """Part of a small misfit's overdispersion that a term may leave: any term seems to explain some of an error of another kind."""
 
-_FURTHER_ROUNDS, _TRIED_BESIDE = 4, 2
+_FURTHER_ROUNDS, _TRIED_BESIDE = 5, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
 
 
@@ -91,6 +91,11 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
             for term in terms
         }
         best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
+        if best and np.isinf(ratios[best[0]]):
+            best = [term for term in terms if TERMS[term].refines == TERMS[best[0]].refines]
+            search, accepted = accept_best(search, best)
+            tried |= set(best)
+            continue
         tried |= set(best)
         search, accepted = accept_first(search, best)
         if not accepted:
@@ -140,6 +145,22 @@ def accept_first(search: ModelSearch, terms: Sequence[str], among: Sequence[str]
             return tried, True
         search = tried
     return search, False
+
+
+def accept_best(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, bool]:
+    """Fit terms, each from the same model; accept the likeliest, and say whether one was."""
+    found, chosen = search, ""
+    for term in terms:
+        tried = try_term(replace(search, steps=found.steps), term)
+        if tried.structure.names == search.structure.names:
+            found = replace(found, steps=tried.steps)
+        elif chosen and tried.delta_bic(found) <= 0:
+            gain = {term: tried.gain_over(search)}
+            found = replace(found, steps=tried.steps).recorded(gain, True, False, f"{chosen} explains more")
+        else:
+            gain = {chosen: found.gain_over(search)} if chosen else {}
+            found, chosen = tried.recorded(gain, True, False, f"{term} explains more"), term
+    return found, bool(chosen)
 
 
 def try_term(

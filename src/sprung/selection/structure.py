@@ -138,13 +138,14 @@ class ModelStructure:
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with nonlinear forces."""
-        forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase) + (
-            ground_contact_elements(self.terms) if self.unilateral_tyres else ()
-        )
-        return {
-            load.name: NonlinearModel.of(self._elements(load), forces, self.names, load, self.heights_of(load.name))
-            for load in self.campaign.loads
-        }
+        contact = ground_contact_elements(self.terms) if self.unilateral_tyres else ()
+        models = {}
+        for load in self.campaign.loads:
+            at_wheels = load.mass_at_wheels(self.wheelbase)
+            forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase, at_wheels) + contact
+            heights = self.heights_of(load.name)
+            models[load.name] = NonlinearModel.of(self._elements(load), forces, self.names, load, heights)
+        return models
 
     def _elements(self, load: Load) -> tuple[Element, ...]:
         """Return the linear elements of the vehicle, as it stands under a load."""

@@ -134,16 +134,15 @@ def _models(
 ) -> tuple[list[NonlinearModel], NDArray[np.int64]]:
     """Return a model for each different load, and which of them each of the loads has."""
     elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights, vehicle.wheelbase)
-    nonlinear = [*nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase), *contact]
     names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
-    stiffened = [
-        stiffened_air_springs(load.mass_at_wheels(vehicle.wheelbase), vehicle.tracks, vehicle.extras, vehicle.wheelbase)
-        for load in different
-    ]
-    models = [
-        NonlinearModel.of(elements + further, nonlinear, names, load, vehicle.heights, gravity)
-        for load, further in zip(different, stiffened, strict=True)
-    ]
+    models = []
+    for load in different:
+        carried = load.mass_at_wheels(vehicle.wheelbase)
+        further = stiffened_air_springs(carried, vehicle.tracks, vehicle.extras, vehicle.wheelbase)
+        nonlinear = nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase, carried)
+        models.append(
+            NonlinearModel.of(elements + further, [*nonlinear, *contact], names, load, vehicle.heights, gravity)
+        )
     order = [load.name for load in different]
     return models, np.array([order.index(load.name) for load in loads])
 
@@ -152,7 +151,8 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
     """Return the rest position on blocks, X from the empty vehicle at rest on the ground, shape (coordinate,)."""
     forces, matrices = model.forces, model.linear.matrices(values)
     K = matrices.K
-    G, offsets = forces.rows.at(values), model.travel_offsets(values)[0]
+    G, directions = forces.rows.at(values), forces.directions(values)
+    offsets = model.travel_offsets(values)[0]
     tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
     load = -K @ model.sag(values)
     load[WHEELS_AT] -= tyres * heights
@@ -163,8 +163,8 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
         travel = G @ X - raised + offsets
         zero = np.zeros_like(travel)
         found = forces.evaluate(forces.parameters(values), ElementInput(travel, zero, zero, np.zeros(forces.memories)))
-        residual = K @ X + load + G.T @ found.force
-        X = X - matrices._replace(K=K + (G.T * found.by_travel) @ G).deflection(residual)
+        residual = K @ X + load + directions.T @ found.force
+        X = X - matrices._replace(K=K + (directions.T * found.by_travel) @ G).deflection(residual)
         if np.abs(residual).max() < 1e-9 * np.abs(load).max():
             break
     return X

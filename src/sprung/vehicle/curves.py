@@ -157,10 +157,10 @@ def _sum(
     column = ElementInput(*(part[:, None] for part in given))
     for element in elements:
         positions = [names.index(name) for name in element.parameters]
-        own = values[positions][:, None]
-        force += element.law.evaluate(own, column).force[:, 0]
+        own, weight = values[positions][:, None], 1.0 if element.weight is None else element.weight
+        force += weight * element.law.evaluate(own, column).force[:, 0]
         for position, derivative in zip(positions, element.law.differentiate(own, column)[0], strict=True):
-            gradient[:, position] += derivative[:, 0]
+            gradient[:, position] += weight * derivative[:, 0]
     return force, gradient
 
 

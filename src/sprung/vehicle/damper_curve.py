@@ -18,7 +18,7 @@ def damper_curve(*, has_ratio: bool = False, is_rounded: bool = False) -> ForceL
     The force is continuous and passes through zero; it is linear between the knots, which are alike in compression and
     rebound. Its parameters are the damping c before the first knot in compression, N s/m; the rebound ratio r, if it is one;
     half the width w over which hyperbolas round the knots, m/s, if it is one; and for each knot its velocity, m/s, and the
-    slope after it over that before the first.
+    slope after it over that before it. Positive ratios of knots in ascending order make the curve monotone.
 
     Parameters
     ----------
@@ -64,18 +64,34 @@ def _derivatives(parameters: Array, given: ElementInput, *, has_ratio: bool, is_
     if is_rounded:
         by_rounding = sum((drop * knot[3] for drop, knot in zip(drops, knots, strict=True)), zero)
         force.append(damping * unit * by_rounding)
-    for drop, knot, following in zip(drops, knots, [*excesses[1:], zero], strict=True):
-        force += [damping * unit * drop * knot[2], damping * unit * (following - knot[0])]
+    ratios = parameters[_first_knot(has_ratio, is_rounded) + 1 :: 2]
+    slopes = _slopes(ratios)
+    # Behind a knot all slopes have its ratio as a factor.
+    behind = [
+        slopes[i] * excesses[i] - sum((drops[k] * excesses[k] for k in range(i + 1, len(drops))), zero) / own
+        for i, own in enumerate(ratios)
+    ]
+    for drop, knot, lost in zip(drops, knots, behind, strict=True):
+        force += [damping * unit * drop * knot[2], -damping * unit * lost]
     return np.stack(force), np.zeros((len(force), *size.shape))
 
 
 def _knots(parameters: Array, has_ratio: bool, is_rounded: bool) -> tuple[Array | float, Array | None, Array, Array]:
     """Return ratio, rounding, velocities and what each knot takes off the slope, as a part of the damping."""
-    first = 1 + has_ratio + is_rounded
-    velocities, ratios = parameters[first::2], parameters[first + 1 :: 2]
-    before = np.concatenate([np.ones_like(ratios[:1]), ratios[:-1]])
+    first = _first_knot(has_ratio, is_rounded)
+    slopes = _slopes(parameters[first + 1 :: 2])
     ratio = parameters[1] if has_ratio else 1.0
-    return ratio, parameters[first - 1] if is_rounded else None, velocities, before - ratios
+    return ratio, parameters[first - 1] if is_rounded else None, parameters[first::2], slopes[:-1] - slopes[1:]
+
+
+def _first_knot(has_ratio: bool, is_rounded: bool) -> int:
+    """Return the position of the first knot's velocity among the parameters."""
+    return 1 + has_ratio + is_rounded
+
+
+def _slopes(ratios: Array) -> Array:
+    """Return the slopes before and after each knot, as parts of the damping, shape (knot + 1, element)."""
+    return np.cumprod(np.concatenate([np.ones_like(ratios[:1]), ratios]), axis=0)
 
 
 def _knot(size: Array, velocity: Array, rounding: Array | None) -> tuple[Array, Array, Array, Array]:

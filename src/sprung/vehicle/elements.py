@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from sprung.display import shown
+from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
 from sprung.vehicle.damper_curve import damper_curve
 from sprung.vehicle.force_laws import (
@@ -20,6 +21,7 @@ from sprung.vehicle.force_laws import (
     BUMP_STOP,
     FRICTION,
     GROUND,
+    LOAD_FRICTION,
     PROGRESSIVE,
     REBOUND,
     TYRE_CURVE,
@@ -46,12 +48,20 @@ LINEAR_EXTRAS = (
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (
-    *LINEAR_EXTRAS, "friction", "rebound", "damper-curve", "rounded-knee", "progressive", "air", "levelled-air", "bump-stop",
-    "tyre-curve",
+    *LINEAR_EXTRAS, "friction", "load-friction", "rebound", "damper-curve", "rounded-knee", "second-knee", "third-knee",
+    "progressive", "air", "levelled-air", "bump-stop", "tyre-curve",
 )  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
-REFINED: Mapping[str, str] = MappingProxyType({"rounded-knee": "damper-curve", "mount-damping": "damper-mount"})
+REFINED: Mapping[str, str] = MappingProxyType(
+    {
+        "rounded-knee": "damper-curve",
+        "second-knee": "damper-curve",
+        "third-knee": "second-knee",
+        "load-friction": "friction",
+        "mount-damping": "damper-mount",
+    }
+)
 """Extras that are nothing without another one, and that other one."""
 
 
@@ -93,12 +103,15 @@ class NonlinearElement:
         Its travel, on which its force acts.
     origin
         From which position the travel counts.
+    weight
+        N of the load that the wheel carries, by which the law's force is multiplied; None where it is not.
     """
 
     law: ForceLaw
     parameters: tuple[str, ...]
     row: Row
     origin: Origin = "empty"
+    weight: float | None = None
 
 
 def half_distances(tracks: Tracks) -> dict[tuple[str, LinearLaw], str]:
@@ -167,7 +180,10 @@ def seven_degrees_of_freedom(
 
 
 def nonlinear_elements(
-    tracks: Tracks = "shared", extras: Collection[str] = (), wheelbase: float = 0.0
+    tracks: Tracks = "shared",
+    extras: Collection[str] = (),
+    wheelbase: float = 0.0,
+    load: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[NonlinearElement, ...]:
     """Return the nonlinear elements of a vehicle.
 
@@ -179,38 +195,65 @@ def nonlinear_elements(
         Any of `EXTRAS`; those of `LINEAR_EXTRAS` add none.
     wheelbase
         m; for a body that twists.
+    load
+        What each front and each rear wheel carries of it, kg.
 
     Returns
     -------
     tuple of Force
     """
     travel = _travels(tracks, extras, wheelbase)
-    elements = []
+    elements: list[NonlinearElement] = []
     for station in kinematics.WHEELS:
         axle, spring = station[0], travel(station, "spring")
-        if "friction" in extras:
-            elements.append(NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), spring))
-        if "rebound" in extras:
-            damper = _damper_travel(station, tracks, extras, wheelbase)
-            elements.append(NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), damper))
-        if "damper-curve" in extras:
-            rebound, rounded = "rebound" in extras, "rounded-knee" in extras
-            before = (f"c_s{axle}", *(f"r_{axle}",) * rebound, *(f"w_k{axle}",) * rounded)
-            law = damper_curve(has_ratio=rebound, is_rounded=rounded)
-            damper = _damper_travel(station, tracks, extras, wheelbase)
-            elements.append(NonlinearElement(law, (*before, f"v_k{axle}", f"q_{axle}"), damper))
-        if "progressive" in extras:
-            elements.append(NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), spring))
-        if "air" in extras:
-            elements.append(NonlinearElement(AIR, (f"e_{axle}", f"k_s{axle}"), spring))
-        if "levelled-air" in extras:
-            elements.append(NonlinearElement(AIR, (f"e_l{axle}", f"k_s{axle}"), spring, origin="loaded"))
-        if "bump-stop" in extras:
-            elements.append(NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), spring))
+        elements += _friction_forces(axle, spring, extras, STANDARD_GRAVITY * load["fr".index(axle)])
+        elements += _damper_forces(axle, _damper_travel(station, tracks, extras, wheelbase), extras)
+        elements += _spring_forces(axle, spring, extras)
         if "tyre-curve" in extras:
             tyre = kinematics.wheel(station)
             elements.append(NonlinearElement(TYRE_CURVE, (f"h_t{axle}", f"k_t{axle}"), tyre, origin="weightless"))
     return tuple(elements)
+
+
+def _friction_forces(axle: str, travel: Row, extras: Collection[str], weight: float) -> Iterator[NonlinearElement]:
+    """Yield the dry friction of a wheel station, which carries a weight of the load, N."""
+    if "friction" in extras:
+        yield NonlinearElement(FRICTION, (f"F_{axle}", f"s_{axle}"), travel)
+        if "load-friction" in extras:
+            yield NonlinearElement(LOAD_FRICTION, (f"u_{axle}", f"F_{axle}", f"s_{axle}"), travel, weight=weight)
+
+
+def _damper_forces(axle: str, travel: Row, extras: Collection[str]) -> Iterator[NonlinearElement]:
+    """Yield what a damper adds to the force of one of constant rate."""
+    if "rebound" in extras:
+        yield NonlinearElement(REBOUND, (f"r_{axle}", f"c_s{axle}"), travel)
+    if "damper-curve" in extras:
+        rebound, rounded = "rebound" in extras, "rounded-knee" in extras
+        before = (f"c_s{axle}", *(f"r_{axle}",) * rebound, *(f"w_k{axle}",) * rounded)
+        knots = [f"v_k{axle}", f"q_{axle}"]
+        for number in _further_knots(extras):
+            knots += [f"v_{number}{axle}", f"q_{number}{axle}"]
+        yield NonlinearElement(damper_curve(has_ratio=rebound, is_rounded=rounded), (*before, *knots), travel)
+
+
+def _spring_forces(axle: str, travel: Row, extras: Collection[str]) -> Iterator[NonlinearElement]:
+    """Yield what a spring and its stop add to the force of one of constant rate."""
+    if "progressive" in extras:
+        yield NonlinearElement(PROGRESSIVE, (f"p_{axle}", f"k_s{axle}"), travel)
+    if "air" in extras:
+        yield NonlinearElement(AIR, (f"e_{axle}", f"k_s{axle}"), travel)
+    if "levelled-air" in extras:
+        yield NonlinearElement(AIR, (f"e_l{axle}", f"k_s{axle}"), travel, origin="loaded")
+    if "bump-stop" in extras:
+        yield NonlinearElement(BUMP_STOP, (f"k_b{axle}", f"x_b{axle}"), travel)
+
+
+def _further_knots(extras: Collection[str]) -> Iterator[int]:
+    """Yield the numbers of the knots that a damper curve has after the first; none without those before it."""
+    for number, name in ((2, "second-knee"), (3, "third-knee")):
+        if name not in extras:
+            return
+        yield number
 
 
 def ground_contact_elements(extras: Collection[str] = ()) -> tuple[NonlinearElement, ...]:

@@ -123,6 +123,18 @@ def _friction_derivatives(parameters: Array, given: ElementInput) -> tuple[Array
     return by_force, np.stack([by_length * np.sign(force) / stiffness, -by_length * length / stiffness])
 
 
+def _load_friction(parameters: Array, given: ElementInput) -> ElementForce:
+    coefficient, own = parameters[0], parameters[1:]
+    memory = _friction(own, given)
+    return memory._replace(force=coefficient * memory.memory, by_memory=coefficient + np.zeros_like(given.travel))
+
+
+def _load_friction_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    by_friction, memory = _friction_derivatives(parameters[1:], given)
+    force = np.concatenate([by_friction[:1], np.zeros_like(by_friction)])
+    return force, np.concatenate([np.zeros_like(memory[:1]), memory])
+
+
 def _rebound(parameters: Array, given: ElementInput) -> ElementForce:
     ratio, damping = parameters
     zero = np.zeros_like(given.travel)
@@ -230,6 +242,10 @@ def _ground_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, 
 FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives)
 """Dry friction with presliding: force F, N, and presliding stiffness s, N/m, after :term:`Dahl <Dahl model>` (Aerospace
 Corporation TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
+
+LOAD_FRICTION = ForceLaw("load-friction", True, _load_friction, _load_friction_derivatives)
+"""What a load adds to a dry friction, per weight that the spring carries of it: a coefficient u, and the force F, N, and
+presliding stiffness s, N/m, of the friction without the load. It builds up over the same travel F/s."""
 
 REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives)
 """Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""

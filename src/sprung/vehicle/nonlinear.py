@@ -41,6 +41,8 @@ class NonlinearForces(NamedTuple):
         all elements, empty where the law has none; and the positions of its parameters in the list, shape (parameter, element).
     memory_rows
         Row of each memory, shape (memory,).
+    weights
+        By which the force of each row is multiplied: N of the load that the wheel carries, or 1; shape (row,).
     weightless, levelled
         1 for rows whose travel counts from the empty vehicle without gravity, and from where the loaded one rests, else 0;
         dimensionless, shape (row,).
@@ -49,6 +51,7 @@ class NonlinearForces(NamedTuple):
     rows: Rows
     laws: tuple[tuple[ForceLaw, slice | Index, slice, Index], ...]
     memory_rows: Index
+    weights: Array
     weightless: Array
     levelled: Array
 
@@ -58,13 +61,13 @@ class NonlinearForces(NamedTuple):
         by_law: dict[str, list[NonlinearElement]] = {}
         for element in elements:
             by_law.setdefault(element.law.name, []).append(element)
-        distinct: dict[tuple[bytes, str], NonlinearElement] = {}
+        distinct: dict[tuple[bytes, str, bool], NonlinearElement] = {}
         laws, memory_rows = [], list[int]()
         for alike in by_law.values():
             at = []
             for element in alike:
                 compiled = Rows.of([element.row], names)
-                key = ((compiled.affine + 0.0).tobytes(), element.origin)
+                key = ((compiled.affine + 0.0).tobytes(), element.origin, element.weight is not None)
                 distinct.setdefault(key, element)
                 at.append(list(distinct).index(key))
             law, first = alike[0].law, len(memory_rows)
@@ -76,7 +79,17 @@ class NonlinearForces(NamedTuple):
             np.array([float(element.origin == origin) for element in distinct.values()])
             for origin in ("weightless", "loaded")
         )
-        return cls(rows, tuple(laws), np.array(memory_rows, dtype=np.int64), weightless, levelled)
+        weights = np.array([1.0 if element.weight is None else element.weight for element in distinct.values()])
+        return cls(rows, tuple(laws), np.array(memory_rows, dtype=np.int64), weights, weightless, levelled)
+
+    def directions(self, values: Array) -> Array:
+        """Return what the force of each row is on the coordinates, shape (row, coordinate): the row, times its weight."""
+        return self.weights[:, None] * self.rows.at(values)
+
+    @property
+    def direction_slopes(self) -> Array:
+        """Derivatives of `directions` by the parameters, shape (parameter, row, coordinate)."""
+        return self.weights[:, None] * np.moveaxis(self.rows.slopes, 1, 0)
 
     @property
     def number(self) -> int:
@@ -274,8 +287,7 @@ class NonlinearModel:
         leading = np.hstack([M[:, :m], C[:, m:]])
         by_leading = np.concatenate([dM[..., :m], dC[..., m:]], axis=2)
         weight, weight_slopes = self.load.matrices(values).M @ gravity, self.load.slopes(values).M @ gravity
-        G = self.forces.rows.at(values)
-        G_slopes = np.moveaxis(self.forces.rows.slopes, 1, 0)
+        G, G_slopes = self.forces.directions(values), self.forces.direction_slopes
         inputs = np.hstack([K, C[:, :m], G.T, weight[:, None]])
         rows: Array = -np.asarray(np.linalg.solve(leading, inputs), dtype=float)
         right = np.concatenate([dK, dC[..., :m], np.swapaxes(G_slopes, 1, 2), weight_slopes[:, :, None]], axis=2)

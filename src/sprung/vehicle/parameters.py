@@ -151,6 +151,8 @@ PARAMETERS: Mapping[str, Parameter] = {
     "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
     "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
     "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
+    "u_f": Parameter("1", "growth of the front dry friction with the load, over the weight carried", False, False),
+    "u_r": Parameter("1", "growth of the rear dry friction with the load, over the weight carried", False, False),
     "r_f": Parameter("1", "rebound damping over compression damping, front", False),
     "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
     "v_kf": Parameter("m/s", "velocity at which the curve of the front dampers has its knee", False),
@@ -159,6 +161,14 @@ PARAMETERS: Mapping[str, Parameter] = {
     "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
     "w_kf": Parameter("m/s", "half the width over which the knee of the front dampers is rounded", False, False),
     "w_kr": Parameter("m/s", "half the width over which the knee of the rear dampers is rounded", False, False),
+    "v_2f": Parameter("m/s", "velocity at which the curve of the front dampers has its second knee", False),
+    "v_2r": Parameter("m/s", "velocity at which the curve of the rear dampers has its second knee", False),
+    "q_2f": Parameter("1", "damping beyond the second knee over that before it, front", False),
+    "q_2r": Parameter("1", "damping beyond the second knee over that before it, rear", False),
+    "v_3f": Parameter("m/s", "velocity at which the curve of the front dampers has its third knee", False),
+    "v_3r": Parameter("m/s", "velocity at which the curve of the rear dampers has its third knee", False),
+    "q_3f": Parameter("1", "damping beyond the third knee over that before it, front", False),
+    "q_3r": Parameter("1", "damping beyond the third knee over that before it, rear", False),
     "p_f": Parameter(
         "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
     ),
@@ -199,9 +209,12 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
     "seat-load": ("w_l", "c_l"),
     "friction": ("F_f", "F_r", "s_f", "s_r"),
+    "load-friction": ("u_f", "u_r"),
     "rebound": ("r_f", "r_r"),
     "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
     "rounded-knee": ("w_kf", "w_kr"),
+    "second-knee": ("v_2f", "v_2r", "q_2f", "q_2r"),
+    "third-knee": ("v_3f", "v_3r", "q_3f", "q_3r"),
     "progressive": ("p_f", "p_r"),
     "air": ("e_f", "e_r"),
     "levelled-air": ("e_lf", "e_lr", "g_f", "g_r"),
@@ -213,11 +226,14 @@ EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 """The parameters that each extra may add; see `parameters_of_term`."""
 
 _INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"}) | {
+    "v_2f", "v_2r", "v_3f", "v_3r",
     "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_l"
 }  # fmt: skip
 """Parameters of extras without effect where the others of the extra are neutral."""
 
-_FACTORS = frozenset({"r_f", "r_r", "q_f", "q_r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"})
+_FACTORS = frozenset(
+    {"r_f", "r_r", "q_f", "q_r", "q_2f", "q_2r", "q_3f", "q_3r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"}
+)
 
 NEUTRAL: Mapping[str, float] = {
     name: math.inf if PARAMETERS[name].vanishes_at_infinity else float(name in _FACTORS)

@@ -45,11 +45,15 @@ class Vehicle:
         Anti-roll bars, N per metre of left-right difference in suspension travel.
     F_f, F_r, s_f, s_r
         Dry friction of each suspension, N, and its presliding stiffness, N/m.
+    u_f, u_r
+        Growth of this friction with the load, over the weight that the wheel carries of it.
     r_f, r_r
         Rebound damping over compression damping; c_s is then that of compression.
     v_kf, v_kr, q_f, q_r, w_kf, w_kr
         Velocity at which the damper curves have their knee, m/s, the damping beyond it over that before it, and half the width
         over which it is rounded, m/s.
+    v_2f, v_2r, q_2f, q_2r, v_3f, v_3r, q_3f, q_3r
+        Velocities of a second and a third knee, m/s, and the damping beyond each over that before it.
     p_f, p_r
         Growth of the spring rates with compression, as a part of them per metre.
     e_f, e_r
@@ -139,6 +143,8 @@ class Vehicle:
     F_r: float = 0.0
     s_f: float = 1e6
     s_r: float = 1e6
+    u_f: float = 0.0
+    u_r: float = 0.0
     r_f: float = 1.0
     r_r: float = 1.0
     v_kf: float = 1.0
@@ -147,6 +153,14 @@ class Vehicle:
     q_r: float = 1.0
     w_kf: float = 0.0
     w_kr: float = 0.0
+    v_2f: float = 1.0
+    v_2r: float = 1.0
+    q_2f: float = 1.0
+    q_2r: float = 1.0
+    v_3f: float = 1.0
+    v_3r: float = 1.0
+    q_3f: float = 1.0
+    q_3r: float = 1.0
     p_f: float = 0.0
     p_r: float = 0.0
     e_f: float = 0.0
