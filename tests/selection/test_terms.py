@@ -9,7 +9,7 @@ from sprung.selection import SEPARATE_TRACKS, TERMS, ModelTerm, choose_structure
 from sprung.selection.starts import neutral_values, start_values
 from sprung.selection.structure import SEAT_LOAD
 from sprung.simulation import simulate
-from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, PARAMETERS, TABLE_1_CAR, Tracks
+from sprung.vehicle import EXTRAS, LINEAR_EXTRAS, PARAMETERS, REFINED, TABLE_1_CAR, Tracks
 
 ROWS = pytest.mark.parametrize("term", TERMS.values(), ids=TERMS)
 
@@ -30,7 +30,8 @@ def test_a_term_that_is_absent_has_no_size_and_one_that_begins_has_what_its_fit_
     people = {"name": "people", "items": [{"mass": 75.0, "position": (-1.0, 0.0, 0.6), "on": "seat"}]}
     loads = [people] if term.name == SEAT_LOAD else []
     campaign = simulate(TABLE_1_CAR, loads=loads, rate=250.0, noise=0.02, seed=1)
-    terms = () if term.name == SEPARATE_TRACKS else tuple(name for name in (term.refines, term.name) if name)
+    refined = REFINED.get(term.refines, "")
+    terms = () if term.name == SEPARATE_TRACKS else tuple(name for name in (refined, term.refines, term.name) if name)
     structure = choose_structure(campaign, tracks, terms)
     values = neutral_values(structure, TABLE_1_CAR.parameters)
     assert tuple(values) == structure.names
