@@ -91,11 +91,17 @@ def plan(
         Optional[float],  # noqa: UP045 (typer reads it)
         typer.Option(max=1e3, help="Sensor noise, m/s² root-mean-square, for a vehicle file (default: 0.02)."),
     ] = None,
+    terms: Annotated[
+        bool,
+        typer.Option(
+            "--terms", help="Add which sizes of mounts, knees, friction and other model terms would be found."
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Plan the next measurement: expected uncertainties from a test and from its alternatives."""
     with working("reading") as progress:
-        planned = sprung.plan(source, wanted=wanted, rate=rate, noise=noise, progress=progress)
+        planned = sprung.plan(source, wanted=wanted, rate=rate, noise=noise, terms=terms, progress=progress)
     if as_json:
         say_json(planned.document())
     else:

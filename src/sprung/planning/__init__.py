@@ -2,6 +2,7 @@
 
 from sprung.planning.completed import completed_test, setup_from_fit
 from sprung.planning.cramer_rao import CramerRaoBound, two_figures
+from sprung.planning.detectability import TermCandidate, TermDetectability, detect_terms
 from sprung.planning.plan import NextStep, Plan, PlanRow, next_step, tabulate_alternatives, tabulate_rejected
 from sprung.planning.setup import MeasurementSetup, PlannedDrop, PlannedTest
 
@@ -13,7 +14,10 @@ __all__ = [
     "PlanRow",
     "PlannedDrop",
     "PlannedTest",
+    "TermCandidate",
+    "TermDetectability",
     "completed_test",
+    "detect_terms",
     "next_step",
     "setup_from_fit",
     "tabulate_alternatives",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ from sprung.display import shown
 from sprung.errors import InputError, SprungError
 from sprung.planning.alternatives import Alternative, Cost, compute_bound, list_alternatives
 from sprung.planning.cramer_rao import CramerRaoBound, two_figures
+from sprung.planning.detectability import TermDetectability
 from sprung.planning.setup import PlannedTest
 
 if TYPE_CHECKING:
@@ -86,6 +88,8 @@ class Plan:
         The cheapest sufficient step.
     rejected
         Reasons of the verdict where the campaign was rejected.
+    terms
+        By the label of a test, what it would show of each usual model term; empty unless asked for.
     """
 
     vehicle: str
@@ -95,6 +99,7 @@ class Plan:
     rows: tuple[PlanRow, ...]
     next_step: NextStep
     rejected: tuple[str, ...] = ()
+    terms: Mapping[str, tuple[TermDetectability, ...]] = field(default_factory=dict)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the standard uncertainty to expect of each parameter, %, a row for each alternative; NaN: not determined."""
@@ -119,6 +124,7 @@ class Plan:
                 "percent": {} if self.next_step.bound is None else dict(self.next_step.bound.percents),
             },
             "rejected": list(self.rejected),
+            "terms": {label: [_of_term(one) for one in found] for label, found in self.terms.items()},
         }
 
     def _row(self, row: PlanRow) -> dict[str, Any]:
@@ -133,6 +139,13 @@ class Plan:
             "percent": dict(row.bound.percents),
         }
         return {**head, **body, "unidentifiable": unidentifiable}
+
+
+def _of_term(term: TermDetectability) -> dict[str, Any]:
+    beside = term.smallest_beside if math.isfinite(term.smallest_beside) else None
+    smallest = term.smallest if math.isfinite(term.smallest) else None
+    head = {"name": term.name, "usual": term.size, "gain": term.gain, "smallest": smallest}
+    return {**head, "rival": term.rival or None, "smallest_beside": beside}
 
 
 def tabulate_alternatives(test: PlannedTest, wanted: float = 1.0) -> Plan:

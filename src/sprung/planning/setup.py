@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -86,6 +86,8 @@ class MeasurementSetup:
         Of the recording after the release, s.
     inflation
         Factor by which coloured residuals increase the variance of the estimates.
+    delay
+        Of the first sample that is used, after the last lift-off, s.
     """
 
     vehicle: Vehicle
@@ -97,6 +99,7 @@ class MeasurementSetup:
     rate: float
     duration: float = 3.2
     inflation: float = 1.0
+    delay: float = 0.0
 
     def __post_init__(self) -> None:
         invalid = [
@@ -174,8 +177,44 @@ class MeasurementSetup:
         if not drops:
             return np.zeros((self.free.shape[1],) * 2)
         sampling = rate or self.rate
-        names = {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
+        names = _load_names(drops)
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
+        weights = self.rate / sampling / self.noise**2
+        of_parameters = self._objective(decays, names).at(self.values, weights).information
+        directions = self.slopes[:, None] * self.free
+        information: Real = directions.T @ of_parameters @ directions / self.inflation
+        return information
+
+    def unexplained(self, drops: Sequence[PlannedDrop], records: Sequence[Real]) -> float:
+        """Return what the model does not explain of records near those of the vehicle, after one Newton step from it.
+
+        Parameters
+        ----------
+        drops
+            The drops.
+        records
+            Of the samples that `decay_window` states of each, m/s², shape (channel, time).
+
+        Returns
+        -------
+        float
+            Sum of squares over the noise.
+        """
+        names = _load_names(drops)
+        decays = [
+            replace(self._decay(drop, names[drop.load], self.rate), values=record)
+            for drop, record in zip(drops, records, strict=True)
+        ]
+        at, weights = self._objective(decays, names), 1 / self.noise**2
+        found = at.at(self.values, weights)
+        directions = self.slopes[:, None] * self.free
+        information = directions.T @ found.information @ directions + self.prior_information(self.statements)
+        score = directions.T @ found.gradient
+        explained = float(score @ np.linalg.lstsq(information, score, rcond=1e-12)[0])
+        energy = float((found.residual_sums @ weights).sum() + found.penalty)
+        return max(energy - explained, 0.0) / self.inflation
+
+    def _objective(self, decays: Sequence[FreeDecay], names: Mapping[Load, str]) -> ClosedFormObjective:
         heights, wheelbase = self.vehicle.heights, self.vehicle.wheelbase
         elements = seven_degrees_of_freedom(self.tracks, self.extras, heights, wheelbase)
         models = {
@@ -187,16 +226,17 @@ class MeasurementSetup:
             )
             for load, name in names.items()
         }
-        objective = ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names))
-        weights = self.rate / sampling / self.noise**2
-        of_parameters = objective.at(self.values, weights).information
-        directions = self.slopes[:, None] * self.free
-        information: Real = directions.T @ of_parameters @ directions / self.inflation
-        return information
+        return ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names))
+
+    def decay_window(self, drop: PlannedDrop) -> tuple[int, int]:
+        """Return the first sample of a drop's decay, counted from the release, and the number of samples."""
+        fall = drop_from_blocks(self.vehicle, drop.load, drop.wheels, drop.height, duration=self.duration)
+        first = math.ceil((fall.decay_start + self.delay) * self.rate)
+        return first, int(self.duration * self.rate) - first
 
     def _decay(self, drop: PlannedDrop, load: str, rate: float) -> FreeDecay:
         fall = drop_from_blocks(self.vehicle, drop.load, drop.wheels, drop.height, duration=self.duration)
-        first = math.ceil(fall.decay_start * rate)
+        first = math.ceil((fall.decay_start + self.delay) * rate)
         samples = int(self.duration * rate) - first
         if samples < _SHORTEST * rate:
             found = f"{max(samples / rate, 0.0):.2f} s of free vibration within {self.duration:.1f} s of the release"
@@ -214,6 +254,10 @@ class MeasurementSetup:
             start=first / rate,
             rest=unknown_release(len(rows)),
         )
+
+
+def _load_names(drops: Sequence[PlannedDrop]) -> dict[Load, str]:
+    return {load: f"{i}" for i, load in enumerate(dict.fromkeys(drop.load for drop in drops))}
 
 
 @shown

@@ -25,9 +25,19 @@ from sprung.campaign import (
     resolve_campaign,
 )
 from sprung.errors import InputError, Problems
-from sprung.planning import MeasurementSetup, Plan, PlannedDrop, PlannedTest, tabulate_alternatives, tabulate_rejected
+from sprung.planning import (
+    MeasurementSetup,
+    Plan,
+    PlannedDrop,
+    PlannedTest,
+    TermCandidate,
+    TermDetectability,
+    detect_terms,
+    tabulate_alternatives,
+    tabulate_rejected,
+)
 from sprung.progress import Progress, Step, silent
-from sprung.selection import choose_structure
+from sprung.selection import TERMS, choose_structure, required_gain
 from sprung.simulation import SimulationSetup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
@@ -48,6 +58,7 @@ def plan(
     duration: float | None = None,
     known: Mapping[str, KnownValueLike] | None = None,
     model: ModelChoice | Mapping[str, Any] | None = None,
+    terms: bool = False,
     progress: Progress = silent,
 ) -> Plan:
     """Return the expected uncertainties of a test and of its alternatives, and the smallest sufficient one.
@@ -61,7 +72,10 @@ def plan(
         Largest acceptable standard uncertainty of any parameter, %.
     sensors, loads, drops, rate, noise, duration, known, model
         Of the planned test of a vehicle, as for `sprung.simulate`; by default those of the vehicle file, else 500 Hz,
-        0.02 m/s² and 3.2 s. Not for a campaign, which has its own.
+        0.02 m/s² and 3.2 s. Not for a campaign, which has its own. Sensors that are stated are known to
+        their standard uncertainties, as `identify` knows them; those by default are exact.
+    terms
+        Whether the plan says what the test, and the same with blocks twice as high, would show of each usual model term.
     progress
         Called with each step that begins.
 
@@ -91,7 +105,7 @@ def plan(
                 do = f"Leave {name} out, or plan from a vehicle."
                 problems.add(f"plan: {name}", found, "nothing, because a campaign has its own", do)
         problems.raise_if_any()
-        return _plan_further(resolve_campaign(source, progress), wanted, progress)
+        return _plan_further(resolve_campaign(source, progress), wanted, terms, progress)
     if isinstance(source, Vehicle):
         vehicle = source
     else:
@@ -117,6 +131,7 @@ def plan(
         known=known,
         model=model,
         problems=problems,
+        sensor_errors=sensors is not None,
     )
     levels = setup.sensing.noise
     if not (levels > 0).all() and not any("noise" in problem.where for problem in problems):
@@ -148,14 +163,14 @@ def plan(
         own if setup.model.extras is None else None,
     )
     measurement = MeasurementSetup(
-        vehicle, choice.tracks, choice.terms, choice.known, setup.sensing.sensors, levels, rate, duration
+        vehicle, choice.tracks, choice.terms, choice.known, choice.sensors, levels, rate, duration
     )
     loaded = {load.name: load for load in setup.loads}
     planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
-    return tabulate_alternatives(PlannedTest(measurement, planned), wanted)
+    return _tabulated(PlannedTest(measurement, planned), wanted, terms, progress)
 
 
-def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan:
+def _plan_further(campaign: Campaign, wanted: float, terms: bool, progress: Progress) -> Plan:
     """Identify a vehicle, and return the plan of the next measurement."""
     run = analyse(campaign, AnalysisOptions(), progress)
     result = result_of(run)
@@ -163,7 +178,38 @@ def _plan_further(campaign: Campaign, wanted: float, progress: Progress) -> Plan
         rate = float(np.median([decay.rate for decay in run.decays]))
         return tabulate_rejected(campaign.name, wanted, result.fit.noise, rate, result.verdict.reasons)
     progress(Step("computing the bounds of the alternatives"))
-    return tabulate_alternatives(to_design(run), wanted)
+    return _tabulated(to_design(run), wanted, terms, progress)
+
+
+def _tabulated(test: PlannedTest, wanted: float, terms: bool, progress: Progress) -> Plan:
+    """Return the plan of a test, with what it would show of model terms where that is wanted."""
+    plan = tabulate_alternatives(test, wanted)
+    if not terms:
+        return plan
+    progress(Step("simulating the drops with each usual model term"))
+    higher = tuple(drop._replace(height=2 * drop.height) for drop in test.drops)
+    found = {plan.rows[0].label: _terms_of(test.setup, test.drops)}
+    try:
+        found["blocks twice as high"] = _terms_of(test.setup, higher)
+    except InputError as error:  # the recording ends before a vehicle that falls so far has come to rest
+        progress(Step(f"blocks twice as high: {error.problems[0].found}"))
+    return replace(plan, terms=found)
+
+
+def _terms_of(setup: MeasurementSetup, drops: Sequence[PlannedDrop]) -> tuple[TermDetectability, ...]:
+    """Return what drops would show of every term that most vehicles have and that the planned model has not."""
+    own, samples = setup.vehicle.parameters, setup.duration * setup.rate * len(drops) * len(setup.sensors)
+    structure = choose_structure(Campaign(name=setup.vehicle.name, sensors=setup.sensors, drops=()))
+    candidates = []
+    for name, term in TERMS.items():
+        if term.usual is None or term.refines or name in setup.extras:
+            continue
+        values = {} if term.undefined is None else dict(term.undefined(own, structure))
+        values |= term.usual(own, structure)
+        values = {one: values[one] for one in term.parameters(setup.tracks) if one in values}
+        required = required_gain(len(values), len(TERMS), samples)
+        candidates.append(TermCandidate(name, values, term.size({**own, **values}), required))
+    return detect_terms(setup, drops, candidates)
 
 
 def _describes_vehicle(path: str | os.PathLike[str]) -> bool:

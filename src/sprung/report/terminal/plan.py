@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.planning import Plan, PlanRow, two_figures
+from sprung.planning import Plan, PlanRow, TermDetectability, two_figures
 from sprung.report.terminal.layout import hanging_text, render_rows
 
 _FIRST = ("m_s", "I_yy", "I_xx", "k_sf", "k_sr", "c_sf", "c_sr", "m_uf", "m_ur", "k_tf", "k_tr", "a", "b")
@@ -39,7 +40,23 @@ def plan_view(plan: Plan) -> RenderableType:
     reasons = [hanging_text("  - ", reason) for reason in _reasons(plan)]
     if reasons:
         parts += [Text("Not determined", style="bold"), *reasons, Text()]
+    parts += [part for label, found in plan.terms.items() for part in (terms_table(label, found), Text())]
     return Group(*parts, next_line(plan.next_step.text))
+
+
+def terms_table(label: str, terms: Sequence[TermDetectability]) -> RenderableType:
+    """Return the table of the sizes from which the model terms would be found, in percent of what each acts beside."""
+    headers = ("term", "usual", "found from", "most like", "told from it from")
+    rows = [
+        (
+            one.name,
+            *(two_figures(100 * size if math.isfinite(size) else None) for size in (one.size, one.smallest)),
+            one.rival or "-",
+            two_figures(100 * one.smallest_beside if math.isfinite(one.smallest_beside) else None),
+        )
+        for one in terms
+    ]
+    return render_rows(f"Model terms, {label}: size, %", headers, rows, (*headers[1:3], headers[4]))
 
 
 def next_line(text: str) -> RenderableType:
