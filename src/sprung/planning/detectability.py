@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.planning.setup import MeasurementSetup, PlannedDrop
 from sprung.simulation import BlockSupport, drop_from_blocks, simulate_nonlinear_drops
-from sprung.vehicle import NEUTRAL, Motion, Rows, Vehicle, nonlinear_elements
+from sprung.vehicle import NEUTRAL, PARAMETERS, Motion, Rows, Vehicle, nonlinear_elements
 
 Real = NDArray[np.float64]
 
@@ -149,8 +149,8 @@ def _with(vehicle: Vehicle, candidate: TermCandidate, part: float) -> Vehicle:
 
 def _part_of(name: str, usual: float, part: float) -> float:
     neutral = NEUTRAL.get(name)
-    if neutral is None:  # without effect where the others are neutral
-        return usual
+    if neutral is None:  # without effect where the others are neutral: times and travels stay what they are
+        return part * usual if PARAMETERS[name].scales else usual
     return usual / part if math.isinf(neutral) else neutral + part * (usual - neutral)
 
 
