@@ -68,11 +68,11 @@ class TermDetectability:
     gain
         What twice the log-likelihood would gain by the term at that size.
     smallest
-        Size from which the term would be included; infinite where the model imitates it altogether.
+        Size from which the term would be included, dimensionless; infinite where the model imitates it altogether.
     rival
         Another term that imitates most of it; empty where none imitates as much as a tenth.
     smallest_beside
-        Size from which it would be told from that one.
+        Size from which it would be told from that one, dimensionless.
     """
 
     name: str
