@@ -137,9 +137,9 @@ def _models(
     names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
     models = []
     for load in different:
-        carried = load.mass_at_wheels(vehicle.wheelbase)
-        further = stiffened_air_springs(carried, vehicle.tracks, vehicle.extras, vehicle.wheelbase)
-        nonlinear = nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase, carried)
+        at_wheels = load.mass_at_wheels(vehicle.wheelbase)
+        further = stiffened_air_springs(at_wheels, vehicle.tracks, vehicle.extras, vehicle.wheelbase)
+        nonlinear = nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase, at_wheels)
         models.append(
             NonlinearModel.of(elements + further, [*nonlinear, *contact], names, load, vehicle.heights, gravity)
         )
