@@ -49,4 +49,5 @@ def test_damping_of_mounts_is_found_where_it_is(loss: float) -> None:
     )
     for name in ("k_df", "k_dr", *(("c_df", "c_dr") if loss else ())):
         found = result.parameters[name]
+        assert found.std is not None
         assert found.value == pytest.approx(getattr(car, name), abs=4 * found.std)
