@@ -118,6 +118,7 @@ def of_friction(bus: sprung.Vehicle) -> NonlinearModel:
     return NonlinearModel.of(elements, nonlinear_elements(bus.tracks, extras), names)
 
 
+@pytest.mark.long
 def test_dry_friction_lets_frequencies_rise_as_the_motion_dies() -> None:
     """From those of springs and tyres to those of the body on its tyres, the springs held: figures 7 to 9."""
     bus = replace(SCHOOL_BUS, F_f=1000.0, F_r=1500.0, s_f=2e6, s_r=3e6)

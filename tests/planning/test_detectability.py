@@ -39,7 +39,9 @@ def found() -> dict[str, TermDetectability]:
     return {one.name: one for one in detect_terms(setup(), DROPS, (TYRES, RUBBER, FRICTION))}
 
 
-@pytest.mark.parametrize("candidate", [RUBBER, FRICTION], ids=lambda one: one.name)
+@pytest.mark.parametrize(
+    "candidate", [RUBBER, pytest.param(FRICTION, marks=pytest.mark.long)], ids=["zener", "friction"]
+)
 def test_the_gain_is_that_of_fits_with_and_without_the_term(candidate: TermCandidate) -> None:
     """At four times the size from which it is found, sixteen times the gain that is required.
 
@@ -76,6 +78,7 @@ def test_repeats_add_their_gains_and_a_term_is_its_own_rival() -> None:
     assert own.smallest_beside > 100 * own.smallest
 
 
+@pytest.mark.long
 def test_the_plan_states_terms_and_json_has_them() -> None:
     plan = sprung.plan(TABLE_1_CAR, terms=True, known=MASS)
     assert list(plan.terms) == ["as planned", "blocks twice as high"]

@@ -258,7 +258,16 @@ def test_an_undamped_vehicle_has_no_bound() -> None:
 
 def test_the_document_has_everything() -> None:
     document = plain().document()
-    assert document.keys() == {"vehicle", "wanted", "noise", "rate", "alternatives", "next_step", "rejected"}
+    assert document.keys() == {
+        "vehicle",
+        "wanted",
+        "noise",
+        "rate",
+        "alternatives",
+        "next_step",
+        "rejected",
+        "terms",
+    }
     first, second = document["alternatives"][:2]
     assert (first["name"], first["cost"], first["above"], first["percent"]["m_s"]) == ("as planned", None, 11, None)
     assert set(first["unidentifiable"][0]["parameters"]) == SCALED

@@ -38,7 +38,9 @@ def test_what_refines_a_forbidden_term_is_not_looked_for() -> None:
     assert "rounded-knee" in structure.open_terms
 
 
-@pytest.mark.parametrize("loss", [0.0, 60.0], ids=["elastic mounts", "mounts with damping"])
+@pytest.mark.parametrize(
+    "loss", [0.0, pytest.param(60.0, marks=pytest.mark.long)], ids=["elastic mounts", "mounts with damping"]
+)
 def test_damping_of_mounts_is_found_where_it_is(loss: float) -> None:
     """A mount without damping of its own stays one: a fit that lets its damping go negative does not cost the mount."""
     car = replace(TABLE_1_CAR, k_df=12 * TABLE_1_CAR.k_sf, k_dr=12 * TABLE_1_CAR.k_sr, c_df=loss, c_dr=loss)

@@ -53,7 +53,8 @@ def deviations(car: Vehicle, result: sprung.Result) -> dict[str, float]:
     }
 
 
-@pytest.mark.parametrize("extras", [("friction", "load-friction"), pytest.param(None, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("extras", [("friction", "load-friction"), None])
 def test_friction_that_grows_with_the_load_is_selected(extras: tuple[str, ...] | None) -> None:
     """Leaf springs: 2 and 8 % of the load on each front, and rear, wheel; requested, or stated nowhere."""
     car, result = identified(RUBBING | {"u_f": 0.02, "u_r": 0.08}, "empty", "ballast", extras=extras)
@@ -90,6 +91,7 @@ def test_a_second_knee_is_selected_and_shown() -> None:
     assert "second knee" in result.additional_terms
 
 
+@pytest.mark.long
 def test_one_knee_has_no_second_one() -> None:
     _, result = identified(ONE_KNEE, "empty")
     assert result.fit.model == ("damper-curve",)

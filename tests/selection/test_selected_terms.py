@@ -25,7 +25,10 @@ RIGID = {"n_r": 0.7, "m_xr": -12.0}
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
 
-@pytest.mark.parametrize("vehicle", [WITH_ENGINE, replace(WITH_ENGINE, x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2)])
+@pytest.mark.parametrize(
+    "vehicle",
+    [pytest.param(WITH_ENGINE, marks=pytest.mark.long), replace(WITH_ENGINE, x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2)],
+)
 def test_an_engine_is_selected(vehicle: Vehicle) -> None:
     campaign = sprung.simulate(vehicle, loads=[BALLAST], noise=0.02, seed=1)
     result = sprung.identify(campaign)
@@ -122,6 +125,7 @@ def test_friction_is_selected() -> None:
     assert "model terms supported by the data: friction" in result.fit.why
 
 
+@pytest.mark.long
 def test_where_the_missing_term_is_forbidden_no_other_takes_its_place() -> None:
     """Friction of 180 N without a term for it: other nonlinear terms leave too much of the misfit, and are refused."""
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 180.0, "F_r": 140.0, "s_f": 25e4, "s_r": 25e4})

@@ -37,6 +37,7 @@ def test_a_small_motion_is_that_of_the_linear_vehicle_under_any_load() -> None:
     assert sealed_differs > 5 * levelled_differs
 
 
+@pytest.mark.long
 def test_they_are_identified() -> None:
     drops = [
         {"wheels": wheels, "load": load, "height": 0.06}

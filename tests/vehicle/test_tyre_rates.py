@@ -49,6 +49,7 @@ def test_the_rates_at_rest_are_differentiated() -> None:
     np.testing.assert_array_equal(with_tyre_rates_at_rest(model, values)[unchanged], values[unchanged])
 
 
+@pytest.mark.long
 def test_they_are_identified_from_drops_in_which_they_leave_the_ground() -> None:
     """Truth and simulation are of the same model here; docs/studies/real_cars.py has tyres of another program."""
     drops = [

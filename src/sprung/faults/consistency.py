@@ -96,6 +96,11 @@ def largest_expected_gain(campaign: Campaign, decays: Sequence[FreeDecay], fit: 
     ----------
     campaign, decays, fit
         As for `consistency_of`.
+
+    Returns
+    -------
+    float
+        0 where nothing is indicated.
     """
     scores, corners = _scores(campaign, decays, fit)
     return max([0.0 if corners is None else corners.raw_gain, *(score.gain for score in scores)])

@@ -132,7 +132,13 @@ class Hypothesis:
         return cost - gain + free * float(np.log(max(self.table.counts.sum(), 1.0)))
 
     def overlaps(self, other: Hypothesis) -> bool:
-        """Whether two hypotheses are about a common drop or channel."""
+        """Whether two hypotheses are about a common drop or channel.
+
+        Parameters
+        ----------
+        other
+            Another hypothesis.
+        """
         own, others = (set(each.fault.where.replace(": ", ", ").split(", ")) for each in (self, other))
         return bool(own & others)
 

@@ -249,14 +249,24 @@ def _confirm_best(
 
 
 def _likeliest_alike(base: CandidateFit, confirmed: Hypothesis, alike: Sequence[Hypothesis]) -> tuple[Hypothesis, int]:
-    """Fit what is the same as a convincing hypothesis to the first order, such as a low-pass for a delay.
+    """Fit what is the same as a convincing hypothesis to the first order, such as a low-pass for a delay: the best of each.
 
-    The first hypothesis stays unless another one is significantly more likely, both with their numbers where they gain most.
+    What all are to the first order, a delay, stays unless another one is significantly more likely, both with their numbers
+    where they gain most.
     """
-    pairs = [hypothesis.confirm(base) for hypothesis in alike]
-    limit = _converged_score(confirmed) - SIGNIFICANT * confirmed.candidate.fit.overdispersion
-    others = [one for one, _ in pairs if one is not None and _converged_score(one) < limit]
-    return min(others, key=_converged_score, default=confirmed), sum(made for _, made in pairs)
+    codes = {one.fault.code for one in alike} - {confirmed.fault.code}
+    rivals = [
+        min((one for one in alike if one.fault.code == code), key=lambda one: one.score()) for code in sorted(codes)
+    ]
+    pairs = [rival.confirm(base) for rival in rivals]
+    found = [confirmed, *(one for one, _ in pairs if one is not None)]
+    scores = [_converged_score(one) for one in found]
+    limit = min(scores) + SIGNIFICANT * confirmed.candidate.fit.overdispersion
+    plain = [
+        one for one, score in zip(found, scores, strict=True) if one.fault.code == one.first_order and score < limit
+    ]
+    likeliest = plain[0] if plain else found[int(np.argmin(scores))]
+    return likeliest, sum(made for _, made in pairs)
 
 
 def _converged_score(hypothesis: Hypothesis) -> float:

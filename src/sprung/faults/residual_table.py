@@ -171,6 +171,10 @@ def is_explained(decays: Sequence[FreeDecay], optimum: FitResult) -> bool:
     ----------
     decays, optimum
         As for `reference_noise`.
+
+    Returns
+    -------
+    bool
     """
     return residual_table([decay.file for decay in decays], decays, optimum).is_explained(
         reference_noise(decays, optimum)

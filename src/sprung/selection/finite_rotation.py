@@ -93,7 +93,7 @@ def _loses_much(search: ModelSearch, assumption: _Assumption) -> bool:
     if part > _PART:
         return False
     before = replace(search, decays=thin).refit(search.structure, most=0)
-    after = _corrected(before, thin, assumption, passes=1, most=0)
+    after = _corrected(before, thin, assumption, passes=1, most=_FIRST_ITERATIONS)
     expected = [2 * one.fit.loglikelihood + one.fit.remaining_gain for one in (before, after)]
     return expected[1] - expected[0] < -search.required_of_switch
 
