@@ -242,17 +242,22 @@ def _confirm_best(
             continue
         rest.append(confirmed)
         if _is_convincing(base, confirmed, rest):
-            alike = [one for one in remaining if one.first_order == best.first_order and one.concerns_same(best)]
+            limit = confirmed.score() + SIGNIFICANT * confirmed.candidate.fit.overdispersion
+            alike = [
+                one
+                for one in remaining
+                if one.concerns_same(best) and (one.first_order == best.first_order or one.score() < limit)
+            ]
             likeliest, more = _likeliest_alike(base, confirmed, alike)
             return likeliest, [*rest, likeliest], fits + more
     return None, rest, fits
 
 
 def _likeliest_alike(base: CandidateFit, confirmed: Hypothesis, alike: Sequence[Hypothesis]) -> tuple[Hypothesis, int]:
-    """Fit what is the same as a convincing hypothesis to the first order, such as a low-pass for a delay: the best of each.
+    """Fit what may be meant by a convincing hypothesis as well: the best of each code.
 
-    What all are to the first order, a delay, stays unless another one is significantly more likely, both with their numbers
-    where they gain most.
+    What all are to the first order, a delay instead of a low-pass, stays unless another one is significantly more likely, both
+    with their numbers where they gain most.
     """
     codes = {one.fault.code for one in alike} - {confirmed.fault.code}
     rivals = [
