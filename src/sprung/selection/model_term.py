@@ -42,6 +42,8 @@ class ModelTerm:
         Size, dimensionless, below which it changes nothing in practice: it is left out, however significant.
     explains_all
         Whether it resembles many a fault of sensors and loads, so that it has to explain the whole misfit.
+    is_stationary
+        Whether it does nothing to first order where it is neutral: its score says nothing there.
     resembles_others
         Whether records of a vehicle with it resemble those of every other term, so that it is tried first.
     usual
@@ -71,6 +73,7 @@ class ModelTerm:
     negligible: float
     description: TermDescription
     explains_all: bool = False
+    is_stationary: bool = False
     resembles_others: bool = False
     usual: StartValues | None = None
     held: str = ""

@@ -14,9 +14,9 @@ from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.stepwise import rank_terms, select_further_terms, try_term
+from sprung.selection.stepwise import rank_terms, select_further_terms, try_likeliest
 from sprung.selection.structure import ModelStructure
-from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gravity_leakage
+from sprung.selection.term_fits import fit_term, select_gravity_leakage
 from sprung.selection.terms import TERMS
 
 _TRIED_FIRST = 3
@@ -83,15 +83,6 @@ def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str])
 
 
 def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
-    """Add the nonlinear term that explains the beginnings of the decays best after some steps, and further ones beside it.
-
-    Scores tell terms apart that act at different places, not laws of the same spring.
-    """
-    first = {term: begin_nonlinear_fit(base, base.with_terms([term])) for term in terms}
-    likeliest = max(terms, key=lambda term: first[term].loglikelihood)
-    for term in terms:
-        if term != likeliest:
-            against = f"{likeliest} explains the beginnings of the decays better"
-            base = base.recorded({term: 0.0}, True, False, against)
-    found = try_term(base, likeliest, first=first[likeliest])
+    """Add the likeliest of some nonlinear terms, and further ones beside it."""
+    found = try_likeliest(base, terms)
     return select_further_terms(found) if found.structure.names != base.structure.names else found

@@ -30,9 +30,6 @@ width of its rounding as a part of the velocity."""
 _NEXT_KNEE = 2.5
 """Velocity of a further knee over that of the one before, at the start of a fit."""
 
-_LOAD_FRICTION = 0.03
-"""Friction per weight carried at the start of a fit: coil springs on struts have 0.01 to 0.03, leaf springs 0.03 to 0.1."""
-
 _REBOUND, _TYRE_GROWTH = 0.8, 0.2
 """Usual excess of rebound over compression damping, and growth of a tyre's rate."""
 
@@ -90,7 +87,6 @@ NONLINEAR_TERMS = (
             ((lambda p, axle: 100 * p[f"u_{axle}"], "%"),),
             again="by {0} on each {axle} wheel",
         ),
-        first=lambda _, __: {"u_f": _LOAD_FRICTION, "u_r": _LOAD_FRICTION},
     ),
     ModelTerm(
         "rebound",
@@ -132,6 +128,7 @@ NONLINEAR_TERMS = (
             ((lambda p, axle: p[f"w_k{axle}"], "m/s"),),
             again="{axle} ones over {0}",
         ),
+        is_stationary=True,
         first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
     ),
     _further_knee(2, "second", "k", ""),

@@ -84,16 +84,15 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
         _, scores = score_terms(search, terms)
         ratios = {
-            # Where a rounding is neutral it does nothing to first order: its score says nothing.
             term: np.inf
-            if TERMS[term].refines and TERMS[term].first is not None
+            if TERMS[term].is_stationary
             else scores[term][0] / (search.required(term) * search.overdispersion)
             for term in terms
         }
         best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
         if best and np.isinf(ratios[best[0]]):
             best = [term for term in terms if TERMS[term].refines == TERMS[best[0]].refines]
-            search, accepted = accept_best(search, best)
+            search = try_likeliest(search, best)
             tried |= set(best)
             continue
         tried |= set(best)
@@ -147,20 +146,27 @@ def accept_first(search: ModelSearch, terms: Sequence[str], among: Sequence[str]
     return search, False
 
 
-def accept_best(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, bool]:
-    """Fit terms, each from the same model; accept the likeliest, and say whether one was."""
-    found, chosen = search, ""
-    for term in terms:
-        tried = try_term(replace(search, steps=found.steps), term)
-        if tried.structure.names == search.structure.names:
-            found = replace(found, steps=tried.steps)
-        elif chosen and tried.delta_bic(found) <= 0:
-            gain = {term: tried.gain_over(search)}
-            found = replace(found, steps=tried.steps).recorded(gain, True, False, f"{chosen} explains more")
-        else:
-            gain = {chosen: found.gain_over(search)} if chosen else {}
-            found, chosen = tried.recorded(gain, True, False, f"{term} explains more"), term
-    return found, bool(chosen)
+def try_likeliest(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+    """Try the one of several terms that explains the beginnings of the decays best after some steps.
+
+    Scores tell terms apart that act at different places, not laws of the same part.
+
+    Parameters
+    ----------
+    search
+        The present model.
+    terms
+        Nonlinear ones.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    first = {term: begin_nonlinear_fit(search, search.with_terms([term])) for term in terms}
+    likeliest = max(terms, key=lambda term: first[term].loglikelihood)
+    against = f"{likeliest} explains the beginnings of the decays better"
+    others = dict.fromkeys((term for term in terms if term != likeliest), 0.0)
+    return try_term(search.recorded(others, True, False, against), likeliest, first=first[likeliest])
 
 
 def try_term(
