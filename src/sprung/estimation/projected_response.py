@@ -41,10 +41,17 @@ def amplitude_prior(modes: ModalSolution) -> Complex:
 
 
 def inverse_of(normal: Complex) -> Complex:
-    """Return the inverse of normal equations of amplitudes, which may differ by orders of magnitude; (..., mode, mode)."""
+    """Return the inverse of normal equations of amplitudes, which may differ by orders of magnitude; (..., mode, mode).
+
+    Of two modes that coincide the records determine the sum of both amplitudes: the pseudo-inverse gives each one half.
+    """
     scale = 1 / np.sqrt(np.diagonal(normal, axis1=1, axis2=2).real)
     both = scale[:, :, None] * scale[:, None, :]
-    return np.asarray(np.linalg.inv(normal * both), dtype=np.complex128) * both
+    try:
+        inverse = np.linalg.inv(normal * both)
+    except np.linalg.LinAlgError:
+        inverse = np.linalg.pinv(normal * both, hermitian=True)
+    return np.asarray(inverse, dtype=np.complex128) * both
 
 
 @dataclass(frozen=True, eq=False)
