@@ -30,6 +30,9 @@ _SPREADS: Mapping[str, float] = {
 """Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
 name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
 
+_FAR = 4.0
+"""Standard deviations of its logarithm by which no parameter of an ordinary vehicle is off."""
+
 _ITERATIONS = 22
 """Of a fit from an ordinary vehicle, at the most."""
 
@@ -68,6 +71,22 @@ def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[
         if name.startswith(start)
     }
     return values, usual | usual_sizes(structure, values)
+
+
+def is_ordinary(search: ModelSearch) -> bool:
+    """Whether the present fit is a vehicle as there are many: no parameter of the plain one is far from its usual value.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    """
+    _, usual = ordinary_vehicle(search.structure.with_terms(()))
+    values = {name: max(search.fit.parameters[name], 0.0) for name in usual if name in search.fit.parameters}
+    return all(
+        usual[name].value / usual[name].spread ** _FAR < value < usual[name].value * usual[name].spread ** _FAR
+        for name, value in values.items()
+    )
 
 
 def usual_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[str, UsualValue]:

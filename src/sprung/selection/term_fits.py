@@ -14,7 +14,7 @@ from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import ENGINE
-from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle
+from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_ordinary
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
@@ -109,7 +109,7 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
     """Fit a model with one more linear term, from where the fit without it ended.
 
     An engine, without which all may be wrong, is fitted from nothing as well, unless nothing but noise is left; and where much
-    is left, any term from an ordinary vehicle: the fit without it may have ended anywhere.
+    is left and the fit without it is a vehicle that nobody would recognise, any term from an ordinary one.
     """
     search.progress(Step(f"fitting with {term}"))
     larger = search.with_terms([term])
@@ -119,7 +119,7 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
         sensors, known = larger.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
-    if search.is_misfit_large:
+    if search.is_misfit_large and not is_ordinary(search):
         ends.append(fit_from_ordinary_vehicle(search, larger))
     return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))
 
