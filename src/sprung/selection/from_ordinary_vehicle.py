@@ -14,6 +14,7 @@ from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import BENDING, TWIST
 from sprung.selection.ordinary_vehicle import (
+    ITERATIONS,
     fit_from_ordinary_vehicle,
     held_sizes,
     ordinary_vehicle,
@@ -25,8 +26,8 @@ from sprung.selection.stepwise import select_further_terms
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 
-_FIRST_ITERATIONS, _ITERATIONS = 8, 22
-"""Of the fit of the ordinary vehicle: after the first it has to have explained some of the misfit, and then at the most."""
+_FIRST_ITERATIONS = 8
+"""After which the fit of the ordinary vehicle has to have explained some of the misfit."""
 
 
 def select_flexible_body(search: ModelSearch) -> ModelSearch:
@@ -107,7 +108,7 @@ def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | No
     if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
         return None
     if not found.fit.converged:
-        found = found.refit(held, _ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+        found = found.refit(held, ITERATIONS, beginning_only=True, enough=search.required_of_switch)
     return replace(found, structure=replace(rich, usual=usual_sizes(rich, values)))
 
 
@@ -129,4 +130,4 @@ def _without_unneeded(search: ModelSearch) -> ModelSearch:
         for term in unneeded:
             search = search.recorded({term: gains[term]}, True, False, against[term])
         kept = tuple(term for term in search.structure.terms if not {term, TERMS[term].refines} & {*unneeded})
-        search = search.refit(search.structure.with_terms(kept), _ITERATIONS, beginning_only=True)
+        search = search.refit(search.structure.with_terms(kept), ITERATIONS, beginning_only=True)

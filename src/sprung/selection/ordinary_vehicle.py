@@ -33,7 +33,7 @@ name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, S
 _FAR = 4.0
 """Standard deviations of its logarithm by which no parameter of an ordinary vehicle is off."""
 
-_ITERATIONS = 22
+ITERATIONS = 22
 """Of a fit from an ordinary vehicle, at the most."""
 
 _HELD = 1.1
@@ -136,5 +136,5 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     """
     values, _ = ordinary_vehicle(structure)
     models, sensors, known = structure.linear_models, structure.sensors, structure.known
-    fit = fit_linear(search.decays, models, sensors, known, start=values, enough=NEAR, most=_ITERATIONS)
+    fit = fit_linear(search.decays, models, sensors, known, start=values, enough=NEAR, most=ITERATIONS)
     return replace(search, structure=structure, fit=fit.after(search.fit))

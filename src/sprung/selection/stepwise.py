@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
@@ -82,20 +80,17 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         if not search.structure.is_nonlinear or not search.is_overdispersed:
             break
         terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
-        _, scores = score_terms(search, terms)
-        ratios = {
-            term: np.inf
-            if TERMS[term].is_stationary
-            else scores[term][0] / (search.required(term) * search.overdispersion)
-            for term in terms
-        }
-        best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
-        if best and np.isinf(ratios[best[0]]):
-            best = [term for term in terms if TERMS[term].refines == TERMS[best[0]].refines]
-            search = try_likeliest(search, best)
-            tried |= set(best)
+        # No score tells anything of a stationary term: it is fitted, and so are those that refine the same.
+        refined = {TERMS[term].refines for term in terms if TERMS[term].is_stationary}
+        rivals = [term for term in terms if TERMS[term].refines in refined]
+        if rivals:
+            search = try_likeliest(search, rivals)
+            tried |= {*rivals}
             continue
-        tried |= set(best)
+        _, scores = score_terms(search, terms)
+        ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
+        best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
+        tried |= {*best}
         search, accepted = accept_first(search, best)
         if not accepted:
             break

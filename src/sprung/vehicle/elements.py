@@ -364,7 +364,7 @@ def _elements_of_the_body(extras: Collection[str], wheelbase: float) -> Iterator
             yield from _attached_mass("o", kinematics.seats(side, wheelbase), kinematics.occupants(side), 0.5)
     # Modal masses and rates are those for the angle between the axles and for the rise of the middle.
     for term, mass, index, row, size in (
-        ("twist", "I_w", "w", kinematics.twist(), wheelbase**2),
+        ("twist", "I_w", "w", kinematics.torsion(), wheelbase**2),
         ("bending", "m_v", "v", kinematics.bending(), kinematics.sag(wheelbase) ** 2),
     ):
         if term in extras:

@@ -200,8 +200,8 @@ def roll() -> Row:
     return Row({"phi": 1.0}, {"a_w": {"q_w": 1.0}})
 
 
-def twist() -> Row:
-    """Twist of the body, rad/m."""
+def torsion() -> Row:
+    """Torsion of the body, rad/m."""
     return Row({"q_w": 1.0})
 
 
