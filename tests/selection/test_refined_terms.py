@@ -8,7 +8,10 @@ import pytest
 
 import sprung
 from sprung.errors import InputError
-from sprung.selection import choose_structure
+from sprung.estimation import fit_linear
+from sprung.preprocess import prepare
+from sprung.selection import ModelSearch, choose_structure
+from sprung.selection.backward_elimination import leave_out_refused
 from sprung.simulation import simulate
 from sprung.vehicle import REFINED, TABLE_1_CAR
 
@@ -36,6 +39,17 @@ def test_what_refines_a_forbidden_term_is_not_looked_for() -> None:
     structure = choose_structure(replace(campaign, model=forbids))
     assert not {"damper-mount", "mount-damping"} & {*structure.open_terms}
     assert "rounded-knee" in structure.open_terms
+
+
+def test_what_refines_a_refused_term_goes_with_it() -> None:
+    """A curve whose slope does not change at its knee is none, and its knee has no rounding."""
+    campaign = simulate(TABLE_1_CAR, rate=250.0, noise=0.02, seed=1, known={"total_mass": TABLE_1_CAR.total_mass})
+    plain, decays = choose_structure(campaign), prepare(campaign).decays
+    fit = fit_linear(decays, plain.linear_models, plain.sensors, plain.known)
+    curved = plain.with_terms(("damper-curve", "rounded-knee"))
+    search = ModelSearch(plain, fit, decays).refit(curved, most=0)
+    assert search.selected == ["damper-curve", "rounded-knee"]
+    assert leave_out_refused(search).selected == []
 
 
 @pytest.mark.parametrize(

@@ -39,7 +39,8 @@ def leave_out_refused(search: ModelSearch) -> ModelSearch:
     ModelSearch
     """
     for term in search.selected:
-        if against := search.veto(term):
+        # What refines a term goes with it.
+        if term in search.selected and (against := search.veto(term)):
             search = search.recorded({term: search.wald_gain(term)}, True, False, against)
             search = search.refit(search.without(term))
     return search
