@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -113,12 +114,13 @@ def detect_terms(
         If the vehicle cannot be dropped so, or does not come to rest on its tyres in time.
     """
     setup = replace(setup, delay=setup.delay + _SETTLED)
-    plain = _readings(setup, setup.vehicle, drops)
+    windows = [setup.decay_window(drop) for drop in drops]
+    plain = _readings(setup, setup.vehicle, drops, windows)
     parts = [_PART] * len(candidates)
     for _ in range(2):
         vehicles = [_with(setup.vehicle, one, part) for one, part in zip(candidates, parts, strict=True)]
         differences = [
-            [moved - still for moved, still in zip(_readings(setup, vehicle, drops), plain, strict=True)]
+            [moved - still for moved, still in zip(_readings(setup, vehicle, drops, windows), plain, strict=True)]
             for vehicle in vehicles
         ]
         products = _unimitated(setup, drops, plain, differences) / np.outer(parts, parts)
@@ -154,15 +156,16 @@ def _part_of(name: str, usual: float, part: float) -> float:
     return usual / part if math.isinf(neutral) else neutral + part * (usual - neutral)
 
 
-def _readings(setup: MeasurementSetup, vehicle: Vehicle, drops: Sequence[PlannedDrop]) -> list[Real]:
-    """Return the accelerations at the sensors in the decay of each drop, m/s², shape (channel, time)."""
+def _readings(
+    setup: MeasurementSetup, vehicle: Vehicle, drops: Sequence[PlannedDrop], windows: Sequence[tuple[int, int]]
+) -> list[Real]:
+    """Return the accelerations at the sensors in a window of each drop, m/s², shape (channel, time)."""
     names = tuple(vehicle.parameters)
     rows = Rows.of([sensor.row for sensor in setup.sensors], names).at(list(vehicle.parameters.values()))
-    readings = []
-    for drop, motion in zip(drops, _motions(setup, vehicle, drops), strict=True):
-        first, samples = setup.decay_window(drop)
-        readings.append(rows @ motion.acceleration[:, first : first + samples])
-    return readings
+    return [
+        rows @ motion.acceleration[:, first : first + samples]
+        for motion, (first, samples) in zip(_motions(setup, vehicle, drops), windows, strict=True)
+    ]
 
 
 def _motions(setup: MeasurementSetup, vehicle: Vehicle, drops: Sequence[PlannedDrop]) -> list[Motion]:
@@ -181,20 +184,20 @@ def _unimitated(
     """Return the inner products of what the model does not imitate of the differences, over the noise, shape (term, term)."""
     # Small beside the motion itself, the differences change neither initial states nor information by which they are judged.
     factors = [_SMALL * math.sqrt(_energy(plain) / max(_energy(one), np.finfo(float).tiny)) for one in differences]
-
-    def energy(first: int, second: int | None = None) -> float:
-        records = [record + factors[first] * one for record, one in zip(plain, differences[first], strict=True)]
-        if second is not None:
-            records = [a + factors[second] * b for a, b in zip(records, differences[second], strict=True)]
-        return setup.unexplained(drops, records)
-
-    count = len(differences)
-    products = np.diag([energy(i) for i in range(count)])
-    for i in range(count):
-        for j in range(i):
-            # The energy of a sum tells the inner product.
-            products[i, j] = products[j, i] = (energy(i, j) - products[i, i] - products[j, j]) / 2
+    small = [[factor * one for one in difference] for factor, difference in zip(factors, differences, strict=True)]
+    alone = [_sums(plain, one) for one in small]
+    pairs = list(combinations(range(len(small)), 2))
+    together = [_sums(alone[i], small[j]) for i, j in pairs]
+    own, of_pairs = np.split(setup.unexplained(drops, [*alone, *together]), [len(small)])
+    products = np.diag(own)
+    for (i, j), energy in zip(pairs, of_pairs, strict=True):
+        # The energy of a sum tells the inner product.
+        products[i, j] = products[j, i] = (energy - own[i] - own[j]) / 2
     return np.asarray(products / np.outer(factors, factors), dtype=np.float64)
+
+
+def _sums(records: Sequence[Real], others: Sequence[Real]) -> list[Real]:
+    return [record + other for record, other in zip(records, others, strict=True)]
 
 
 def _energy(records: Sequence[Real]) -> float:

@@ -20,7 +20,7 @@ from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints
 from sprung.preprocess import FreeDecay, unknown_release
-from sprung.simulation import drop_from_blocks
+from sprung.simulation import DropMotion, drop_from_blocks
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     LinearModel,
@@ -185,34 +185,36 @@ class MeasurementSetup:
         information: Real = directions.T @ of_parameters @ directions / self.inflation
         return information
 
-    def unexplained(self, drops: Sequence[PlannedDrop], records: Sequence[Real]) -> float:
+    def unexplained(self, drops: Sequence[PlannedDrop], alternatives: Sequence[Sequence[Real]]) -> Real:
         """Return what the model does not explain of records near those of the vehicle, after one Newton step from it.
 
         Parameters
         ----------
         drops
             The drops.
-        records
-            Of the samples that `decay_window` states of each, m/s², shape (channel, time).
+        alternatives
+            Each a record of every drop, of the samples that `decay_window` states, m/s², shape (channel, time).
 
         Returns
         -------
-        float
-            Sum of squares over the noise.
+        ndarray
+            Sum of squares over the noise of each alternative, shape (alternative,).
         """
         names = _load_names(drops)
-        decays = [
-            replace(self._decay(drop, names[drop.load], self.rate), values=record)
-            for drop, record in zip(drops, records, strict=True)
-        ]
-        at, weights = self._objective(decays, names), 1 / self.noise**2
-        found = at.at(self.values, weights)
+        decays = [self._decay(drop, names[drop.load], self.rate) for drop in drops]
+        objective, weights = self._objective(decays, names), 1 / self.noise**2
         directions = self.slopes[:, None] * self.free
-        information = directions.T @ found.information @ directions + self.prior_information(self.statements)
-        score = directions.T @ found.gradient
-        explained = float(score @ np.linalg.lstsq(information, score, rcond=1e-12)[0])
-        energy = float((found.residual_sums @ weights).sum() + found.penalty)
-        return max(energy - explained, 0.0) / self.inflation
+        stated = self.prior_information(self.statements)
+        left = []
+        for records in alternatives:
+            recorded = [replace(decay, values=record) for decay, record in zip(decays, records, strict=True)]
+            found = objective.with_decays(recorded).at(self.values, weights)
+            information = directions.T @ found.information @ directions + stated
+            score = directions.T @ found.gradient
+            explained = float(score @ np.linalg.lstsq(information, score, rcond=1e-12)[0])
+            energy = float((found.residual_sums @ weights).sum() + found.penalty)
+            left.append(max(energy - explained, 0.0) / self.inflation)
+        return np.array(left)
 
     def _objective(self, decays: Sequence[FreeDecay], names: Mapping[Load, str]) -> ClosedFormObjective:
         heights, wheelbase = self.vehicle.heights, self.vehicle.wheelbase
@@ -230,14 +232,18 @@ class MeasurementSetup:
 
     def decay_window(self, drop: PlannedDrop) -> tuple[int, int]:
         """Return the first sample of a drop's decay, counted from the release, and the number of samples."""
-        fall = drop_from_blocks(self.vehicle, drop.load, drop.wheels, drop.height, duration=self.duration)
-        first = math.ceil((fall.decay_start + self.delay) * self.rate)
-        return first, int(self.duration * self.rate) - first
+        return self._window(self._fall(drop), self.rate)
+
+    def _fall(self, drop: PlannedDrop) -> DropMotion:
+        return drop_from_blocks(self.vehicle, *drop, duration=self.duration)
+
+    def _window(self, fall: DropMotion, rate: float) -> tuple[int, int]:
+        first = math.ceil((fall.decay_start + self.delay) * rate)
+        return first, int(self.duration * rate) - first
 
     def _decay(self, drop: PlannedDrop, load: str, rate: float) -> FreeDecay:
-        fall = drop_from_blocks(self.vehicle, drop.load, drop.wheels, drop.height, duration=self.duration)
-        first = math.ceil((fall.decay_start + self.delay) * rate)
-        samples = int(self.duration * rate) - first
+        fall = self._fall(drop)
+        first, samples = self._window(fall, rate)
         if samples < _SHORTEST * rate:
             found = f"{max(samples / rate, 0.0):.2f} s of free vibration within {self.duration:.1f} s of the release"
             where = f"drop of {self.vehicle.name}, load '{drop.load.name}'"
