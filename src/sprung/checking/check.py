@@ -162,17 +162,22 @@ def _channels(
     observation: DropObservation, decay: FreeDecay | None, faults: Sequence[Fault], sensors: Sequence[Sensor]
 ) -> Iterator[ChannelReport]:
     recording, rest = observation.recording, observation.rest
+    if observation.release is None:
+        at_rest = np.zeros(len(recording.channels), dtype=bool)
+        level, noise = recording.values.mean(axis=1), np.zeros(len(at_rest))
+    else:
+        at_rest = np.isfinite(rest.level)
+        level = np.where(at_rest, rest.level, recording.values.mean(axis=1))
+        noise = np.sqrt(np.mean(rest.noise**2, axis=1))
+    peak = np.abs(recording.values[:, observation.release or 0 :] - level[:, None]).max(axis=1, initial=0.0)
+    used = np.zeros(len(at_rest), dtype=bool) if decay is None else decay.usable
     for channel, (name, sensor) in enumerate(zip(recording.channels, sensors, strict=True)):
-        values = recording.values[channel]
-        at_rest = observation.release is not None and np.isfinite(rest.level[channel])
-        level = rest.level[channel] if at_rest else values.mean()
-        peak = np.abs(values[observation.release or 0 :] - level).max(initial=0.0)
-        used = decay is not None and bool(decay.usable[channel])
+        where = f"{recording.name}: {name}"
         yield ChannelReport(
             name=name,
             on=sensor.on,
-            noise=float(np.sqrt(np.mean(rest.noise[channel] ** 2))) if at_rest else None,
-            peak=float(peak) if np.isfinite(peak) else None,
-            used=used,
-            faults=tuple(fault.code for fault in faults if fault.where == f"{recording.name}: {name}"),
+            noise=float(noise[channel]) if at_rest[channel] else None,
+            peak=float(peak[channel]) if np.isfinite(peak[channel]) else None,
+            used=bool(used[channel]),
+            faults=tuple(fault.code for fault in faults if fault.where == where),
         )

@@ -42,11 +42,14 @@ class ClosedFormObjective:
         Equations of motion by load name, all over the same parameters.
     sensors
         The sensors over the fit's parameters, in the order of the decays' channels.
+    cut
+        The decays, centred and cut into blocks already; empty where that is still to be done.
     """
 
     decays: Sequence[FreeDecay]
     models: Mapping[str, LinearModel]
     sensors: Readout
+    cut: tuple[RecordBatch, ...] = ()
 
     @cached_property
     def loads(self) -> tuple[str, ...]:
@@ -56,7 +59,7 @@ class ClosedFormObjective:
     @cached_property
     def batches(self) -> tuple[RecordBatch, ...]:
         """The decays, centred and cut into blocks."""
-        return batch_records(self.decays, self.sensors.names)
+        return self.cut or batch_records(self.decays, self.sensors.names)
 
     @cached_property
     def observations(self) -> Real:
@@ -86,6 +89,11 @@ class ClosedFormObjective:
     def with_decays(self, decays: Sequence[FreeDecay]) -> ClosedFormObjective:
         """Return the objective of other decays with the same models and sensors."""
         return ClosedFormObjective(decays, self.models, self.sensors)
+
+    def with_models(self, models: Mapping[str, LinearModel], sensors: Readout) -> ClosedFormObjective:
+        """Return the objective of other models of the same decays, which are cut into blocks once."""
+        # What several loggers' clocks tell of the parameters belongs to the parameters of one model.
+        return ClosedFormObjective(self.decays, models, sensors, () if self._has_clocks else self.batches)
 
     def at(self, values: Real, weights: Real) -> ObjectiveAt:
         """Evaluate at parameter values, SI, shape (parameter,), with weights 1/σ² of the channels, s⁴/m², shape (channel,)."""

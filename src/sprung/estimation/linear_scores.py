@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.linear_fit import objective_of, problem_of
+from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
 from sprung.estimation.score_test import score_added, score_test
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LinearModel, Sensor, separate_track_names, uncertainties_of
+from sprung.vehicle import LinearModel, Readout, Sensor, separate_track_names, uncertainties_of
 
 Real = NDArray[np.float64]
 
@@ -104,7 +105,11 @@ def score_linear_term(
         For each of the starts the gain in twice the log-likelihood, to second order, and the parameters of the larger model
         after one Newton step, SI, by name.
     """
-    objective, known = objective_of(fit.decays, models, sensors), {**known, **uncertainties_of(sensors)}
+    at, readout = fit.iterate.at.modal, Readout.with_unknowns(sensors, next(iter(models.values())).names)
+    objective = (
+        ClosedFormObjective(fit.decays, models, readout) if at is None else at.objective.with_models(models, readout)
+    )
+    known = {**known, **uncertainties_of(sensors)}
     scores = []
     for values in starts:
         problem = problem_of(objective, known, values)

@@ -62,14 +62,26 @@ class FirstMotion:
     rises: bool
 
     @classmethod
-    def of(cls, campaign: Campaign, prepared: Prepared) -> FirstMotion:
-        """Measure it in prepared recordings, for a campaign that may state other places of their sensors."""
+    def of(cls, campaign: Campaign, prepared: Prepared, is_as_prepared: bool = False) -> FirstMotion:
+        """Measure it in prepared recordings, for a campaign that may state other places of their sensors.
+
+        Parameters
+        ----------
+        campaign
+            States the places.
+        prepared
+            The recordings.
+        is_as_prepared
+            Whether they were prepared with these places.
+        """
         body = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body")
         wheels = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on != "body")
         gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
         rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
         dropped = tuple(
-            detect_dropped_wheels(seen.recording, None if seen.release is None else seen.rest, campaign.sensors)
+            seen.dropped
+            if is_as_prepared
+            else detect_dropped_wheels(seen.recording, None if seen.release is None else seen.rest, campaign.sensors)
             for seen in prepared.observations
         )
         return cls(body, gained[:, list(body)], dropped, rises)

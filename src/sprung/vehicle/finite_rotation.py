@@ -10,6 +10,7 @@ the height z - x sin θ + y cos θ sin φ + h cos θ cos φ.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,13 +104,16 @@ def second_order_readings(
     # Where no mass is, the velocity follows from the displacements, and there is no acceleration to be known.
     rates = A @ motion
     signals = np.stack([motion[:n], rates[:n], np.vstack([rates[n:], np.zeros_like(motion[: n - m])])])
-    forces = _suspension_forces(model, tracks, heights, values, signals) + _inertia_forces(
-        model, tracks, heights, load, values, signals
-    )
-    rows = Rows.of([sensor.row for sensor in sensors], model.names).at(values)
-    inputs = np.zeros_like(motion)
-    inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, forces)
-    readings = rows[:, :m] @ _forced_accelerations(A, inputs, step, ends)[n:]
+    forces = [
+        _suspension_forces(model, tracks, heights, values, signals),
+        _inertia_forces(model, tracks, heights, load, values, signals),
+    ]
+    directions = np.hstack([columns for columns, _ in forces])
+    inputs = np.zeros((len(A), directions.shape[1]))
+    inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, directions)
+    rows = np.zeros((len(sensors), len(A)))
+    rows[:, n:] = Rows.of([sensor.row for sensor in sensors], model.names).at(values)[:, :m]
+    readings = _forced_rates(A, inputs, np.vstack([series for _, series in forces]), rows, step, ends)
     return np.split(readings + _sensor_rotation(model, heights, sensors, values, signals), ends, axis=1)
 
 
@@ -119,80 +123,96 @@ def _sensor_rotation(
     """Return what sensors read because they turn with the body: specific force along its axis, and centripetal acceleration."""
     pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
     forward, sideways = _unconstrained_per_angle(model, values)
-    tilt = forward * pitch[_VALUE] * pitch[_SECOND] - sideways * roll[_VALUE] * roll[_SECOND]
-    leakage = STANDARD_GRAVITY * 0.5 * (pitch[_VALUE] ** 2 + roll[_VALUE] ** 2)
-    readings = []
-    for sensor in sensors:
-        if sensor.position is None:
-            arm = heights.wheel_arms[1]
-            own = arm * (pitch[_VALUE] * pitch[_SECOND] + roll[_VALUE] * roll[_SECOND])
-        else:
-            own = -_above_centre(heights, sensor.position[2]) * (pitch[_RATE] ** 2 + roll[_RATE] ** 2)
-        readings.append(tilt + own - leakage)
-    return np.array(readings)
+    arms = [
+        (heights.wheel_arms[1], 0.0) if sensor.position is None else (0.0, -_above_centre(heights, sensor.position[2]))
+        for sensor in sensors
+    ]
+    swung = pitch[_VALUE] * pitch[_SECOND], roll[_VALUE] * roll[_SECOND]
+    centripetal = pitch[_RATE] ** 2 + roll[_RATE] ** 2
+    of_all = forward * swung[0] - sideways * swung[1] - STANDARD_GRAVITY * _half_square(signals)[_VALUE]
+    readings: Array = of_all + np.array(arms) @ np.vstack([swung[0] + swung[1], centripetal])
+    return readings
 
 
-def _suspension_forces(model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: Array) -> Array:
-    """Return the second-order generalised forces of springs and dampers, SI, shape (coordinate, time).
+def _suspension_forces(
+    model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: Array
+) -> tuple[Array, Array]:
+    """Return the second-order generalised forces of springs and dampers: directions times series.
 
     The compression is q = (q₁ + d)(1 + (θ² + φ²)/2) - d to third order, with the linear q₁ and the height d of the wheel's
     centre above the body's centre of gravity.
+
+    Returns
+    -------
+    directions
+        SI, shape (coordinate, direction).
+    series
+        Shape (direction, time).
     """
     arm = heights.wheel_arms[1]
-    half = _half_square(signals)
-    tilt = np.zeros_like(signals[_VALUE])
-    tilt[[_PITCH, _ROLL]] = signals[_VALUE][[_PITCH, _ROLL]]
     springs, dampers = -_travels(model, tracks, "spring", values), -_travels(model, tracks, "damper", values)
-    rates, damping = _by_axle(model, "k_s", values), _by_axle(model, "c_s", values)
     matrices = model.matrices(values)
+    rates = _by_axle(model, "k_s", values)
     static = rates * -(springs @ matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY))
-    forces: Array = np.zeros_like(signals[_VALUE])
-    for spring, damper, k, c, held in zip(springs, dampers, rates, damping, static, strict=True):
-        compression = spring @ signals[_VALUE]
-        forces -= held * (np.outer(spring, half[_VALUE]) + compression * tilt)
-        forces -= k * arm * (compression * tilt + np.outer(spring, half[_VALUE]))
-        forces -= c * arm * ((damper @ signals[_RATE]) * tilt + np.outer(damper, half[_RATE]))
-    return forces
+    by_spring = -(static + rates * arm) @ springs
+    by_damper = -arm * _by_axle(model, "c_s", values) @ dampers
+    half = _half_square(signals)
+    force = by_spring @ signals[_VALUE] + by_damper @ signals[_RATE]
+    directions = np.column_stack([by_spring, by_damper, *_angles(model)])
+    return directions, np.vstack([half[_VALUE], half[_RATE], force * signals[_VALUE][[_PITCH, _ROLL]]])
 
 
 def _inertia_forces(
     model: LinearModel, tracks: Tracks, heights: Heights, load: Load, values: Array, signals: Array
-) -> Array:
-    """Return the second-order generalised inertia forces of wheels and items of the load, SI, shape (coordinate, time).
+) -> tuple[Array, Array]:
+    """Return the second-order generalised inertia forces of wheels and items of the load, as `_suspension_forces` does.
 
-    A mass whose displacement along an axis is u₁ + u₂ acts with -m (ü₁ ∂u₂/∂X + ü₂ ∂u₁/∂X).
+    A mass whose displacement along an axis is u₁ + u₂ acts with -m (ü₁ ∂u₂/∂X + ü₂ ∂u₁/∂X). All wheels together act as their
+    first moments do: both wheels of an axle cancel what their half-distance adds.
     """
+    by_pitch, by_roll = _angles(model)
     if not heights.has_effect:
-        return np.zeros_like(signals[_VALUE])
-    units = np.eye(len(signals[_VALUE]))
+        return np.zeros((len(by_pitch), 0)), np.zeros((0, signals.shape[2]))
     pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
-    by_pitch, by_roll = units[_PITCH], units[_ROLL]
     forward, sideways = _unconstrained_per_angle(model, values)
     own = dict(zip(model.names, values.tolist(), strict=True))
-    forces: Array = np.zeros_like(signals[_VALUE])
-    arm = heights.wheel_arms[1]
-    masses = _by_axle(model, "m_u", values)
-    for station, row, mass in zip(WHEELS, -_travels(model, tracks, "spring", values), masses, strict=True):
-        x, q = own["a"] if station[0] == "f" else -own["b"], row @ signals
-        # Both wheels of an axle cancel what their half-distance adds.
-        first, second = (sideways - arm) * by_roll, -_product(q, roll)
-        slope = -(np.outer(by_roll, q[_VALUE]) + np.outer(row, roll[_VALUE]))
-        forces -= mass * ((first @ signals[_SECOND]) * slope + np.outer(first, second[_SECOND]))
-        first, second = (forward + arm) * by_pitch, _product(q, pitch) - 0.5 * x * _product(pitch, pitch)
-        slope = np.outer(by_pitch, q[_VALUE] - x * pitch[_VALUE]) + np.outer(row, pitch[_VALUE])
-        forces -= mass * ((first @ signals[_SECOND]) * slope + np.outer(first, second[_SECOND]))
-    for item in (one for one in load.items if one.position is not None):
-        x, y, z = item.position or (0.0, 0.0, 0.0)
-        x, height = x + own["a"], _above_centre(heights, z)
-        vertical = units[0] - x * by_pitch + y * by_roll
-        parts = [
-            (vertical, -height * _half_square(signals), -height * _tilt(units, signals)),
-            ((sideways - height) * by_roll, -0.5 * y * _product(roll, roll), -y * np.outer(by_roll, roll[_VALUE])),
-            ((forward + height) * by_pitch, -0.5 * x * _product(pitch, pitch), -x * np.outer(by_pitch, pitch[_VALUE])),
-        ]
-        for first, second, slope in parts:
-            forces -= item.mass * ((first @ signals[_SECOND]) * slope + np.outer(first, second[_SECOND]))
-    return forces
+    items = [(one.mass, *one.position) for one in load.items if one.position is not None]
+    mass, x, y, z = np.array(items).reshape(-1, 4).T
+    x = x + own["a"]
+    height = np.array([_above_centre(heights, one) for one in z.tolist()])
+    # Wheels: u₁ = arm times the angle along both axes, u₂ with their travel.
+    arm, masses = heights.wheel_arms[1], _by_axle(model, "m_u", values)
+    of_wheels = masses @ -_travels(model, tracks, "spring", values)
+    distances = masses @ np.array([own["a"] if station[0] == "f" else -own["b"] for station in WHEELS])
+    q, ahead, aside = of_wheels @ signals, forward + arm, sideways - arm
+    # Items: of their weights on the body, and of their places.
+    lifted = np.zeros(len(by_pitch))
+    lifted[[0, _PITCH, _ROLL]] = (mass * height) @ np.column_stack([np.ones_like(x), -x, y])
+    tilting = lifted @ signals[_SECOND]
+    along = (mass * x) @ (forward + height) + distances * ahead
+    across = (mass * y) @ (sideways - height)
+
+    def by_angle(angle: Array, arm: float, squared: float) -> Array:
+        """Return the moment about an axis of what moves along the other one as the body turns."""
+        twice = angle[_SECOND] * angle[_VALUE] + 0.5 * _product(angle, angle)[_SECOND]
+        moved = angle[_SECOND] * q[_VALUE] + _product(q, angle)[_SECOND]
+        moment: Array = tilting * angle[_VALUE] + squared * twice + arm * moved
+        return moment
+
+    directions = np.column_stack([lifted, -ahead * of_wheels, aside * of_wheels, by_pitch, by_roll])
+    series = [
+        _half_square(signals)[_SECOND],
+        pitch[_SECOND] * pitch[_VALUE],
+        roll[_SECOND] * roll[_VALUE],
+        by_angle(pitch, -ahead, along),
+        by_angle(roll, aside, across),
+    ]
+    return directions, np.vstack(series)
+
+
+def _angles(model: LinearModel) -> Array:
+    """Return the directions of pitch and roll among the coordinates, shape (2, coordinate)."""
+    return np.eye(len(model.heave))[[_PITCH, _ROLL]]
 
 
 def _product(one: Array, other: Array) -> Array:
@@ -207,12 +227,6 @@ def _half_square(signals: Array) -> Array:
     pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
     half: Array = 0.5 * (_product(pitch, pitch) + _product(roll, roll))
     return half
-
-
-def _tilt(units: Array, signals: Array) -> Array:
-    """Return the gradient of half the sum of both squared angles, shape (coordinate, time)."""
-    tilt: Array = units[:, [_PITCH, _ROLL]] @ signals[_VALUE][[_PITCH, _ROLL]]
-    return tilt
 
 
 def _unconstrained_per_angle(model: LinearModel, values: Array) -> tuple[float, float]:
@@ -242,28 +256,29 @@ def _by_axle(model: LinearModel, letter: str, values: Array) -> Array:
     return values[[at(station) for station in WHEELS]]
 
 
-def _forced_accelerations(A: Array, inputs: Array, step: float, ends: Sequence[int] | Array) -> Array:
-    """Return Ẏ of Ẏ = A Y + u from rest, u running linearly between samples; shapes (state, time).
+def _forced_rates(
+    A: Array, inputs: Array, series: Array, rows: Array, step: float, ends: Sequence[int] | Array
+) -> Array:
+    """Return C Ẏ of Ẏ = A Y + B u from rest, u running linearly between samples, with C the rows and B the inputs.
 
-    From rest again behind each of the `ends`.
+    Shapes (state, input), (input, time) and (row, state) to (row, time); from rest again behind each of the `ends`.
     """
     poles, vectors = np.linalg.eig(A)
-    modal = np.linalg.solve(vectors, inputs.astype(complex))
+    # A pole and its conjugate add the same real part twice.
+    upper = np.imag(poles) >= 0
+    modal = (np.linalg.inv(vectors)[upper] @ inputs).astype(complex) @ series
+    poles, output = poles[upper].astype(complex), (rows @ vectors[:, upper]).astype(complex)
     z = poles[:, None] * step
-    decay = np.exp(z)
+    decay = np.exp(z[:, 0])
     # Weights of u at the beginning and at the end of a step: integrals of exp(λ (step - t)) times a linear function.
     z = np.where(np.abs(z) < _STILL, _STILL, z)
     before, after = step * (np.exp(z) * (z - 1) + 1) / z**2, step * (np.exp(z) - 1 - z) / z**2
-    added = np.zeros_like(modal)
-    added[:, 1:] = before * modal[:, :-1] + after * modal[:, 1:]
-    added[:, ends] = 0.0
-    parts = np.split(added, ends, axis=1)
-    rows = np.zeros((len(poles), len(parts), max(part.shape[1] for part in parts)), dtype=complex)
-    for number, part in enumerate(parts):
-        rows[:, number, : part.shape[1]] = part
-    filtered = np.stack(
-        [lfilter([1.0], [1.0, -factor], row) for row, factor in zip(rows, decay[:, 0].tolist(), strict=True)]
-    )
-    states = np.hstack([filtered[:, number, : part.shape[1]] for number, part in enumerate(parts)])
-    forced: Array = (vectors @ (poles[:, None] * states)).real + inputs
+    states = np.zeros_like(modal)
+    states[:, 1:] = before * modal[:, :-1] + after * modal[:, 1:]
+    for begin, end in pairwise([0, *ends, states.shape[1]]):
+        states[:, begin] = 0.0
+        for row, factor in zip(states[:, begin:end], decay.tolist(), strict=True):
+            row[:] = lfilter([1.0], [1.0, -factor], row)
+    output *= poles * np.where(poles.imag > 0, 2.0, 1.0)
+    forced: Array = output.real @ states.real - output.imag @ states.imag + rows @ inputs @ series
     return forced

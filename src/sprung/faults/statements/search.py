@@ -79,7 +79,7 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
         If several mistakes explain it that lead to different vehicles, and the recordings cannot tell which it is.
     """
     wheelbase = _wheelbase(campaign)
-    if wheelbase is None or _consistent(campaign, prepared, wheelbase) is not False:
+    if wheelbase is None or _consistent(campaign, prepared, wheelbase, True) is not False:
         return campaign
     if _one_drop_explains(campaign, prepared, wheelbase):
         return campaign
@@ -104,9 +104,9 @@ def _wheelbase(campaign: Campaign) -> float | None:
     return campaign.wheelbase.value if campaign.wheelbase is not None else (max(x) - min(x)) or None
 
 
-def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool | None:
+def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float, is_as_prepared: bool = False) -> bool | None:
     """Whether body, wheels and drops agree on the dropped wheels; None if they are not significant."""
-    motion = FirstMotion.of(campaign, prepared)
+    motion = FirstMotion.of(campaign, prepared, is_as_prepared)
     if motion.rises:
         return False
     places = [sensor.position[:2] for sensor in campaign.sensors if sensor.on == "body" and sensor.position is not None]
