@@ -234,6 +234,24 @@ def iso_mme(signals: Signals, path: Path) -> Path:
     return path
 
 
+def lvm(signals: Signals, path: Path) -> Path:
+    """Write two segments as LabVIEW does, with six decimals."""
+    path = path.with_name(f"{path.name}.lvm")
+    count, half = len(signals.names), signals.values.shape[1] // 2
+    lines = ["LabVIEW Measurement\t", "Writer_Version\t2", "Separator\tTab", "Decimal_Separator\t.", "X_Columns\tOne"]
+    lines += ["***End_of_Header***\t", "\t"]
+    for part in (slice(0, half), slice(half, None)):
+        time, values = signals.time[part], signals.values[:, part]
+        fields = {"Samples": len(time), "Date": "2026/11/20", "Time": "09:30:00.5", "Y_Unit_Label": "g"}
+        fields |= {"X_Dimension": "Time", "X0": f"{time[0]:.16E}", "Delta_X": f"{1 / signals.rate:.6f}"}
+        lines += [f"Channels\t{count}", *("\t".join([tag, *[str(cell)] * count, ""]) for tag, cell in fields.items())]
+        lines += ["***End_of_Header***\t", "\t".join(["X_Value", *signals.names, "Comment"])]
+        lines += ["\t".join(f"{number:.6f}" for number in row) for row in np.vstack([time, values]).T]
+        lines += [""]
+    path.write_text("\r\n".join([*lines, ""]), encoding="cp1252", newline="")
+    return path
+
+
 WAYS = {
     "CSV, 17 digits": ModelSearch(csv),
     "CSV, 9 digits": ModelSearch(partial(csv, digits=9), off=5e-9),
@@ -254,5 +272,6 @@ WAYS = {
     "RPC, 16 bit integers": ModelSearch(rpc, "rpc3", off=1 / 32752),
     "RPC, 32 bit floats": ModelSearch(partial(rpc, kind=float), "rpc3", off=2.0**-24),
     "ISO-MME": ModelSearch(iso_mme),
+    "LVM": ModelSearch(lvm, off=1e-6),
 }
 """Every way but one: integers of a WAV file are parts of a full scale of 1 g, which a vehicle at rest would fill."""

@@ -24,6 +24,7 @@ from every_format import (
     hdf5,
     hdf5_packed,
     iso_mme,
+    lvm,
     mat5,
     mat73,
     mdf4,
@@ -221,6 +222,35 @@ def _wavs(folder: Path) -> Sequence[bytes]:
     return [wav24(part, folder / "x").read_bytes(), *_written(wav, partial(wav, kind=np.float32))(folder)]
 
 
+_LVM = """LabVIEW Measurement,
+Writer_Version,2
+Separator,Comma
+Multi_Headings,Yes
+X_Columns,Multi
+***End_of_Header***,
+***Start_Special***
+Packet_Notes
+***End_Special***
+Notes,made by hand
+Channels,2,,,,
+Samples,40,,30,,
+Date,2026/11/20,,2026/11/20,,
+Time,09:30:00.25,,09:30:00.2505,,
+Y_Unit_Label,g,,m/s²,,
+X_Dimension,Time,,Time,,
+X0,0,,0,,
+Delta_X,2E-3,,2E-3,,
+***End_of_Header***,,,,,
+X_Value,front\\2C left,X_Value,b,Comment
+""" + "".join(
+    f"{i / 500:.6f},{i % 7}.5,{f'{i / 500:.6f},-{i}E-1' if i < 30 else ','}{',first' * (i == 0)}\n" for i in range(40)
+)
+
+
+def _lvms(folder: Path) -> Sequence[bytes]:
+    return [lvm(SMALL, folder / "x").read_bytes(), _LVM.encode("cp1252")]
+
+
 def _channels(folder: Path) -> Sequence[bytes]:
     """Return the channel files of a test, and a time channel to which another refers."""
     iso_mme(SMALL, folder / "x")
@@ -341,6 +371,7 @@ READERS = {
     "wav": Reader(_wavs, "x.wav"),
     "rpc": Reader(_written(rpc, partial(rpc, kind=float)), "x.rsp"),
     "iso_mme": Reader(_channels, "x.002", lay=_beside_channels),
+    "lvm": Reader(_lvms, "x.lvm"),
     "sep005": Reader(_decisions, "x", use=lambda path: used(from_sep005(_signals(path)), "signals")),  # type: ignore[arg-type]
     "campaign": Reader(lambda _: [_CAMPAIGN.encode()], "campaign.toml", lay=_beside_recordings, use=read),
     "vehicle": Reader(lambda _: [CAR.encode(), _simulated().encode()], "v.toml", use=read_vehicle),

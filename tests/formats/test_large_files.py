@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.io import savemat, wavfile
 
-from sprung.formats import SampleTable, read_table
+from sprung.formats import SampleTable, read_table, text_samples
 from sprung.formats import csv as csv_format
 from sprung.formats.sample_store import BUDGET, Samples, join_samples, regroup, store_by_ranges, store_in_memory
 from sprung.formats.text_blocks import detect_encoding, read_blocks
@@ -143,8 +143,17 @@ def uff(folder: Path, values: NDArray[np.float64]) -> Path:
     return folder / "x.uff"
 
 
+def lvm(folder: Path, values: NDArray[np.float64]) -> Path:
+    head = ["LabVIEW Measurement", "Writer_Version\t2", "Separator\tTab", "***End_of_Header***"]
+    steps = "\t".join(["Delta_X", *["0.001"] * CHANNELS])
+    head += [f"Channels\t{CHANNELS}", steps, "***End_of_Header***", "\t".join(["X_Value", *NAMES, "Comment"])]
+    rows = [f"{index / 1000:.3f}\t" + "\t".join(row) for index, row in enumerate(written(values.T))]
+    (folder / "x.lvm").write_text("\n".join([*head, *rows, ""]))
+    return folder / "x.lvm"
+
+
 WRITERS: list[Write] = [csv, wav, rpc, hdf5, hdf5_of_rows, hdf5_of_columns, mat, mat_of_rows, mat_compressed]
-WRITERS += [tdms, mdf, parquet, iso_mme, uff]
+WRITERS += [tdms, mdf, parquet, iso_mme, uff, lvm]
 
 
 @pytest.fixture(scope="module", params=WRITERS, ids=lambda write: write.__name__)
@@ -269,8 +278,9 @@ def test_a_text_table_in_many_blocks_is_the_same(tmp_path: Path, monkeypatch: py
     path = tmp_path / "x.csv"
     path.write_text("\n".join(["Logger 7", "Zeit;a;b", *lines, f"10:00:04.000;2{blank}"]))
     whole = read_table(path)
-    monkeypatch.setattr(csv_format, "_SMALL", 0)
-    monkeypatch.setattr(csv_format, "read_blocks", partial(read_blocks, size=300))
+    monkeypatch.setattr(text_samples, "_SMALL", 0)
+    for module in (csv_format, text_samples):
+        monkeypatch.setattr(module, "read_blocks", partial(read_blocks, size=300))
     table = read_table(path)
     assert table.notes == whole.notes
     assert any(note.endswith("is cut short and was left out") for note in table.notes)

@@ -38,7 +38,7 @@ def installed(monkeypatch: pytest.MonkeyPatch, *entries: object) -> None:
 
 def test_the_formats_of_this_package(monkeypatch: pytest.MonkeyPatch) -> None:
     installed(monkeypatch)
-    own = ["csv", "excel", "hdf5", "iso_mme", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
+    own = ["csv", "excel", "hdf5", "iso_mme", "lvm", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
     assert list(formats()) == own
 
 

@@ -121,13 +121,15 @@ def regular_clock(start: float, step: float, count: int, uncertainty: float, whe
     return ChannelClock(start, start + max(count - 1, 0) / rate, count, rate)
 
 
-def clock_from_times(times: NDArray[np.float64]) -> ChannelClock:
+def clock_from_times(times: NDArray[np.float64], rounding: float = 0.0) -> ChannelClock:
     """Return the clock of samples that each have a time, with its rate if it is regular.
 
     Parameters
     ----------
     times
         Shape (time,), s.
+    rounding
+        Largest rounding error of the times, s: within it they count as regular.
     """
     count = len(times)
     if count == 0:
@@ -139,8 +141,8 @@ def clock_from_times(times: NDArray[np.float64]) -> ChannelClock:
         return ChannelClock(start, end, count, None, times)
     step = (end - start) / (count - 1)
     off = float(np.abs(times - np.linspace(start, end, count)).max())
-    rounding = 2 * off + 4 * float(np.spacing(max(abs(start), abs(end))))
-    rate = _rate(step, rounding / (count - 1)) if off <= AGREE * step else None
+    uncertainty = 2 * off + 4 * float(np.spacing(max(abs(start), abs(end))))
+    rate = _rate(step, uncertainty / (count - 1)) if off <= max(AGREE * step, rounding) else None
     return ChannelClock(start, end, count, rate, times)
 
 

@@ -29,6 +29,7 @@ _OWN = tuple(
         ("excel", "ExcelFormat"),
         ("hdf5", "Hdf5Format"),
         ("iso_mme", "IsoMmeFormat"),
+        ("lvm", "LvmFormat"),
         ("mat", "MatFormat"),
         ("mdf", "MdfFormat"),
         ("parquet", "ParquetFormat"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate, chain
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
@@ -156,6 +157,35 @@ def join_samples(members: Sequence[Samples]) -> Store:
         return members[column].store.find_non_number(members[column].column, first, last)
 
     return Store(len(members), members[0].store.length, read, find_non_number)
+
+
+def select_ranges(store: Store, ranges: Sequence[tuple[int, int]]) -> Store:
+    """Return a store of the samples in some ranges of another, one range after the other.
+
+    Parameters
+    ----------
+    store
+        The other.
+    ranges
+        From which sample up to which, last excluded.
+    """
+    ends = list(accumulate(last - first for first, last in ranges))
+    places = [(end - (high - low), low, high) for end, (low, high) in zip(ends, ranges, strict=True)]
+
+    def within(first: int, last: int) -> list[tuple[int, int]]:
+        cut = [(max(low, first - begin + low), min(high, last - begin + low)) for begin, low, high in places]
+        return [(low, high) for low, high in cut if low < high]
+
+    def get(columns: Sequence[int], first: int, last: int) -> NDArray[np.float64]:
+        read = (store.read(columns, low, high, high - low) for low, high in within(first, last))
+        return np.concatenate([np.empty((len(columns), 0)), *chain.from_iterable(read)], axis=1)
+
+    def find_non_number(column: int, first: int, last: int) -> Problem | None:
+        found = (store.find_non_number(column, low, high) for low, high in within(first, last))
+        return next((problem for problem in found if problem is not None), None)
+
+    length = ends[-1] if ends else 0
+    return Store(store.width, length, store_by_ranges(store.width, length, get).read, find_non_number)
 
 
 def regroup(pieces: Iterable[NDArray[np.float64]], step: int) -> Iterator[NDArray[np.float64]]:

@@ -84,6 +84,21 @@ class Cells:
         """The numbers, shape (column, time); `add` must not be called while they are looked at."""
         return np.frombuffer(self.numbers, dtype=np.float64).reshape(self.count, len(self.columns)).T
 
+    def line_of(self, sample: int) -> int:
+        """Return the number of the line in which a sample stands."""
+        samples, lines = (np.frombuffer(run, dtype=np.int64) for run in self.runs)
+        run = int(np.searchsorted(samples, sample, side="right")) - 1
+        return int(lines[run]) + sample - int(samples[run])
+
+    def samples_before(self, line: int) -> int:
+        """Return how many samples stand above a line of some number."""
+        samples, lines = (np.frombuffer(run, dtype=np.int64) for run in self.runs)
+        run = int(np.searchsorted(lines, line)) - 1
+        if run < 0:
+            return 0
+        end = self.count if run + 1 == len(samples) else int(samples[run + 1])
+        return min(int(samples[run]) + line - int(lines[run]), end)
+
     def add(self, lines: Sequence[str], number: int) -> None:
         """Read lines, the first of them of some number: one of nothing but numbers at once, any other cell by cell.
 
