@@ -213,3 +213,51 @@ def test_modal_coordinates_and_matrix_exponentials_agree(vehicle: Vehicle) -> No
     np.testing.assert_allclose(difference, 0.0, atol=1e-9)
     moved = reference.moved(values * 1.01).of_drop(1)
     np.testing.assert_allclose(moved.residual_sums, found.moved(values * 1.01).of_drop(1).residual_sums, rtol=1e-9)
+
+
+FLOATING = {"k_sf": 1.5, "k_sr": 2.0, "c_sf": 4.0, "c_sr": 3.0}
+"""Next to no springs, as on the way of a fit: what of its initial state the accelerometers do not show, the prior decides."""
+
+
+def floating() -> tuple[ClosedFormObjective, Real]:
+    likelihood, values, *_ = likelihood_of(TABLE_1_CAR, noise=0.02)
+    names = list(TABLE_1_CAR.parameters)
+    return likelihood, np.array([FLOATING.get(name, value) for name, value in zip(names, values, strict=True)])
+
+
+def near_critical_damping(offset: float) -> Vehicle:
+    vehicle = critically_damped()
+    return replace(vehicle, c_sf=vehicle.c_sf * (1 + offset), c_sr=vehicle.c_sr * (1 + offset))
+
+
+@pytest.mark.parametrize("offset", [0.1, 1e-3, 1e-6, 0.0, -1e-6, -1e-3, None])
+def test_gradient_is_the_slope_of_the_likelihood(offset: float | None) -> None:
+    """Through critical damping, and of a floating body, with weights beside which the prior of the initial states counts."""
+    likelihood, values = floating() if offset is None else likelihood_of(near_critical_damping(offset), noise=0.02)[:2]
+    weights = np.full(8, 0.02**-2)
+    at = likelihood.at(values, weights)
+    # Parameters differ by how well they are known: all are compared in standard errors.
+    std = 1 / np.sqrt(np.diag(at.information))
+
+    def cost(moved: Real) -> float:
+        other = likelihood.at(moved, weights)
+        return float((other.residual_sums @ weights).sum() + other.penalty)
+
+    for i, own in enumerate(std):
+        step = min(0.03 * own, 1e-3 * values[i]) * (np.arange(len(values)) == i)
+        slope = -(cost(values + step) - cost(values - step)) / (4 * step[i])
+        assert at.gradient[i] * own == pytest.approx(slope * own, rel=1e-3, abs=5e-3), likelihood.sensors.names[i]
+
+
+def test_a_floating_body_has_modal_coordinates() -> None:
+    """Slow modes are alike to the eye of a condition number, and yet nothing is lost in modal coordinates."""
+    likelihood, values = floating()
+    weights = np.full(8, 0.02**-2)
+    found = likelihood.at(values, weights)
+    assert found.modal is not None
+    reference = MatrixExponentialAt(likelihood, likelihood.models, likelihood.sensors, values, weights)
+    np.testing.assert_allclose(found.residual_sums, reference.residual_sums, rtol=1e-9)
+    assert found.penalty == pytest.approx(reference.penalty, rel=1e-6)
+    size = np.sqrt(np.diag(reference.information))
+    np.testing.assert_allclose(found.gradient / size, reference.gradient / size, atol=1e-6)
+    np.testing.assert_allclose((found.information - reference.information) / np.outer(size, size), 0.0, atol=1e-7)
