@@ -11,7 +11,9 @@ from scipy.signal import butter, lfilter, lfilter_zi
 
 import sprung
 from sprung.faults.low_pass import LowPass, delay_times_corner, inverse_kernel, recorded_energy, undo_low_pass
+from sprung.preprocess import detect_release
 from sprung.uncertainty import KnownValue
+from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import TABLE_1_CAR
 
 BALLAST = {"name": "ballast", "items": [{"mass": 140.0, "position": [-1.0, 0.2, 0.6]}]}
@@ -106,3 +108,23 @@ def test_noise_has_its_recorded_energy() -> None:
     raised = corrected(noise, RATE)[0]
     assert recorded_energy(raised, low_pass, RATE) == pytest.approx(float(np.sum(noise**2)), rel=0.01)
     assert np.sum(raised**2) > 1.2 * np.sum(noise**2)
+
+
+@pytest.mark.parametrize("order", [1, 2, 4])
+def test_the_release_does_not_show_before_it_happens(order: int) -> None:
+    """The fall begins at once; the level at rest, from which a high-pass is undone, is that of the recording."""
+    random = np.random.default_rng(6)
+    samples, release = 2000, 800
+    noise = 0.01 * random.standard_normal((2, samples))
+    values = noise + np.where(np.arange(samples) >= release, -STANDARD_GRAVITY * np.exp(-np.arange(samples) / 900), 0.0)
+    values[:, 1200:] += 60 * np.exp(-np.arange(samples - 1200) / 100) * np.cos(np.arange(samples - 1200) / 7)
+    undone = undo_low_pass(0, LowPass(40.0, order)).samples
+    assert undone is not None
+    found = detect_release(undone(values, RATE), RATE)
+    stated = detect_release(values, RATE)
+    assert found is not None
+    assert stated is not None
+    assert found.sample == stated.sample
+    # Both channels have the same noise, of which means of 150 samples have a standard error of 0.0008 m/s².
+    assert found.level == pytest.approx(stated.level, abs=0.004)
+    assert found.noise[0].std() < 0.03

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
+from sprung.analysis.first_term import explaining_term
 from sprung.analysis.settling import settle_corrections
 from sprung.campaign import Campaign
 from sprung.estimation import NEAR, FitResult
@@ -17,33 +18,22 @@ from sprung.faults import (
     consistency_of,
     decays_without_wheel_sensors,
     isolate,
-    largest_expected_gain,
-    reference_noise,
-    residual_table,
 )
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.selection import (
     SEPARATE_TRACKS,
-    TERMS,
     ModelSearch,
     ModelStructure,
     fit_structure,
     needed_terms,
-    score_terms,
 )
-
-_MOST = 0.5
-"""Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
-
-_STEPS, _TERMS = 3, 3
-"""Gauss-Newton steps that are taken with each of so many terms."""
 
 
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains the recordings wholly, before any further model term is tried."""
     consistency = _consistency(run)
-    first = None if consistency in (None, "consistent") else _explaining_term(run, consistency)
+    first = explaining_term(run, consistency)
     if first is not None:
         return replace(run, first_term=first[0]).noted("isolate_evident_faults", f"{first[0]} is tried first", first[1])
     run = _with_isolated(run, consistency, progress)
@@ -72,38 +62,6 @@ def _consistency(run: Analysis) -> Consistency | None:
     return consistency_of(run.campaign, run.decays, run.fit)
 
 
-def _explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[str, str] | None:
-    """Return the linear term that is to be tried before faults are isolated, and why; None where there is none.
-
-    It explains most of the misfit, or where there is none, more than any fault of small size is expected to. The score test
-    ranks the terms; where the fit is far from the recordings, it says little of how much they would gain, so that a few
-    Gauss-Newton steps are taken with the best few.
-    """
-    if run.model.structure.is_time_stepped:
-        return None
-    search, scores = score_terms(
-        run.model, run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
-    )
-    expected = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
-    promising = [term for term, gain in expected.items() if gain >= search.required(term)]
-    recordings = [decay.file for decay in run.decays]
-    table, noise = residual_table(recordings, run.decays, run.fit), reference_noise(run.decays, run.fit)
-    gains: dict[str, float] = {}
-    for term in sorted(promising, key=expected.__getitem__, reverse=True)[:_TERMS]:
-        fit = fit_structure(search.with_terms([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
-        gains[term] = table.cost - residual_table(recordings, run.decays, fit).cost
-    if not gains:
-        return None
-    best = max(gains, key=gains.__getitem__)
-    if consistency == "misfit":
-        share = gains[best] / max(table.explicable(noise), 1.0)
-        why = f"{_STEPS} steps with it explain {100 * share:.0f} % of the misfit"
-        return (best, why) if share > _MOST else None
-    fault = largest_expected_gain(run.campaign, run.decays, run.fit)
-    why = f"{_STEPS} steps with it gain {gains[best]:.0f}, the likeliest fault is expected to gain {fault:.0f}"
-    return (best, why) if gains[best] > fault else None
-
-
 def _explains(hypotheses: Sequence[Hypothesis]) -> bool:
     """Whether hypotheses that were isolated one after the other explain the recordings wholly."""
     return bool(hypotheses) and (hypotheses[-1].candidate.is_explained or hypotheses[-1].is_sufficient)
@@ -123,6 +81,8 @@ def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Pro
     is_sound = base.fit is not run.fit and consistency_of(base.campaign, base.decays, base.fit) == "consistent"
     found, fits = ((), 0) if is_sound else isolate(base, progress)
     run = replace(run, isolated=(run.fit, found), fits=run.fits + fits)
+    if is_sound and base.structure.tracks != run.model.structure.tracks:
+        run = replace(run, first_term=SEPARATE_TRACKS)
     faults = ", ".join(f"{one.fault.code} of {one.fault.where}" for one in found) or "no fault"
     explains = "explains the recordings" if _explains(found) else "explains a part of the recordings at most"
     return run.noted("isolate_faults", f"{consistency}: {faults} {explains}", f"{fits} fits of hypotheses")
@@ -146,7 +106,8 @@ def _with_base(run: Analysis, consistency: Consistency) -> tuple[Analysis, Candi
             run = replace(run, fits=run.fits + 1)
             base = _fit_of(larger, decays, run.fit)
             if not base.is_explained:
-                return run, base
+                whole = replace(CandidateFit.of(structure, run.decays, run.fit), structure=larger)
+                return run, replace(base, whole=whole)
             if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, base.fit, decays)):
                 larger = linear
     if larger.names == structure.names:

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
+from sprung.analysis.first_term import explaining_term
+from sprung.faults import consistency_of
 from sprung.progress import Progress
 from sprung.selection import TERMS, ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body, try_term
 from sprung.selection import select_finite_rotation as select_rotation
@@ -14,11 +16,20 @@ from sprung.selection import select_nonlinear_terms as select_nonlinear
 
 
 def select_first_term(run: Analysis, progress: Progress) -> Analysis:
-    """Try the term that explains much of the misfit, if there is one; a body that is flexible is looked for otherwise."""
+    """Try what explains much of the misfit, one term after the other; a body that is flexible is looked for otherwise."""
     before, term = run.model, run.first_term
-    if term is None or TERMS[term].explains_all:
+    found = replace(run, search=replace(before, progress=progress), first_term=None)
+    while term is not None and not TERMS[term].explains_all:
+        search = try_term(found.model, term)
+        is_refused = search.structure.names == found.model.structure.names
+        found = replace(found, search=search)
+        if is_refused:
+            break
+        explaining = explaining_term(found, consistency_of(found.campaign, found.decays, found.fit))
+        term = None if explaining is None else explaining[0]
+    if len(found.model.steps) == len(before.steps):
         return run
-    search = try_term(replace(before, progress=progress), term)
+    search = found.model
     if search.structure.names != before.structure.names:
         search = from_contact(search)
     return _with_search(replace(run, first_term=None), before, search, "select_first_term")
@@ -29,7 +40,7 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     before = run.model
     search = select_flexible_body(replace(before, progress=progress))
     if search.fit is not before.fit or not has_flexible_body(run):
-        search = select_linear(search)
+        search = select_linear(search, refused=before.refused)
     if search.structure.names != before.structure.names:
         search = from_contact(search)
     return _with_search(run, before, search, "select_linear_terms")

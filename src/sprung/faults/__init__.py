@@ -10,7 +10,7 @@ from sprung.faults.candidate_fit import CandidateFit, decays_without_wheel_senso
 from sprung.faults.consistency import Consistency, consistency_of, largest_expected_gain, score_faults_of
 from sprung.faults.drift import detect_drift
 from sprung.faults.hypothesis import Hypothesis
-from sprung.faults.isolate import isolate
+from sprung.faults.isolate import isolate, largest_gain_by_steps
 from sprung.faults.residual_table import is_explained, reference_noise, residual_table
 from sprung.faults.statements.search import examine
 
@@ -25,6 +25,7 @@ __all__ = [
     "is_explained",
     "isolate",
     "largest_expected_gain",
+    "largest_gain_by_steps",
     "reference_noise",
     "residual_table",
     "score_faults_of",

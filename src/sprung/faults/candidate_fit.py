@@ -55,6 +55,8 @@ class CandidateFit:
         Its residuals by the drops and channels of the whole campaign.
     noise
         What the sensors read at rest.
+    whole
+        The same model with the decays from the landing on, where these begin later; else None.
     """
 
     structure: ModelStructure
@@ -63,6 +65,7 @@ class CandidateFit:
     fit: FitResult
     table: ResidualTable
     noise: SensorNoise
+    whole: CandidateFit | None = None
 
     @classmethod
     def of(cls, structure: ModelStructure, decays: Sequence[FreeDecay], fit: FitResult | None = None) -> CandidateFit:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
+from sprung.estimation import FitResult
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
@@ -17,7 +18,7 @@ from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.consistency import NEGLIGIBLE
 from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
-from sprung.faults.hypothesis import Hypothesis
+from sprung.faults.hypothesis import Hypothesis, fit_corrected
 from sprung.faults.residual_table import ResidualTable
 
 Real = NDArray[np.float64]
@@ -37,8 +38,8 @@ _CONVERGED = 0.1
 _HALF = 0.5
 """Share of a misfit that a hypothesis from a score test may leave after its first fit."""
 
-_REFITS = 2
-"""Fits in which the numbers of a hypothesis converge."""
+_ROUNDS = 3
+"""How often the numbers of a hypothesis follow a score test, and the parameters the numbers by some steps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,8 +203,9 @@ class ChannelCorrection(Hypothesis):
         is_fitted: bool = False,
     ) -> ChannelCorrection:
         """Correct a channel; without a candidate fit the residuals are those predicted."""
-        table = deletion.table(hypothesis.residual)
-        if candidate is not None:
+        if candidate is None:
+            table = deletion.table(hypothesis.residual)
+        else:
             # The residuals count in the units of the channel as it was recorded.
             rows, counts = range(len(deletion.base.recordings)), candidate.table.counts[:, [deletion.channel]]
             residual = hypothesis.reading(numbers) ** 2 * candidate.table.residual[:, [deletion.channel]]
@@ -234,13 +236,20 @@ class ChannelCorrection(Hypothesis):
         """Code of the fault that it is to the first order of its size: a low-pass is a delay."""
         return self.hypothesis.scored_as
 
-    def confirm(self, base: CandidateFit) -> tuple[Hypothesis | None, int]:
+    @property
+    def law(self) -> int:
+        """Of several laws that have the same code, which one it is."""
+        return self.hypothesis.law
+
+    def confirm(self, base: CandidateFit, near: FitResult | None = None) -> tuple[Hypothesis | None, int]:
         """Fit the campaign with the channel corrected, and its numbers along with it.
 
         Parameters
         ----------
         base
             The fit of the campaign as it is.
+        near
+            The fit of a campaign that was corrected almost as well, from which some steps are enough.
 
         Returns
         -------
@@ -251,12 +260,11 @@ class ChannelCorrection(Hypothesis):
         """
         deletion, hypothesis = self.deletion, self.hypothesis
         numbers, scores = self.numbers, list[FaultScore]()
-        candidate = base.refit(self.correction, self.candidate.fit)
-        fits = 1
+        candidate, fits = fit_corrected(base, self.correction, self.candidate.fit, near)
         explains = self.is_beyond_prior or candidate.misfit <= _HALF * base.misfit
         if self.score_gain > 0 and not explains:
             return None, fits  # the score test was made too far away
-        while numbers:
+        for _ in range(_ROUNDS if numbers else 0):
             scores = deletion.scores_of(hypothesis, candidate.scores)
             if all(score.gain < _CONVERGED for score in scores):
                 break
@@ -264,10 +272,9 @@ class ChannelCorrection(Hypothesis):
             if not hypothesis.allows(numbers):
                 return None, fits
             # Where the residuals are noise already, the numbers are settled in the fit of all drops.
-            if candidate.is_explained or fits > _REFITS or numbers == before:
+            if candidate.is_explained or numbers == before:
                 break
-            candidate = base.refit(self.correct(numbers), candidate.fit)
-            fits += 1
+            candidate = base.refine(self.correct(numbers), candidate.fit)
         if not _is_relevant(hypothesis, numbers) or not hypothesis.allows(numbers):
             return None, fits
         stds = tuple(score.std for score in scores)

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from sprung.errors import Fault
+from sprung.estimation import FitResult
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.consistency import SIGNIFICANT
 from sprung.faults.correction import Correction
@@ -82,13 +83,20 @@ class Hypothesis:
         """Code of the fault that it is to the first order of its size: its own."""
         return self.fault.code
 
-    def confirm(self, base: CandidateFit) -> tuple[Hypothesis | None, int]:
+    @property
+    def law(self) -> int:
+        """Of several laws that have the same code, which one it is."""
+        return 0
+
+    def confirm(self, base: CandidateFit, near: FitResult | None = None) -> tuple[Hypothesis | None, int]:
         """Fit the campaign with the correction.
 
         Parameters
         ----------
         base
             The fit of the campaign as it is.
+        near
+            The fit of a campaign that was corrected almost as well, from which some steps are enough.
 
         Returns
         -------
@@ -99,8 +107,8 @@ class Hypothesis:
         """
         if self.remedy != "corrected":
             return self, 0
-        candidate = base.refit(self.correction, self.candidate.fit)
-        return replace(self, table=candidate.table, candidate=candidate, is_fitted=True, score_gain=0.0), 1
+        candidate, fits = fit_corrected(base, self.correction, self.candidate.fit, near)
+        return replace(self, table=candidate.table, candidate=candidate, is_fitted=True, score_gain=0.0), fits
 
     def settled(self, scores: Sequence[FaultScore]) -> tuple[Hypothesis, Correction] | None:  # noqa: ARG002 (one form for all)
         """Return the hypothesis with its numbers where the scores of a better fit have them, and the correction by the change.
@@ -148,6 +156,13 @@ class Hypothesis:
             return True
         own, others = (frozenset(each.fault.where.split(", ")) for each in (self, other))
         return self.fault.code == other.fault.code and (own <= others or others <= own)
+
+
+def fit_corrected(
+    base: CandidateFit, correction: Correction, start: FitResult, near: FitResult | None
+) -> tuple[CandidateFit, int]:
+    """Fit a corrected campaign, and say how many fits that were: some steps from a fit near by are none."""
+    return (base.refit(correction, start), 1) if near is None else (base.refine(correction, near), 0)
 
 
 def best_of(hypotheses: Sequence[Hypothesis], alike: float) -> Hypothesis:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from sprung.estimation import FitResult
 from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, torsion_test
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
@@ -175,6 +176,24 @@ def _by_scores(base: CandidateFit) -> list[Hypothesis]:
     return hypotheses
 
 
+def largest_gain_by_steps(base: CandidateFit) -> float:
+    """Return what the likeliest faults of small size gain, by some steps with each of the best few.
+
+    Parameters
+    ----------
+    base
+        The fit of the campaign as it is.
+
+    Returns
+    -------
+    float
+        In twice the log-likelihood; 0 where none explains much.
+    """
+    laws = {(one.fault.where, one.first_order): one for one in _by_scores(base) if one.fault.code == one.first_order}
+    likeliest = sorted(laws.values(), key=lambda one: one.score())[:_MOST_FITS]
+    return max((base.table.cost - one.score() for one in _near(base, likeliest, base.fit)), default=0.0)
+
+
 def _deletions(base: CandidateFit, progress: Progress) -> list[ChannelDeletion | DropDeletion]:
     """Return each channel and each drop left out, by a few steps; first the one whose deletion gains most."""
     progress(Step("leaving out each channel and each drop"))
@@ -248,34 +267,38 @@ def _confirm_best(
                 for one in remaining
                 if one.concerns_same(best) and (one.first_order == best.first_order or one.score() < limit)
             ]
-            likeliest, more = _likeliest_alike(base, confirmed, alike)
-            return likeliest, [*rest, likeliest], fits + more
+            likeliest = _likeliest_alike(base, confirmed, alike)
+            return likeliest, [*rest, likeliest], fits
     return None, rest, fits
 
 
-def _likeliest_alike(base: CandidateFit, confirmed: Hypothesis, alike: Sequence[Hypothesis]) -> tuple[Hypothesis, int]:
-    """Fit what may be meant by a convincing hypothesis as well: the best of each code.
+def _likeliest_alike(base: CandidateFit, confirmed: Hypothesis, alike: Sequence[Hypothesis]) -> Hypothesis:
+    """Return what a convincing hypothesis means: the likeliest of each law about the same place, by some steps from its fit.
 
-    What all are to the first order, a delay instead of a low-pass, stays unless another one is significantly more likely, both
+    What all are to the first order, a delay instead of a low-pass, stays unless another one is significantly more likely, all
     with their numbers where they gain most.
     """
-    codes = {one.fault.code for one in alike} - {confirmed.fault.code}
+    laws = {(one.fault.code, one.law) for one in alike} - {(confirmed.fault.code, confirmed.law)}
     rivals = [
-        min((one for one in alike if one.fault.code == code), key=lambda one: one.score()) for code in sorted(codes)
+        min((one for one in alike if (one.fault.code, one.law) == law), key=lambda one: one.score())
+        for law in sorted(laws)
     ]
-    pairs = [rival.confirm(base) for rival in rivals]
-    found = [confirmed, *(one for one, _ in pairs if one is not None)]
-    scores = [_converged_score(one) for one in found]
-    limit = min(scores) + SIGNIFICANT * confirmed.candidate.fit.overdispersion
+    found = [confirmed, *_near(base, rivals, confirmed.candidate.fit)]
+    # Much of what tells laws apart is fast, and fades soon after the landing.
+    whole = [] if base.whole is None else _near(base.whole, found, confirmed.candidate.fit)
+    judged = whole if len(whole) == len(found) and any(one.candidate.is_explained for one in whole) else found
+    scores = [one.score() - one.remaining_gain for one in judged]
+    likeliest = int(np.argmin(scores))
+    limit = scores[likeliest] + SIGNIFICANT * judged[likeliest].candidate.fit.overdispersion
     plain = [
         one for one, score in zip(found, scores, strict=True) if one.fault.code == one.first_order and score < limit
     ]
-    likeliest = plain[0] if plain else found[int(np.argmin(scores))]
-    return likeliest, sum(made for _, made in pairs)
+    return plain[0] if plain else found[likeliest]
 
 
-def _converged_score(hypothesis: Hypothesis) -> float:
-    return hypothesis.score() - hypothesis.remaining_gain
+def _near(base: CandidateFit, hypotheses: Sequence[Hypothesis], fit: FitResult) -> list[Hypothesis]:
+    """Return those of some hypotheses about the same place that hold, by some steps from the fit of one of them."""
+    return [one for one in (hypothesis.confirm(base, fit)[0] for hypothesis in hypotheses) if one is not None]
 
 
 def _is_promising(base: CandidateFit, hypothesis: Hypothesis) -> bool:

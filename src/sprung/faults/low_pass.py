@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter
 
 from sprung.faults.correction import Correction
+from sprung.preprocess import detect_release
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -82,7 +83,8 @@ def delay_times_corner(order: int) -> float:
 def undo_low_pass(channel: int, low_pass: LowPass) -> Correction:
     """Undo a low-pass of a channel for the frequencies at which vehicles vibrate.
 
-    Above them its noise is raised by as much as at their limit, so that it stays white.
+    Above them its noise is raised by as much as at their limit, so that it stays white. At rest nothing is undone where the
+    release would show before it happens.
 
     Parameters
     ----------
@@ -105,6 +107,10 @@ def undo_low_pass(channel: int, low_pass: LowPass) -> Correction:
         first = abs(advance) + advance
         samples = values.copy()
         samples[channel] = np.convolve(padded, kernel, mode="valid")[first : first + values.shape[1]]
+        release = detect_release(values, rate)
+        if release is not None:  # what comes after it does not move the vehicle before it
+            rest = slice(max(release.sample - margin - abs(advance), 0), release.sample)
+            samples[channel, rest] = values[channel, rest]
         return samples
 
     return Correction(samples=undone)

@@ -123,6 +123,13 @@ class ModelSearch:
         return [term for term in (*tracks, *terms) if term in among]
 
     @property
+    def refused(self) -> frozenset[str]:
+        """Terms that were fitted and not included since the model is what it is."""
+        taken = [number for number, step in enumerate(self.steps) if step.taken]
+        since = self.steps[taken[-1] + 1 :] if taken else self.steps
+        return frozenset(step.extra for step in since if step.fitted)
+
+    @property
     def selected(self) -> list[str]:
         """Terms that the recordings brought into the model."""
         structure = self.structure
@@ -231,6 +238,18 @@ class ModelSearch:
     def is_misfit_small(self) -> bool:
         """Whether what is left is no noise and yet small: any further term would seem to explain some of it."""
         return self.is_overdispersed and not self.has_model_error
+
+    def discount_of(self, fit: FitResult) -> float:
+        """Return by how much less a gain counts that is expected of a fit on the way to one with a further term.
+
+        Colour of the residuals may be what the term explains. Where they are as small as noise, it is the noise's own.
+
+        Parameters
+        ----------
+        fit
+            The present one, or one after a step with the term.
+        """
+        return fit.overdispersion if self.is_misfit_small else fit.disagreement
 
     def gain_over(self, other: ModelSearch) -> float:
         """Return the gain in twice the log-likelihood over another fit of the same decays, divided by the overdispersion.

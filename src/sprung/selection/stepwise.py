@@ -7,7 +7,7 @@ one by one, as their fits are quick; nonlinear ones together, as their fits are 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from sprung.estimation import FitResult
@@ -39,7 +39,9 @@ _FURTHER_ROUNDS, _TRIED_BESIDE = 5, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
 
 
-def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> ModelSearch:
+def select_linear_terms(
+    search: ModelSearch, among: Sequence[str] = _LINEAR, refused: Collection[str] = ()
+) -> ModelSearch:
     """Return the search after every linear term that the recordings support has been taken.
 
     Parameters
@@ -48,18 +50,21 @@ def select_linear_terms(search: ModelSearch, among: Sequence[str] = _LINEAR) -> 
         A linear model.
     among
         Terms to try.
+    refused
+        Those of them that were fitted already and not included, and are tried again only beside another one.
 
     Returns
     -------
     ModelSearch
     """
     for _ in range(_ROUNDS):
-        terms = search.open_terms(among)
+        terms = [term for term in search.open_terms(among) if term not in refused]
         search, scores = score_terms(search, terms)
-        search, ranked = rank_terms(search, scores, WORTH_A_FIT / search.fit.disagreement)
+        search, ranked = rank_terms(search, scores, WORTH_A_FIT / search.discount_of(search.fit))
         search, accepted = accept_first(search, ranked, among)
         if not accepted:
             break
+        refused = ()
     return search
 
 
@@ -189,7 +194,7 @@ def try_term(
         tried = fit_nonlinear_term(search, larger, first or begin_nonlinear_fit(search, larger))
     else:
         stepped, expected = take_first_step(search, term)
-        if expected < search.significant(term):
+        if expected < search.required(term):
             return search.recorded({term: expected}, False, False)
         tried = fit_linear_term(stepped, term)
     if tried is None:

@@ -102,7 +102,7 @@ def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]
     if first.fit.loglikelihood < search.fit.loglikelihood:
         first = first.refit(first.structure, most=_STEPS_FROM_BELOW)
     gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + WORTH_A_FIT * first.fit.remaining_gain
-    return first, gain / first.fit.disagreement
+    return first, gain / search.discount_of(first.fit)
 
 
 def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:

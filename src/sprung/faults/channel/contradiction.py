@@ -24,4 +24,6 @@ def _unlike(prediction: ChannelPrediction, what: str, free: int, row=None) -> Ch
     do = "Check the sensor, its cable and how it is fastened."
     fault = Fault("unlike-others", prediction.sensor.channel, what, do)
     predicted = 0.0 * prediction.record if row is None else row @ prediction.motion
-    return ChannelHypothesis("unlike-others", lambda *_: fault, prediction.residual_of(predicted), free=free)
+    return ChannelHypothesis(
+        "unlike-others", lambda *_: fault, lambda: ((), prediction.residual_of(predicted)), free=free
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sprung.errors import Fault
-from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, figures
+from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, Real, figures
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import advance_channel
 
@@ -13,7 +13,10 @@ from sprung.faults.correction import advance_channel
 def delay(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Estimate the delay."""
     row = prediction.row(prediction.sensor)
-    estimate = prediction.delay(row)
+
+    def estimated() -> tuple[Numbers, Real]:
+        number = prediction.delay(row)
+        return (number,), prediction.residual_of(row @ prediction.delayed_motion(number)[0])
 
     def fault(numbers: Numbers, _: Numbers) -> Fault:
         return delay_fault(prediction.sensor.channel, numbers[0])
@@ -21,9 +24,8 @@ def delay(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     yield ChannelHypothesis(
         "late",
         fault,
-        prediction.residual_of(row @ prediction.delayed_motion(estimate)[0]),
+        estimated,
         lambda numbers: advance_channel(prediction.channel, numbers[0]),
-        (estimate,),
         (0.0,),
     )
 

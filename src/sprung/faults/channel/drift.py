@@ -17,4 +17,4 @@ def drift(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
         return
     residual, free = prediction.drift
     fault = Fault("drift", prediction.sensor.channel, "the baseline drifts, compared with the other channels", DRIFT_DO)
-    yield ChannelHypothesis("drift", lambda *_: fault, residual, free=free)
+    yield ChannelHypothesis("drift", lambda *_: fault, lambda: ((), residual), free=free)

@@ -36,4 +36,5 @@ def flat(prediction: ChannelPrediction, noise: float) -> ChannelHypothesis | Non
         return None
     what = "the channel shows no motion where the other channels show motion"
     fault = Fault("flat", prediction.sensor.channel, what, "Check the sensor, its cable and how it is fastened.")
-    return ChannelHypothesis("flat", lambda *_: fault, prediction.residual_of(0.0 * prediction.record))
+    residual = prediction.residual_of(0.0 * prediction.record)
+    return ChannelHypothesis("flat", lambda *_: fault, lambda: ((), residual))

@@ -32,9 +32,8 @@ def gain(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     yield ChannelHypothesis(
         "gain",
         fault,
-        prediction.residual_of(estimate * prediction.stated),
+        lambda: ((estimate,), prediction.residual_of(estimate * prediction.stated)),
         lambda numbers: scale_channel(prediction.channel, 1 / numbers[0]),
-        (estimate,),
         (1.0,),
         lambda numbers: numbers[0],
         allows=allows,

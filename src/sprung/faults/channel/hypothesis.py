@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,12 +28,11 @@ class ChannelHypothesis:
         Of the fault.
     fault
         Returns the fault, given the numbers and their standard uncertainties, without what is done about it.
-    residual
-        Residual of the channel, sum of squares of each decay, (m/s²)², shape (decay,).
+    estimate
+        Estimates the numbers from the recordings, a gain, s, m or Hz, and returns them with the residual of the channel, sum of
+        squares of each decay, (m/s²)², shape (decay,).
     correction
         Returns what corrects the channel, given the numbers; None where nothing would, and the channel is left out.
-    numbers
-        What is estimated from the recordings: a gain, s, m or Hz.
     stated
         What the campaign file states of the numbers, where it states anything.
     reading
@@ -41,6 +41,8 @@ class ChannelHypothesis:
         How many numbers are estimated, where they are not listed.
     allows
         Whether the numbers are of a usual size, and gravity at rest does not contradict them.
+    law
+        Of several laws that have the same code, which one it is: the order of a low-pass.
     first_order
         Code of the fault that it is to the first order of its size, whose score test is its own; empty for none.
     improve
@@ -54,17 +56,31 @@ class ChannelHypothesis:
 
     code: str
     fault: Callable[[Numbers, Numbers], Fault]
-    residual: Real
+    estimate: Callable[[], tuple[Numbers, Real]]
     correction: Callable[[Numbers], Correction] | None = None
-    numbers: Numbers = ()
     stated: Numbers = ()
     reading: Callable[[Numbers], float] = lambda _: 1.0
     free: int = 0
     allows: Callable[[Numbers], bool] = lambda _: True
+    law: int = 0
     first_order: str = ""
     improve: Callable[[Numbers, Numbers], Numbers] | None = None
     change: Callable[[Numbers, Numbers], Correction] | None = None
     recorded: Callable[[Real, float, Numbers], float] | None = None
+
+    @cached_property
+    def _estimated(self) -> tuple[Numbers, Real]:
+        return self.estimate()
+
+    @property
+    def numbers(self) -> Numbers:
+        """What is estimated from the recordings: a gain, s, m or Hz."""
+        return self._estimated[0]
+
+    @property
+    def residual(self) -> Real:
+        """Residual of the channel, sum of squares of each decay, (m/s²)², shape (decay,)."""
+        return self._estimated[1]
 
     @property
     def scored_as(self) -> str:

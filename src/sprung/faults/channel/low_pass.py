@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from sprung.errors import Fault
-from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, figures
+from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, Real, figures
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import Correction, advance_channel
 from sprung.faults.low_pass import LowPass, delay_times_corner, recorded_energy, undo_low_pass
@@ -27,7 +27,10 @@ def low_pass(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
 
 def _of_order(prediction: ChannelPrediction, order: int) -> ChannelHypothesis:
     product = delay_times_corner(order)
-    estimate = prediction.low_pass(order)
+
+    def estimated() -> tuple[Numbers, Real]:
+        found = prediction.low_pass(order)
+        return (found.corner,), prediction.residual_of(prediction.through_low_pass(found))
 
     def fault(numbers: Numbers, stds: Numbers) -> Fault:
         std = 0.0 if not stds else stds[0] * numbers[0] ** 2 / product  # of a delay, s
@@ -43,11 +46,11 @@ def _of_order(prediction: ChannelPrediction, order: int) -> ChannelHypothesis:
     return ChannelHypothesis(
         "low-pass",
         fault,
-        prediction.residual_of(prediction.through_low_pass(estimate)),
+        estimated,
         lambda numbers: undo_low_pass(prediction.channel, LowPass(numbers[0], order)),
-        (estimate.corner,),
         (math.inf,),
         allows=lambda numbers: _LOWEST < numbers[0] < _HIGHEST,
+        law=order,
         first_order="late",
         improve=delayed,
         change=change,

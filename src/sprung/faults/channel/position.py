@@ -40,8 +40,7 @@ def position(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     yield ChannelHypothesis(
         code,
         fault,
-        prediction.residual_of(heave + place @ rotation),
+        lambda: (tuple(place.tolist()), prediction.residual_of(heave + place @ rotation)),
         correction,
-        tuple(place.tolist()),
         stated[:2] if sensor.position else (),
     )

@@ -20,6 +20,6 @@ def sign(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     yield ChannelHypothesis(
         "sign",
         lambda *_: fault,
-        prediction.residual_of(-prediction.stated),
+        lambda: ((), prediction.residual_of(-prediction.stated)),
         lambda _: scale_channel(prediction.channel, -1.0),
     )

@@ -34,7 +34,7 @@ def _in_unit(prediction: ChannelPrediction, factor: float, what: str) -> Channel
     return ChannelHypothesis(
         "unit",
         lambda *_: fault,
-        prediction.residual_of(factor * prediction.stated),
+        lambda: ((), prediction.residual_of(factor * prediction.stated)),
         lambda _: scale_channel(prediction.channel, 1 / factor),
         reading=lambda _: factor,
     )

@@ -26,4 +26,4 @@ def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
 
 
 def _on_wheel(fault: Fault, residual, correction: Correction) -> ChannelHypothesis:  # type: ignore[no-untyped-def]
-    return ChannelHypothesis("wrong-wheel", lambda *_: fault, residual, lambda _: correction)
+    return ChannelHypothesis("wrong-wheel", lambda *_: fault, lambda: ((), residual), lambda _: correction)

@@ -1,0 +1,52 @@
+"""The model term that is to be tried before faults are isolated, as it explains more than any of them."""
+
+from __future__ import annotations
+
+from sprung.analysis.analysis import Analysis
+from sprung.estimation import NEAR
+from sprung.faults import CandidateFit, Consistency, largest_expected_gain, largest_gain_by_steps
+from sprung.progress import silent
+from sprung.selection import TERMS, fit_structure, score_terms
+
+_MOST = 0.5
+"""Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
+
+_STEPS, _TERMS = 3, 3
+"""Gauss-Newton steps that are taken with each of so many terms."""
+
+
+def explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[str, str] | None:
+    """Return the linear term that is to be tried before faults are isolated, and why; None where there is none.
+
+    It explains most of the misfit where there is one, and more than any fault of small size does. The score test ranks the
+    terms and the faults; where the fit is far from the recordings, it says little of how much they would gain, so that a few
+    Gauss-Newton steps are taken with the best few.
+
+    Parameters
+    ----------
+    run
+        With a model and its fit.
+    consistency
+        Of that fit; None where it was not tested.
+    """
+    if consistency in (None, "consistent") or run.model.structure.is_time_stepped:
+        return None
+    terms = run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
+    search, scores = score_terms(run.model, [term for term in terms if term not in run.model.refused])
+    expected = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    promising = [term for term, gain in expected.items() if gain >= search.required(term)]
+    base = CandidateFit.of(run.model.structure, run.decays, run.fit)
+    gains: dict[str, float] = {}
+    for term in sorted(promising, key=expected.__getitem__, reverse=True)[:_TERMS]:
+        fit = fit_structure(search.with_terms([term]), run.decays, run.fit, NEAR, silent, most=_STEPS)
+        gains[term] = base.table.cost - CandidateFit.of(run.model.structure, run.decays, fit).table.cost
+    if not gains:
+        return None
+    best = max(gains, key=gains.__getitem__)
+    share = gains[best] / max(base.table.explicable(base.noise), 1.0)
+    if consistency == "misfit" and share < _MOST:
+        return None
+    is_misfit = consistency == "misfit"
+    fault = largest_gain_by_steps(base) if is_misfit else largest_expected_gain(run.campaign, run.decays, run.fit)
+    why = f"{_STEPS} steps with it gain {gains[best]:.0f}, the likeliest fault is expected to gain {fault:.0f}"
+    return (best, why) if gains[best] > fault else None
