@@ -86,6 +86,13 @@ def bench(session: nox.Session) -> None:
 
 
 @nox.session
+def mutation(session: nox.Session) -> None:
+    """Make ten formulas wrong, one at a time, and see whether a test notices; `-- --seed 1` for other ones."""
+    session.install("-e", ".[dev,all]")
+    session.run("python", "benchmarks/mutation.py", *session.posargs)
+
+
+@nox.session
 def docs(session: nox.Session) -> None:
     """Build the documentation into build/docs; a warning is an error."""
     session.install(".[docs]")
