@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 import sprung
+import sprung.analysis.terms
 from sprung.analysis import STAGES, Analysis, AnalysisOptions, analyse, identify_campaign, result_of
 from sprung.campaign import DEFAULT_HEIGHT, Drop
+from sprung.progress import silent
+from sprung.selection import ModelSearch, ModelStructure
 from sprung.vehicle import TABLE_1_CAR, WHEELS, Item, Load
 
 BALLAST = Load(name="ballast", items=(Item(mass=140, position=(-1.0, 0.3, 0.5)),))
@@ -97,3 +100,24 @@ def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaig
     run = analyse(campaign, AnalysisOptions(tracks="shared", terms=("anti-roll",), fall=False))
     assert run.model.structure.terms == ("anti-roll",)
     assert not [step for step in run.trace if step.stage.startswith("select") and "scored" in step.what]
+
+
+def test_a_nonlinear_term_that_is_nothing_at_the_optimum_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The search ends a standard error away from the optimum, and does not know where the wheels last touched."""
+    rubbing = replace(TABLE_1_CAR, F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
+    drops = [{"wheels": list(wheels), "load": load} for wheels in KINDS[:2] for load in ("empty", "ballast")]
+    campaign = sprung.simulate(
+        rubbing, loads=[BALLAST], drops=drops, rate=250.0, noise=0.02, seed=1, duration=1.6,
+        known={"total_mass": TABLE_1_CAR.total_mass},
+    )  # fmt: skip
+    names = [stage.__name__ for stage in STAGES]
+    run = Analysis.start(campaign, AnalysisOptions(), STAGES[: names.index("fit_baseline") + 1]).run()
+
+    def with_too_much(search: ModelSearch, _: ModelStructure) -> ModelSearch:
+        return search.refit(search.with_terms(["friction", "tyre-curve"]))
+
+    monkeypatch.setattr(sprung.analysis.terms, "select_nonlinear", with_too_much)
+    found = sprung.analysis.terms.select_nonlinear_terms(run, silent)
+    assert found.model.structure.terms == ("friction",)
+    assert found.fit.converged
+    assert any(step.what == "tyre-curve: fitted and not included" for step in found.trace)

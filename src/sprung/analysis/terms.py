@@ -9,7 +9,15 @@ from sprung.analysis.baseline import described, from_contact, structures
 from sprung.analysis.first_term import explaining_term
 from sprung.faults import consistency_of
 from sprung.progress import Progress
-from sprung.selection import TERMS, ModelSearch, SelectionStep, fit_forced_terms, select_flexible_body, try_term
+from sprung.selection import (
+    TERMS,
+    ModelSearch,
+    SelectionStep,
+    fit_forced_terms,
+    leave_out_unneeded,
+    select_flexible_body,
+    try_term,
+)
 from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
@@ -74,7 +82,11 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         )
         search = select_nonlinear(before, plain)
     if search.structure.is_nonlinear:
-        search = from_contact(search)
+        # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
+        last = from_contact(search)
+        needed, _ = leave_out_unneeded(last, run.model)
+        # Where a wheel last touched, a model with more than the vehicle has did not know.
+        search = last if needed is last else from_contact(search.refit_as(needed))
     return _with_search(run, run.model, search, "select_nonlinear_terms")
 
 

@@ -16,7 +16,7 @@ from sprung.preprocess import FreeDecay, estimate_sensor_noise
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.linear_terms import SEPARATE_TRACKS
-from sprung.selection.starts import fit_structure
+from sprung.selection.starts import fit_structure, states_by_coordinates
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.vehicle import PARAMETERS
@@ -188,6 +188,20 @@ class ModelSearch:
             structure, self.decays, self.fit, enough, self.progress, most=most, beginning_only=beginning_only
         )
         return replace(self, structure=structure, fit=fit)
+
+    def refit_as(self, other: ModelSearch) -> ModelSearch:
+        """Fit the model of a later search to the decays of this one, from its parameters.
+
+        Parameters
+        ----------
+        other
+            Of the same drops, whose decays may begin later.
+        """
+        if not other.structure.is_time_stepped:
+            return other
+        states = states_by_coordinates(self.fit.states, self.fit.names, other.structure.names)
+        fit = fit_structure(other.structure, self.decays, other.fit, other.overdispersion, self.progress, states)
+        return replace(other, fit=fit, decays=self.decays)
 
     @cached_property
     def overdispersion(self) -> float:
