@@ -2,10 +2,10 @@
 
 from sprung.preprocess.alignment import align_loggers
 from sprung.preprocess.decay import FlightLikelihood, FreeDecay, quantisation_variance
-from sprung.preprocess.dropped_wheels import merge_dropped_wheels
+from sprung.preprocess.dropped_wheels import Dropped, merge_dropped_wheels
 from sprung.preprocess.events import DropObservation, Events, MarkedSamples
 from sprung.preprocess.fall import BLOW, IMPACT, WHEEL_SPEED, detect_dropped_channels, measure_fall
-from sprung.preprocess.first_motion import FirstMotion, is_first_motion_consistent
+from sprung.preprocess.first_motion import begins_upward, is_first_motion_consistent, redetect_dropped_wheels
 from sprung.preprocess.flight import find_flights
 from sprung.preprocess.high_pass import differentiate_by_cutoff, is_ac_coupled
 from sprung.preprocess.landing import find_steepest_rise
@@ -19,8 +19,8 @@ __all__ = [
     "IMPACT",
     "WHEEL_SPEED",
     "DropObservation",
+    "Dropped",
     "Events",
-    "FirstMotion",
     "FlightLikelihood",
     "FreeDecay",
     "MarkedSamples",
@@ -29,6 +29,7 @@ __all__ = [
     "Release",
     "SensorNoise",
     "align_loggers",
+    "begins_upward",
     "detect_dropped_channels",
     "detect_release",
     "differentiate_by_cutoff",
@@ -45,5 +46,6 @@ __all__ = [
     "pool_moments",
     "prepare",
     "quantisation_variance",
+    "redetect_dropped_wheels",
     "unknown_release",
 ]

@@ -10,14 +10,13 @@ has to be known for that, so it tests the stated places of sensors and wheels.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
-from sprung.preprocess.dropped_wheels import detect_dropped_wheels
+from sprung.preprocess.dropped_wheels import Dropped, detect_dropped_wheels
 from sprung.preprocess.prepare import Prepared
 from sprung.vehicle import Wheel
 
@@ -40,51 +39,40 @@ _ABOUT_THE_REAR, _ABOUT_THE_FRONT = (-2.0, -0.45), (-0.55, 1.0)
 gyration squared is a b; the limits are those of 0.4 and 2 times that."""
 
 
-@dataclass(frozen=True, eq=False)
-class FirstMotion:
-    """First motion of the body in each drop.
+def redetect_dropped_wheels(campaign: Campaign, prepared: Prepared) -> tuple[Dropped, ...]:
+    """Detect which wheels lost their blocks in prepared recordings, for a campaign that states other places of their sensors.
 
-    Attributes
+    Parameters
     ----------
-    channels
-        Positions of the body's sensors in the campaign.
-    velocities
-        Gained by each in the first hundredths of a second, m/s, upward, shape (drop, channel); NaN without a release.
-    dropped
+    campaign
+        States the places.
+    prepared
+        Its recordings.
+
+    Returns
+    -------
+    tuple of mapping
         For each drop, by the wheel station that the campaign states for a channel, whether the channel shows a fall.
-    rises
-        Whether the largest motion, among the body's sensors or among those of the wheels, begins upward: no vehicle does.
     """
+    return tuple(
+        detect_dropped_wheels(seen.recording, None if seen.release is None else seen.rest, campaign.sensors)
+        for seen in prepared.observations
+    )
 
-    channels: tuple[int, ...]
-    velocities: Real
-    dropped: tuple[Mapping[Wheel, bool], ...]
-    rises: bool
 
-    @classmethod
-    def of(cls, campaign: Campaign, prepared: Prepared, is_as_prepared: bool = False) -> FirstMotion:
-        """Measure it in prepared recordings, for a campaign that may state other places of their sensors.
+def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
+    """Whether the largest motion, among the body's sensors or among those of the wheels, begins upward: no vehicle does.
 
-        Parameters
-        ----------
-        campaign
-            States the places.
-        prepared
-            The recordings.
-        is_as_prepared
-            Whether they were prepared with these places.
-        """
-        body = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on == "body")
-        wheels = tuple(i for i, sensor in enumerate(campaign.sensors) if sensor.on != "body")
-        gained, at_once = (_gained(prepared, len(campaign.sensors), span) for span in (_AFTER, _AT_ONCE))
-        rises = _rises(gained[:, list(body)]) or _rises(at_once[:, list(wheels)])
-        dropped = tuple(
-            seen.dropped
-            if is_as_prepared
-            else detect_dropped_wheels(seen.recording, None if seen.release is None else seen.rest, campaign.sensors)
-            for seen in prepared.observations
-        )
-        return cls(body, gained[:, list(body)], dropped, rises)
+    Parameters
+    ----------
+    campaign
+        States which sensors are on the body.
+    prepared
+        Its recordings.
+    """
+    body = np.array([sensor.on == "body" for sensor in campaign.sensors])
+    gained, at_once = (_gained(prepared, len(body), span) for span in (_AFTER, _AT_ONCE))
+    return _rises(gained[:, body]) or _rises(at_once[:, ~body])
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:
@@ -105,16 +93,16 @@ def _rises(gained: Real) -> bool:
 
 
 def is_first_motion_consistent(
-    motion: FirstMotion, places: Sequence[tuple[float, float]], dropped: Sequence[Sequence[Wheel]], wheelbase: float
+    campaign: Campaign, prepared: Prepared, dropped: Sequence[Sequence[Wheel]], wheelbase: float
 ) -> bool | None:
     """Return whether the first motion is consistent with stated places of the sensors and stated wheels.
 
     Parameters
     ----------
-    motion
-        Measured.
-    places
-        x and y of the body's sensors, m: forward of the front axle, left of the centreline.
+    campaign
+        States the places of the body's sensors.
+    prepared
+        Its recordings.
     dropped
         The wheels that fell in each drop.
     wheelbase
@@ -133,9 +121,13 @@ def is_first_motion_consistent(
         ],
         dtype=float,
     )
-    x, y = np.array(places, dtype=float).T
-    there = np.isfinite(motion.velocities)
-    velocities = motion.velocities[there]
+    placed = {
+        i: sensor.position for i, sensor in enumerate(campaign.sensors) if sensor.on == "body" and sensor.position
+    }
+    x, y, _ = np.array(list(placed.values()), dtype=float).reshape(-1, 3).T
+    gained = _gained(prepared, len(campaign.sensors), _AFTER)[:, list(placed)]
+    there = np.isfinite(gained)
+    velocities = gained[there]
     if velocities.size == 0:
         return None
     ends_differ = bool(np.linalg.matrix_rank(counts) == 2)

@@ -16,7 +16,15 @@ from sprung.faults.statements.mirrored_positions import mirrored_positions
 from sprung.faults.statements.other_origin import other_origin
 from sprung.faults.statements.undeclared_load import undeclared_loads
 from sprung.faults.statements.upside_down import upside_down
-from sprung.preprocess import FirstMotion, Prepared, is_first_motion_consistent, merge_dropped_wheels, prepare
+from sprung.preprocess import (
+    Dropped,
+    Prepared,
+    begins_upward,
+    is_first_motion_consistent,
+    merge_dropped_wheels,
+    prepare,
+    redetect_dropped_wheels,
+)
 from sprung.progress import Progress, silent
 from sprung.selection import choose_structure
 
@@ -79,7 +87,7 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
         If several mistakes explain it that lead to different vehicles, and the recordings cannot tell which it is.
     """
     wheelbase = _wheelbase(campaign)
-    if wheelbase is None or _consistent(campaign, prepared, wheelbase, True) is not False:
+    if wheelbase is None or _consistent(campaign, prepared, _dropped(prepared), wheelbase) is not False:
         return campaign
     if _one_drop_explains(campaign, prepared, wheelbase):
         return campaign
@@ -87,7 +95,7 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
     for hypotheses in _HYPOTHESES:
         for fault, changed in hypotheses(campaign, wheelbase):
             again = prepared if changed.recordings == campaign.recordings else prepare(changed)
-            if _consistent(changed, again, wheelbase):
+            if _consistent(changed, again, redetect_dropped_wheels(changed, again), wheelbase):
                 explaining.append((fault, changed))
     if not explaining:
         return campaign
@@ -104,16 +112,19 @@ def _wheelbase(campaign: Campaign) -> float | None:
     return campaign.wheelbase.value if campaign.wheelbase is not None else (max(x) - min(x)) or None
 
 
-def _consistent(campaign: Campaign, prepared: Prepared, wheelbase: float, is_as_prepared: bool = False) -> bool | None:
+def _dropped(prepared: Prepared) -> list[Dropped]:
+    """Return which wheels lost their blocks in each drop, by the places with which the recordings were prepared."""
+    return [observation.dropped for observation in prepared.observations]
+
+
+def _consistent(campaign: Campaign, prepared: Prepared, dropped: Sequence[Dropped], wheelbase: float) -> bool | None:
     """Whether body, wheels and drops agree on the dropped wheels; None if they are not significant."""
-    motion = FirstMotion.of(campaign, prepared, is_as_prepared)
-    if motion.rises:
+    if begins_upward(campaign, prepared):
         return False
-    places = [sensor.position[:2] for sensor in campaign.sensors if sensor.on == "body" and sensor.position is not None]
-    seen = [merge_dropped_wheels(*pair) for pair in zip(campaign.drops, motion.dropped, strict=True)]
+    seen = [merge_dropped_wheels(*pair) for pair in zip(campaign.drops, dropped, strict=True)]
     if any(set(drop.wheels) != set(wheels) for drop, wheels in zip(campaign.drops, seen, strict=True)):
         return False
-    return is_first_motion_consistent(motion, places, seen, wheelbase)
+    return is_first_motion_consistent(campaign, prepared, seen, wheelbase)
 
 
 def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float) -> bool:
@@ -122,15 +133,13 @@ def _one_drop_explains(campaign: Campaign, prepared: Prepared, wheelbase: float)
     Such a drop is named and corrected on its own. A mistake with several sensors that agree among themselves is supposed only
     where several drops show it.
     """
-    seen = [
-        merge_dropped_wheels(*pair)
-        for pair in zip(campaign.drops, FirstMotion.of(campaign, prepared).dropped, strict=True)
-    ]
+    dropped = _dropped(prepared)
+    seen = [merge_dropped_wheels(*pair) for pair in zip(campaign.drops, dropped, strict=True)]
     pairs = list(zip(campaign.drops, seen, strict=True))
     if sum(set(drop.wheels) != set(wheels) for drop, wheels in pairs) != 1:
         return False
     drops = tuple(replace(drop, wheels=tuple(wheels)) for drop, wheels in pairs)
-    return _consistent(replace(campaign, drops=drops), prepared, wheelbase) is not False
+    return _consistent(replace(campaign, drops=drops), prepared, dropped, wheelbase) is not False
 
 
 def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> CommonCause:
