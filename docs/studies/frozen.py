@@ -1,7 +1,8 @@
 """Freeze what the program makes of thirty campaigns, or compare the program with what was frozen.
 
 Run with `python docs/studies/frozen.py --write` before a change of structure and `python docs/studies/frozen.py` after it; the
-exit status is 1 where anything differs. `--only TEXT` takes the campaigns whose name holds the text.
+exit status is 1 where anything differs of which no other result is wanted (`WANTED` in frozen_campaigns.py says of which, and
+why). `--only TEXT` takes the campaigns whose name holds the text.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from frozen_campaigns import FROZEN, FrozenCampaign
+from frozen_campaigns import FROZEN, WANTED, FrozenCampaign
 
 import sprung
 
@@ -94,6 +95,16 @@ def distance_of(campaign: FrozenCampaign, old: Sequence[float | None], new: Sequ
     return max(0.0 if by <= limit else by / max(limit, 1e-300) for by, limit in zip(moved, allowed, strict=True))
 
 
+def largest_shift(then: Frozen, now: Frozen) -> float:
+    """Return the largest difference of a value, in standard errors; 0 where none is stated."""
+    shifts = [0.0]
+    for name in then.parameters.keys() & now.parameters.keys():
+        (before, std), (after, _) = then.parameters[name], now.parameters[name]
+        if before is not None and after is not None and std:
+            shifts.append(abs(after - before) / std)
+    return max(shifts)
+
+
 def chosen(text: str) -> list[int]:
     """Return the numbers of the campaigns whose name holds a text."""
     return [i for i, one in enumerate(FROZEN) if text in one.name]
@@ -107,7 +118,8 @@ def main() -> int:
     parser.add_argument("--processes", type=int, default=1)
     options = parser.parse_args()
     stored: dict[str, Mapping[str, Any]] = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
-    found, different = dict(stored), 0
+    found, found_differences = dict(stored), dict[str, list[str]]()
+    largest = 0.0
     with ProcessPoolExecutor(options.processes) as pool:
         for name, now, seconds in pool.map(identify, chosen(options.only)):
             campaign = next(one for one in FROZEN if one.name == name)
@@ -117,14 +129,23 @@ def main() -> int:
             if options.write or name not in stored:
                 found[name] = asdict(now)
                 continue
-            for line in differences(campaign, Frozen(**stored[name]), now):
-                different += 1
-                sys.stdout.write(f"    {line}\n")
+            then = Frozen(**stored[name])
+            found_differences[name] = list(differences(campaign, then, now))
+            sys.stdout.writelines(f"    {line}\n" for line in found_differences[name])
+            if name not in WANTED:
+                largest = max(largest, largest_shift(then, now))
             sys.stdout.flush()
     if options.write:
         FILE.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    sys.stdout.write(f"{different} differences in {len(chosen(options.only))} campaigns\n")
-    return 1 if different else 0
+    unwanted = sum(len(lines) for name, lines in found_differences.items() if name not in WANTED)
+    for name in (name for name, lines in found_differences.items() if lines and name in WANTED):
+        sys.stdout.write(f"wanted, {name}: {WANTED[name]}\n")
+    others = sum(name not in WANTED for name in found_differences)
+    sys.stdout.write(
+        f"{len(found_differences)} campaigns; {unwanted} differences in the {others} of which none is wanted; their values "
+        f"differ by {largest:.2g} of a standard error at the most\n"
+    )
+    return 1 if unwanted else 0
 
 
 if __name__ == "__main__":
