@@ -120,7 +120,7 @@ def score_linear_term(
         test = score_test(information, gradient, 0)
         estimates = problem.priors.coordinates.extrapolated(u, null_space @ test.joint_values())
         # A term whose parameters have no meaning without it is there a little, which the fitted model has not to bear.
-        lost = max(problem.cost(iterate) - fit.problem.cost(fit.iterate), 0.0)
+        lost = max(problem.cost(iterate) + 2 * fit.loglikelihood, 0.0)
         named = dict(zip(problem.priors.coordinates.names, estimates.tolist(), strict=True))
         scores.append((test.gain() - lost, named))
     return tuple(scores)

@@ -69,6 +69,10 @@ def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
         States which sensors are on the body.
     prepared
         Its recordings.
+
+    Returns
+    -------
+    bool
     """
     body = np.array([sensor.on == "body" for sensor in campaign.sensors])
     gained, at_once = (_gained(prepared, len(body), span) for span in (_AFTER, _AT_ONCE))
