@@ -101,6 +101,11 @@ class NonlinearForces(NamedTuple):
         """Number of memories."""
         return len(self.memory_rows)
 
+    @property
+    def of_laws(self) -> Index:
+        """Positions of the parameters that any law has, ascending, shape (of law,)."""
+        return np.unique(np.concatenate([positions.ravel() for *_, positions in self.laws]))
+
     def parameters(self, values: Array) -> tuple[Array, ...]:
         """Return the parameters of each law, shape (parameter, element), from all parameters, SI, shape (parameter,)."""
         return tuple(values[positions] for *_, positions in self.laws)
@@ -138,7 +143,7 @@ class NonlinearForces(NamedTuple):
         return ElementForce(force, memory, by_travel, by_rate, by_memory, memory_by_travel, memory_by_memory)
 
     def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
-        """Return the derivatives of forces and of memories by the parameters.
+        """Return the derivatives of forces and of memories by the parameters of the laws.
 
         Parameters
         ----------
@@ -150,14 +155,14 @@ class NonlinearForces(NamedTuple):
         Returns
         -------
         force, memory
-            Shapes (..., row, parameter) and (..., memory, parameter).
+            By the parameters `of_laws`, shapes (..., row, of law) and (..., memory, of law).
         """
-        force = np.zeros((*given.travel.shape, len(values)))
-        memory = np.zeros((*given.memory.shape, len(values)))
+        force = np.zeros((*given.travel.shape, len(self.of_laws)))
+        memory = np.zeros((*given.memory.shape, len(self.of_laws)))
         for law, at, own, positions in self.laws:
             of_force, of_memory = law.differentiate(values[positions], self._part(given, law, at, own))
             row_of = np.arange(self.number)[at].tolist()
-            for which, row in enumerate(positions):
+            for which, row in enumerate(np.searchsorted(self.of_laws, positions)):
                 for column, position in enumerate(row.tolist()):
                     force[..., row_of[column], position] += of_force[which][..., column]
                     if law.has_memory:

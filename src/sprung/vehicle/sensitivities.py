@@ -10,6 +10,7 @@ the changes of these states are put together afterwards (multiple shooting; H. G
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,8 +50,18 @@ def differentiate_motions(
         The end of each segment by its start, shape (drop, segment, start, start).
     """
     number, length = segments_of(len(trajectory.states) - 1, every)
-    readings, ends = _differentiate_segments(stepper, *_cut(stepper, trajectory, number, length), outputs, every)
-    kind, slot = stepper.places
+    motion, given = _cut(stepper, trajectory, number, length)
+
+    def differentiate(kind: int) -> tuple[Array, Array]:
+        own, here = stepper.of_kind(kind), slice(kind, kind + 1)
+        return _differentiate_segments(
+            own, motion[:, here], ElementInput(*(part[:, here] for part in given)), outputs[here], every
+        )
+
+    # No kind waits for another: each may have a processor of its own.
+    with ThreadPoolExecutor(len(outputs)) as pool:
+        readings, by_kind = zip(*pool.map(differentiate, range(len(outputs))), strict=True)
+    ends, (kind, slot) = np.concatenate(by_kind), stepper.places
     start, parameters, samples = ends.shape[-2], len(stepper.values), (len(trajectory.states) - 1) // every + 1
     ends = ends.reshape(len(ends), -1, number, *ends.shape[2:])[kind, slot]
     starts = np.zeros_like(ends)
@@ -62,7 +73,7 @@ def differentiate_motions(
 
     def of_drops() -> Iterator[Array]:
         for drop, first in enumerate(slot * number):
-            own = readings[:, kind[drop], :, first : first + number]
+            own = readings[kind[drop]][:, 0, :, first : first + number]
             local = np.moveaxis(own, 2, 0).reshape(number, -1, own.shape[-1])
             whole = local[..., :start] @ starts[drop]
             whole[..., :parameters] += local[..., start:]
@@ -124,7 +135,6 @@ def _differentiate_segments(
     state, memories = size - 1 - rows, len(own)
     start = state + memories
     unknowns = start + len(stepper.values)
-    by_parameter = slice(start, None)
     geometry, driving = _driven(stepper.input_slopes, start), _driven(stepper.step_slopes, start)
     # Slopes of the forces and memories, ready to multiply changes (kind, row, place, unknown).
     by_rate = _for_changes(found.by_rate)
@@ -132,6 +142,8 @@ def _differentiate_segments(
     by_increment[0] = 0.0
     by_travel = _for_changes(found.by_travel)
     by_travel[:, :, own] += by_memory * by_increment
+    by_parameter = start + forces.of_laws
+    of_forces, of_memories = (np.swapaxes(part, 2, 3) for part in forces.differentiate(stepper.values, given))
 
     def multiply(matrices: Array, changes: Array) -> Array:
         product = matrices @ changes.reshape(kinds, changes.shape[1], -1)
@@ -139,12 +151,11 @@ def _differentiate_segments(
 
     def force_changes(k: int, inputs: Array, memory: Array, travel: Array, inverse: Array) -> tuple[Array, Array]:
         """Return changes of the forces, and of memories less those by the change of the travel over the step."""
-        by_parameters, remembered = forces.differentiate(stepper.values, _at(given, k))
         memory = kept[k] * memory - by_increment[k] * travel
-        memory[..., by_parameter] += np.swapaxes(remembered, 1, 2)
+        memory[..., by_parameter] += of_memories[k]
         right = by_travel[k] * inputs[:, :rows]
         right += by_rate[k] * inputs[:, rows:]
-        right[..., by_parameter] += np.swapaxes(by_parameters, 1, 2)
+        right[..., by_parameter] += of_forces[k]
         right[:, own] += by_memory[k] * memory
         return np.swapaxes(inverse @ np.swapaxes(right, 1, 2), 1, 2), memory
 
@@ -228,7 +239,3 @@ def _add_driven(results: Array, slopes: Array, columns: slice, arguments: Array)
 def _for_changes(slopes: Array) -> Array:
     """Return slopes (step, kind, place, row) so that they multiply changes (kind, row, place, unknown)."""
     return np.ascontiguousarray(np.swapaxes(slopes, 2, 3))[..., None]
-
-
-def _at(given: ElementInput, step: int) -> ElementInput:
-    return ElementInput(*(values[step] for values in given))

@@ -7,7 +7,7 @@ displacements. So a step of all motions is one product of matrices, and an evalu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -82,6 +82,18 @@ class Stepper:
         ]
         steps, step_slopes, inputs, input_slopes = (np.stack(part) for part in zip(*computed, strict=True))
         return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, kind)
+
+    def of_kind(self, kind: int) -> Stepper:
+        """Return the steps of one load and length alone."""
+        own = slice(kind, kind + 1)
+        return replace(
+            self,
+            steps=self.steps[own],
+            step_slopes=self.step_slopes[own],
+            inputs=self.inputs[own],
+            input_slopes=self.input_slopes[own],
+            kind=np.zeros(int(np.sum(self.kind == kind)), dtype=np.int64),
+        )
 
     @cached_property
     def parameters(self) -> tuple[Array, ...]:
