@@ -34,6 +34,22 @@ _REBOUND, _TYRE_GROWTH = 0.8, 0.2
 """Usual excess of rebound over compression damping, and growth of a tyre's rate."""
 
 
+def _air_springs(name: str, height: str, levelled: str) -> ModelTerm:
+    """Return the row of air springs, given the first letters of the parameter that is one over the height of their columns."""
+    return ModelTerm(
+        name,
+        of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"{height}{axle}"]),
+        typical=0.6,
+        spread=1.6,
+        negligible=0.02,
+        description=TermDescription(
+            f"{{axle}} air springs{levelled} with a column of {{1}}",
+            ((lambda p, axle: p[f"{height}{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"{height}{axle}"], "mm")),
+            again="{axle} ones with a column of {1}",
+        ),
+    )
+
+
 def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
     """Return the term of a further knee of the damper curves, given the indices of the knee before it."""
 
@@ -145,30 +161,8 @@ NONLINEAR_TERMS = (
             again="{axle} ones by {0}",
         ),
     ),
-    ModelTerm(
-        "air",
-        of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"e_{axle}"]),
-        typical=0.6,
-        spread=1.6,
-        negligible=0.02,
-        description=TermDescription(
-            "{axle} air springs with a column of {1}",
-            ((lambda p, axle: p[f"e_{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"e_{axle}"], "mm")),
-            again="{axle} ones with a column of {1}",
-        ),
-    ),
-    ModelTerm(
-        "levelled-air",
-        of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"e_l{axle}"]),
-        typical=0.6,
-        spread=1.6,
-        negligible=0.02,
-        description=TermDescription(
-            "{axle} air springs, levelled under every load, with a column of {1}",
-            ((lambda p, axle: p[f"e_l{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"e_l{axle}"], "mm")),
-            again="{axle} ones with a column of {1}",
-        ),
-    ),
+    _air_springs("air", "e_", ""),
+    _air_springs("levelled-air", "e_l", ", levelled under every load,"),
     ModelTerm(
         "tyre-curve",
         of_axles(lambda p, axle: _TYRE_STROKE * p[f"h_t{axle}"]),
