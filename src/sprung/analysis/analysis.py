@@ -71,6 +71,8 @@ class Analysis:
         Faults that were found and of which nothing was changed.
     preparation
         The decays as they were found in the recordings; None until the campaign is preprocessed.
+    without_wheels
+        The decays as they would begin if no wheel sensor showed the landing; None until they are needed.
     clock_fit
         The fit that set the clocks of several loggers; None where there is one clock.
     requested
@@ -101,6 +103,7 @@ class Analysis:
     corrected: tuple[Hypothesis, ...] = ()
     suspected: tuple[Fault, ...] = ()
     preparation: Prepared | None = None
+    without_wheels: tuple[FreeDecay, ...] | None = None
     clock_fit: FitResult | None = None
     requested: ModelStructure | None = None
     search: ModelSearch | None = None
@@ -154,6 +157,7 @@ class Analysis:
             corrected=(*self.corrected, *hypotheses),
             excluded={**self.excluded, **excluded},
             preparation=preparation,
+            without_wheels=None,
             search=None,
             clock_fit=None,
             first_term=None,

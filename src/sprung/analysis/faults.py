@@ -100,8 +100,10 @@ def _with_base(run: Analysis, consistency: Consistency) -> tuple[Analysis, Candi
     is_open = structure.tracks_open and consistency == "misfit"
     larger = linear.with_terms(linear.terms, "separate" if is_open else None)
     if consistency == "misfit":
-        run = replace(run, preparations=run.preparations + 1)
-        decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
+        decays = run.without_wheels
+        if decays is None:
+            decays = decays_without_wheel_sensors(run.campaign, run.prepared.decays)
+            run = replace(run, without_wheels=decays, preparations=run.preparations + 1)
         if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
             run = replace(run, fits=run.fits + 1)
             base = _fit_of(larger, decays, run.fit)
