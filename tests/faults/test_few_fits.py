@@ -37,6 +37,7 @@ def test_one_fault_takes_few_fits(name: str, number: int) -> None:
     run, names = analysed(name, number)
     assert run.fits <= 8
     assert run.preparations <= 3
+    assert run.result is not None
     assert all(fault.code in INJURIES[name].codes and names_all(fault, names) for fault in run.result.faults)
     assert run.result.verdict.state == "accept"
 
@@ -45,5 +46,6 @@ def test_one_fault_takes_few_fits(name: str, number: int) -> None:
 def test_a_low_pass_is_no_delay(number: int) -> None:
     """Shortly after the landing, when the wheels hop, the two differ by far more than by chance."""
     run, (channel,) = analysed("low-pass", number)
+    assert run.result is not None
     (fault,) = run.result.faults
     assert (fault.code, fault.where) == ("low-pass", channel)
