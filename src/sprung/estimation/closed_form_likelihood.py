@@ -80,7 +80,7 @@ class ClosedFormAt:
 
     @cached_property
     def _derivatives(self) -> list[Complex]:
-        """σ and τ of every batch beside each other, τ per sample; each of shape (group, channel + state, parameter, 2 mode)."""
+        """σ and τ of every batch beside each other, τ per sample; each of shape (group, channel, parameter, 2 mode)."""
         objective = self.objective
         _, readings = differentiate_modes(
             objective.side_by_side, objective.sensors, self.values, self.modes, objective.span
@@ -109,7 +109,7 @@ class ClosedFormAt:
 
     @cached_property
     def penalty(self) -> float:
-        """Twice the negative log-likelihood of initial states and of the clocks' delays under their priors."""
+        """Twice the negative log-likelihood of the clocks' delays under their priors."""
         return sum(projected.penalty for projected in self._projected)
 
     @cached_property
@@ -262,7 +262,7 @@ class ClosedFormAt:
         Returns
         -------
         ndarray
-            σ and τ, τ per second, as from `differentiate_modes`; shape (load, channel + state, change, 2 mode).
+            σ and τ, τ per second, as from `differentiate_modes`; shape (load, channel, change, 2 mode).
         """
         objective = self.objective
         _, readings = differentiate_response(
@@ -276,7 +276,7 @@ class ClosedFormAt:
         Parameters
         ----------
         readings
-            Derivatives by the changes, SI, shape (load, channel + state, change, 2 mode).
+            Derivatives by the changes, SI, shape (load, channel, change, 2 mode).
 
         Returns
         -------

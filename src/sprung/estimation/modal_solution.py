@@ -20,9 +20,6 @@ Complex = NDArray[np.complex128]
 _CLOSE = 1e-6
 """Two poles are one where their difference turns by less than this over a record: their mode is then t e^{λt}."""
 
-STATE_PRIOR_STD = (1.0, 10.0)
-"""Prior of initial displacements and velocities: a metre or radian, and ten of them in a second."""
-
 _BACKWARD = 30.0
 """Powers of e by which a motion may grow on its way back in time: before the start of a record, it is none of a vehicle."""
 
@@ -69,30 +66,13 @@ class ModalSolution:
         return self.velocities * self.poles[..., None, :]
 
     @property
-    def initial_states(self) -> Complex:
-        """Initial state {X, Ẋ} per unit of modal amplitude, in standard deviations of its prior, shape (..., state, mode)."""
-        states = self.right.shape[-1]
-        return self.right / initial_state_prior_std(self.coordinates, states)[:, None]
-
-    @property
-    def separation(self) -> float:
-        """How far apart the two modes are that are most alike, in poles and in shapes, dimensionless; 0 where they meet in one.
-
-        The larger of |λ₁ - λ₂|/|λ₁| and the sine of the angle between the displacements, their coordinates made comparable.
-        """
-        frequency = np.maximum(np.abs(self.poles), np.finfo(float).tiny)
-        apart = np.abs(self.poles[..., :, None] - self.poles[..., None, :]) / frequency[..., :, None]
-        shapes = self.displacements / _sizes(self.displacements, axis=-2)[..., None, :]
-        shapes = shapes / np.maximum(_sizes(shapes, axis=-1), np.finfo(float).tiny)[..., :, None]
-        shapes = shapes / _sizes(shapes, axis=-2)[..., None, :]
-        alike = np.abs(np.swapaxes(shapes.conj(), -1, -2) @ shapes)
-        angle = np.sqrt(np.maximum(1 - alike**2, 0.0))
-        return float((np.maximum(apart, angle) + 2 * np.eye(apart.shape[-1])).min())
-
-
-def initial_state_prior_std(coordinates: int, states: int) -> Real:
-    """Return the prior of an initial state {X, Ẋ}: a metre or radian, and ten of them in a second; shape (state,)."""
-    return np.repeat(STATE_PRIOR_STD, [coordinates, states - coordinates])
+    def condition(self) -> float:
+        """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
+        # Displacements and velocities are made comparable by a usual frequency.
+        balance = np.ones(self.right.shape[-1])
+        balance[: self.coordinates] = float(np.median(np.abs(self.poles)))
+        right = _sizes(self.right * balance[:, None], axis=-2)
+        return float((right * _sizes(self.left / balance, axis=-1)).max())
 
 
 def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolution:
@@ -159,15 +139,13 @@ def differentiate_modes(
         Shape (..., parameter, mode), for the parameters of the model.
     readings
         For all parameters: σ and τ, what multiplies q e^{λt} and q t e^{λt} in the derivative of a channel, beside each
-        other; below the channels the derivatives of `ModalSolution.initial_states`, with τ = 0; shape
-        (..., channel + state, parameter, 2 mode).
+        other; shape (..., channel, parameter, 2 mode).
 
     Notes
     -----
     The derivative of e^{At} in modal coordinates has the entries D_kj (e^{λ_j t} - e^{λ_k t})/(λ_j - λ_k), with
     D = V⁻¹ dA V. The e^{λ_k t} in it multiplies the shape of mode k, so the free amplitudes absorb it. What remains is
-    D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones. The initial state moves with what was
-    absorbed, which its prior has to say something of.
+    D_kj/(λ_j - λ_k) e^{λ_j t} for different poles and D_kj t e^{λ_j t} for equal ones.
 
     With motions v, λv, λ²v of a mode, dA V is -L⁻¹ (dM λ²v + dC λv + dK v), L being the coefficients of the highest
     derivatives: M, and for coordinates without mass C.
@@ -180,14 +158,14 @@ def differentiate_modes(
     forces = (derivatives.reshape(*lead, -1, derivatives.shape[-1]) @ motions).reshape(by_coordinate)
     poles, of_model = differentiate_response(model, sensors, values, modes, forces, span)
     m, (channels, parameters, n) = modes.poles.shape[-1], (slopes := sensors.slopes(values)).shape
-    readings = np.zeros((*lead, channels + m, parameters, 2 * m), dtype=np.complex128)
+    readings = np.zeros((*lead, channels, parameters, 2 * m), dtype=np.complex128)
     readings[..., : len(model.names), :] = of_model
     of_sensors = (slopes.reshape(-1, n) @ modes.accelerations).reshape(*lead, channels, parameters, m)
     if sensors.has_delays:
         of_sensors *= turns_of_delays(sensors, values, modes.poles)[..., None, :]
         for channel, position in sensors.delay_positions:
             of_sensors[..., channel, position, :] = -modes.poles * modes.shapes[..., channel, :]
-    readings[..., :channels, :, :m] += of_sensors
+    readings[..., :m] += of_sensors
     return poles, readings
 
 
@@ -223,18 +201,16 @@ def differentiate_response(
     turns = turns_of_delays(sensors, values, modes.poles) if sensors.has_delays else None
     shapes = modes.shapes if turns is None else modes.shapes / turns
 
-    def mixed(rows: Complex, by: NDArray[np.generic]) -> Complex:
-        products: Complex = rows @ (D * by[..., :, None, :]).reshape(*lead, m, -1)
-        return products.reshape(*lead, rows.shape[-2], changes, m)
+    def at_sensors(mixed: Complex) -> Complex:
+        by_channel: Complex = shapes @ mixed.reshape(*lead, m, -1)
+        return by_channel.reshape(*lead, channels, changes, m)
 
-    readings = np.zeros((*lead, channels + m, changes, 2 * m), dtype=np.complex128)
-    readings[..., :m] = mixed(np.concatenate([shapes, modes.initial_states], axis=-2), mixing)
-    of_channels = readings[..., :channels, :, :]
-    of_channels[..., :m] += of_sensors
-    of_channels[..., m:] = mixed(shapes, close)
+    readings = np.empty((*lead, channels, changes, 2 * m), dtype=np.complex128)
+    readings[..., :m] = of_sensors + at_sensors(D * mixing[..., :, None, :])
+    readings[..., m:] = at_sensors(D * close[..., :, None, :])
     if turns is not None:
-        of_channels[..., :m] -= sensors.delays(values)[:, None, None] * of_channels[..., m:]
-        of_channels *= np.tile(turns, 2)[..., None, :]
+        readings[..., :m] -= sensors.delays(values)[:, None, None] * readings[..., m:]
+        readings *= np.tile(turns, 2)[..., None, :]
     return np.diagonal(D, axis1=-3, axis2=-1), readings
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.modal_solution import initial_state_prior_std
+from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.score_test import score_added
 from sprung.vehicle import ElementInput, NonlinearModel, highest_derivatives
@@ -90,7 +90,6 @@ def _of_drop(
     upper = poles.imag >= 0
     poles, left, shapes = poles[upper], left[upper], shapes[:, upper] * np.where(poles[upper].imag > 0, 2.0, 1.0)
     derivatives = derivatives[..., np.tile(upper, 2)] * np.tile(np.where(poles.imag > 0, 2.0, 1.0), 2)
-    derivatives, of_states = derivatives[: len(shapes)], derivatives[len(shapes) :, :, : len(poles)]
     state, motion = fit.states[drop], fit.motion(drop, 0, decay.samples)[:, ::every]
     neutral = np.array([values[name] for name in model.names])
     force_rows = -np.linalg.solve(model.linear.matrices(neutral).leading, model.forces.directions(neutral).T)
@@ -121,14 +120,8 @@ def _of_drop(
     across = weighted @ np.swapaxes(sampled @ basis.T, 1, 2).reshape(weighted.shape[1], -1)
     among_sampled = np.tensordot(weights, sampled @ np.swapaxes(sampled, 1, 2), 1)
     products = np.block([[among_sums, across], [across.T, among_sampled]])
-    # The prior of the initial state, which moves with the parameters as well.
-    std = initial_state_prior_std(len(force_rows), len(state))
-    of_prior = np.zeros((len(state), len(products)))
-    of_prior[:, : len(by_parameter)] = (of_states @ (left @ state)).real
     own_state = np.arange(len(by_parameter), len(sums))
-    of_prior[:, own_state] = np.diag(1 / std)
-    of_prior[:, -1] = -state / std
-    products += of_prior.T @ of_prior
+    products[own_state, own_state] += initial_state_prior_std(len(force_rows), len(state)) ** -2.0
     # The initial state is eliminated.
     kept = np.delete(np.arange(len(products) - 1), own_state)
     order = np.concatenate([kept, own_state])

@@ -28,6 +28,18 @@ Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
+def initial_state_prior_std(coordinates: int, states: int) -> Real:
+    """Return the prior of an initial state {X, Ẋ}: a metre or radian, and ten of them in a second; shape (state,)."""
+    return np.repeat([1.0, 10.0], [coordinates, states - coordinates])
+
+
+def amplitude_prior(modes: ModalSolution) -> Complex:
+    """Return the prior of initial states as information on the amplitudes of modes, shape (..., mode, mode)."""
+    std = initial_state_prior_std(modes.coordinates, modes.poles.shape[-1])
+    scaled = np.swapaxes(modes.right.conj(), -1, -2) / std**2
+    return np.asarray(scaled @ modes.right, dtype=np.complex128)
+
+
 def inverse_of(normal: Complex) -> Complex:
     """Return the inverse of normal equations of amplitudes, which may differ by orders of magnitude; (..., mode, mode).
 
@@ -56,8 +68,8 @@ class ExponentialSums:
         λ, 1/s, shape (group, mode).
     shapes
         s, shape (group, channel, mode).
-    initial_states
-        Of each mode, in standard deviations of their prior, shape (group, state, mode).
+    prior
+        Information on the amplitudes from the prior of initial states, shape (group, mode, mode).
     gram
         Inner products of (e^{λk}, k e^{λk}) with each other, shape (record, 2 mode, 2 mode).
     data
@@ -68,17 +80,17 @@ class ExponentialSums:
     values: Real
     poles: Complex
     shapes: Complex
-    initial_states: Complex
+    prior: Complex
     gram: Complex
     data: Complex
 
     @classmethod
     def of(cls, batch: RecordBatch, values: Real, modes: ModalSolution) -> ExponentialSums:
         """Return the sums over the samples at parameters and the poles and shapes of each load."""
-        poles, shapes, initial_states = (part[batch.load] for part in (modes.poles, modes.shapes, modes.initial_states))
+        poles, shapes, prior = modes.poles[batch.load], modes.shapes[batch.load], amplitude_prior(modes)[batch.load]
         exponent = poles * batch.step[:, None]
         gram = exponential_gram(exponent, batch.samples, batch.group)
-        return cls(batch, values, poles, shapes, initial_states, gram, batch.correlate(exponent))
+        return cls(batch, values, poles, shapes, prior, gram, batch.correlate(exponent))
 
     @cached_property
     def expected_delays(self) -> Real:
@@ -140,8 +152,7 @@ class ExponentialSums:
         w, group, m = self.batch.channel_weights * weights, self.batch.group, self.poles.shape[1]
         weighted = self.shapes.conj() * w[:, None]
         normal = (np.swapaxes(weighted, 1, 2) @ self.shapes)[group] * self.gram[:, :m, :m]
-        prior = np.swapaxes(self.initial_states.conj(), 1, 2) @ self.initial_states
-        inverse = inverse_of(normal + prior[group])
+        inverse = inverse_of(normal + self.prior[group])
         projected = (weighted[group] * self.data[:, :, :m]).sum(axis=1)
         return ProjectedResponse(self, w, normal, inverse, (inverse @ projected[:, :, None])[:, :, 0])
 
@@ -197,17 +208,10 @@ class ProjectedResponse:
         sums: Real = batch.channel_weights * np.maximum(batch.energy - explained, 0.0)
         return sums
 
-    @cached_property
-    def _initial_states(self) -> Complex:
-        """{X, Ẋ} of each record in standard deviations of their prior, shape (record, state)."""
-        of_modes = self.sums.initial_states[self.sums.batch.group]
-        return np.asarray((of_modes @ self.amplitudes[:, :, None])[:, :, 0])
-
     @property
     def penalty(self) -> float:
-        """What is to be added to the weighted residuals for initial states, and for delays that are not as expected."""
-        of_states = float(np.sum(self._initial_states.real**2))
-        return of_states + (0.0 if self.clocks is None else self.clocks.penalty)
+        """What is to be added to the weighted residuals for delays that are not as expected."""
+        return 0.0 if self.clocks is None else self.clocks.penalty
 
     @property
     def leverage(self) -> Real:
@@ -223,32 +227,25 @@ class ProjectedResponse:
         Parameters
         ----------
         derivatives
-            Without delays: σ and τ beside each other, τ per sample; shape (group, channel + state, change, 2 mode).
+            Without delays: σ and τ beside each other, τ per sample; shape (group, channel, change, 2 mode).
         """
         if self.clocks is None:
             return derivatives
-        channels = len(self.weights)
         batch = self.sums.batch
         delay = (self.clocks.values @ batch.clock_design.T)[:, :, None, None]
         turn = turns(self.sums.poles[:, None, None] * delay)
-        shapes, secular = np.split(derivatives[:, :channels], 2, axis=-1)
+        shapes, secular = np.split(derivatives, 2, axis=-1)
         secular = secular * turn
         moved = shapes * turn + secular * (delay / batch.step[:, None, None, None])
-        turned = np.concatenate([moved, secular], axis=-1)
-        return np.concatenate([turned, derivatives[:, channels:]], axis=1)
-
-    def _moved_states(self, group: int, derivatives: Complex) -> Complex:
-        """Differentiate the initial states of a group, in standard deviations; shape (record, state, parameter)."""
-        by_mode = derivatives[len(self.weights) :, :, : self.modes]
-        return np.asarray(np.moveaxis(by_mode @ self.amplitudes[self.sums.batch.members(group)].T, -1, 0))
+        return np.concatenate([moved, secular], axis=-1)
 
     def gradient(self, derivatives: Complex) -> Real:
-        """Return Σ derivative · residual / σ² of each record, and of its initial state.
+        """Return Σ derivative · residual / σ² of each record.
 
         Parameters
         ----------
         derivatives
-            σ and τ beside each other, τ per sample; shape (group, channel + state, parameter, 2 mode).
+            σ and τ beside each other, τ per sample; shape (group, channel, parameter, 2 mode).
 
         Returns
         -------
@@ -257,13 +254,11 @@ class ProjectedResponse:
         """
         residual = (self.sums.data - self._smoothed).conj() * np.tile(self.amplitudes, 2)[:, None, :]
         residual *= self.weights[:, None]
-        batch, channels = self.sums.batch, len(self.weights)
-        parts = []
-        for group, own in enumerate(derivatives):
-            members = batch.members(group)
-            of_records = np.tensordot(residual[members], own[:channels], axes=([1, 2], [0, 2])).real
-            states = self._initial_states[members].conj()[:, None]
-            parts.append(of_records - (states @ self._moved_states(group, own))[:, 0].real)
+        batch = self.sums.batch
+        parts = [
+            np.tensordot(residual[batch.members(group)], own, axes=([1, 2], [0, 2])).real
+            for group, own in enumerate(derivatives)
+        ]
         gradient = np.concatenate(parts)
         if self.clocks is not None:
             gradient[:, : len(self.sums.values)] += self.clocks.gradient
@@ -285,10 +280,10 @@ class ProjectedResponse:
             Shape (group or record, parameter, parameter).
         """
         batch, q = self.sums.batch, np.tile(self.amplitudes, 2)
-        driven, channels = self.sums.gram * q[:, None, :], len(self.weights)
+        driven = self.sums.gram * q[:, None, :]
         found = []
-        for group, whole in enumerate(derivatives):
-            members, own, states = batch.members(group), whole[:channels], self._moved_states(group, whole)
+        for group, own in enumerate(derivatives):
+            members = batch.members(group)
             shared = q[members].conj()[:, :, None] * driven[members]
             if not by_record:
                 shared = shared.sum(axis=0, keepdims=True)
@@ -296,9 +291,7 @@ class ProjectedResponse:
             products *= self.weights[:, None, None]
             # The real part of a product of complex numbers, one conjugated, is that of pairs of real ones.
             within = (own.view(float) @ np.swapaxes(products.view(float), 2, 3)).sum(axis=1)
-            of_states = (np.swapaxes(states.conj(), 1, 2) @ states).real
-            within += of_states if by_record else of_states.sum(axis=0)
-            across = self._across(group, own, driven[members], states)
+            across = self._across(group, own, driven[members])
             explained = (np.swapaxes(across.conj(), 1, 2) @ (self.inverse[members] @ across)).real
             if self.clocks is not None:
                 explained += self.clocks.explained(group, own, driven[group], across[0])
@@ -306,15 +299,14 @@ class ProjectedResponse:
             found.append(within - (explained if by_record else explained.sum(axis=0, keepdims=True)))
         return np.concatenate(found)
 
-    def _across(self, group: int, derivatives: Complex, driven: Complex, states: Complex) -> Complex:
+    def _across(self, group: int, derivatives: Complex, driven: Complex) -> Complex:
         """Inner products of a group's derivatives with what the amplitudes do, (record, mode, parameter)."""
         channels, parameters = derivatives.shape[:2]
         # Amplitudes meet the derivatives through the shapes.
         through = (self.sums.shapes[group].conj() * self.weights[:, None]).T
         met = (through @ derivatives.reshape(channels, -1)).reshape(self.modes, parameters, -1)
         across = np.swapaxes(driven[:, : self.modes], 0, 1) @ np.swapaxes(met, 1, 2)
-        of_states = self.sums.initial_states[group].conj().T @ states
-        return np.ascontiguousarray(np.swapaxes(across, 0, 1) + of_states)
+        return np.ascontiguousarray(np.swapaxes(across, 0, 1))
 
     def delay_covariances(self, clocks: ClockDelays, derivatives: Complex, covariance: Real) -> Iterator[Real]:
         """Covariance of every record's delays, that of the parameters included; s², shape (delay, delay).
@@ -329,9 +321,8 @@ class ProjectedResponse:
             Of the parameters, SI, shape (parameter, parameter).
         """
         driven = self.sums.gram * np.tile(self.amplitudes, 2)[:, None, :]
-        for record, whole in enumerate(derivatives):
-            own, states = whole[: len(self.weights)], self._moved_states(record, whole)
-            across = self._across(record, own, driven[record : record + 1], states)[0]
+        for record, own in enumerate(derivatives):
+            across = self._across(record, own, driven[record : record + 1])[0]
             alone = clocks.covariance[record]
             projected = alone @ clocks.response(record, own, driven[record], across)
             yield alone + projected @ covariance @ projected.T

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.modal_solution import solve_modes
-from sprung.estimation.projected_response import inverse_of
+from sprung.estimation.projected_response import amplitude_prior, inverse_of
 from sprung.vibration import exponential_gram
 
 Real = NDArray[np.float64]
@@ -48,8 +48,7 @@ def rank_starts(objective: ClosedFormObjective, vehicles: Real, weights: Real) -
     gram = exponential_gram(exponent, np.full(len(exponent), batch.samples[0]), secular=False)
     shapes, w = modes.shapes, batch.channel_weights * weights
     weighted = np.swapaxes(shapes.conj(), 1, 2) * w
-    states = modes.initial_states
-    inverse = inverse_of((weighted @ shapes) * gram + np.swapaxes(states.conj(), 1, 2) @ states)
+    inverse = inverse_of((weighted @ shapes) * gram + amplitude_prior(modes))
     projected = np.sum(weighted.swapaxes(1, 2)[..., None] * data, axis=1)
     q = inverse @ projected
     fitted = shapes[..., None] * q[:, None]

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.modal_solution import initial_state_prior_std
+from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.stepped_likelihood import TimeSteppingAt
 from sprung.estimation.stepped_motion import SteppedMotion

@@ -157,13 +157,12 @@ _Labels = tuple[Kind, str, int, int]
 def _changes(
     fit: FitResult, at: ClosedFormAt, sensors: Sequence[Sensor], loads: Mapping[str, Load], heights: Heights
 ) -> Iterator[tuple[_Labels, Complex]]:
-    """Yield what each change is, and its derivatives of the readings, (load, channel + state, 1, 2 mode)."""
+    """Yield what each change is, and its derivatives of the readings, (load, channel, 1, 2 mode)."""
     modes, m = at.modes, at.modes.poles.shape[-1]
-    loads_of, channels = modes.shapes.shape[:2]
     for channel, sensor in enumerate(sensors):
 
         def of_channel(shapes: Complex, channel: int = channel) -> Complex:
-            readings = np.zeros((loads_of, channels + m, 1, 2 * m), dtype=np.complex128)
+            readings = np.zeros((*modes.shapes.shape[:2], 1, 2 * m), dtype=np.complex128)
             readings[:, channel, 0, :m] = shapes
             return readings
 

@@ -212,7 +212,7 @@ class MeasurementSetup:
             information = directions.T @ found.information @ directions + stated
             score = directions.T @ found.gradient
             explained = float(score @ np.linalg.lstsq(information, score, rcond=1e-12)[0])
-            energy = float((found.residual_sums @ weights).sum())
+            energy = float((found.residual_sums @ weights).sum() + found.penalty)
             left.append(max(energy - explained, 0.0) / self.inflation)
         return np.array(left)
 
