@@ -17,7 +17,7 @@ from sphinx.pycode import ModuleAnalyzer
 
 import sprung
 from sprung.cli import app as commands
-from sprung.vehicle import EXTRA_PARAMETERS, PARAMETERS
+from sprung.vehicle import LAYOUTS, PARAMETERS, parameters_of_term, terms_of
 
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
@@ -96,7 +96,13 @@ def _plain(text: str | None) -> str:
 
 def parameter_table() -> str:
     """Return a table of all parameters: unit, meaning and model term."""
-    term_of = {name: term for term, names in EXTRA_PARAMETERS.items() for name in names}
+    term_of = {
+        name: term
+        for layout in LAYOUTS.values()
+        for term in terms_of(layout)
+        for tracks in ("shared", "separate")
+        for name in parameters_of_term(term, tracks, layout)
+    }
     rows = [
         f"| `{name}` | {parameter.unit} | {parameter.meaning} | {term_of.get(name, '')} |"
         for name, parameter in PARAMETERS.items()

@@ -11,7 +11,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -77,15 +77,14 @@ def attempt(which: int, with_friction: bool, seed: int) -> Trial:
     random = np.random.default_rng([seed, which])
     mass = plain.m_s * random.uniform(0.06, 0.18)
     turning = 2 * np.pi * random.uniform(6.0, 15.0)
-    vehicle = replace(
-        plain,
+    vehicle = plain.with_values(
         m_e=mass,
         k_e=mass * turning**2,
         c_e=2 * random.uniform(0.03, 0.15) * mass * turning,
         x_e=plain.wheelbase * (place + random.uniform(-0.1, 0.2)),
     )
     if with_friction:
-        vehicle = replace(vehicle, F_f=FRICTION, F_r=FRICTION, s_f=3e5, s_r=3e5)
+        vehicle = vehicle.with_values(F_f=FRICTION, F_r=FRICTION, s_f=3e5, s_r=3e5)
     campaign = sprung.simulate(
         vehicle, loads=[ballast(plain)], rate=RATE, duration=DURATION, rest=0.4, noise=NOISE, seed=seed
     )

@@ -17,7 +17,7 @@ from sprung.simulation import BlockSupport, simulate_nonlinear_drops
 from sprung.vehicle import EMPTY, TABLE_1_CAR, WHEELS, Rows, Wheel
 from sprung.vehicle.kinematics import travel
 
-CAR = replace(TABLE_1_CAR, r_f=2.4, r_r=1.8)
+CAR = TABLE_1_CAR.with_values(r_f=2.4, r_r=1.8)
 DROPPED: tuple[tuple[Wheel, ...], ...] = (WHEELS, ("rl", "rr"), ("fl", "rl"))
 
 

@@ -81,7 +81,7 @@ def test_everything_at_once(campaign: sprung.Campaign) -> None:
 
 def test_a_simulation_refuses_the_same() -> None:
     with pytest.raises(InputError, match=r"simulate: vehicle\.m_s: found 1\.38.*1380 if it was stated in tonnes"):
-        sprung.simulate(replace(TABLE_1_CAR, m_s=1.38))
+        sprung.simulate(TABLE_1_CAR.with_values(m_s=1.38))
     known: Any = {"total_mass": 1.5518}
     for name, door in (("simulate", sprung.simulate), ("plan", sprung.plan)):
         with pytest.raises(InputError, match=rf"{name}: known\.total_mass"):

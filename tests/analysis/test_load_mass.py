@@ -14,7 +14,7 @@ from jsonschema import Draft202012Validator
 import sprung
 from sprung.errors import InputError
 from sprung.results import Result
-from sprung.vehicle import PARAMETERS, TABLE_1_CAR, Added, Heights, Item, LinearModel, seven_degrees_of_freedom
+from sprung.vehicle import PARAMETERS, TABLE_1_CAR, Added, Heights, Item, LinearModel, linear_elements
 
 TRUE = 150.0  # kg
 PLACE = (-1.0, 0.2, 0.5)
@@ -113,7 +113,7 @@ def test_as_a_parameter_it_gives_the_same_matrices() -> None:
     values = [*TABLE_1_CAR.parameters.values(), TRUE]
     given = load({"value": TRUE, "std": 1.0})
     for heights in (Heights(), Heights(0.55, 0.3, 0.2)):
-        elements = seven_degrees_of_freedom(heights=heights)
+        elements = linear_elements(heights=heights)
         as_number = LinearModel.of(elements + given.elements(heights), names[:-1]).matrices(values[:-1])
         as_parameter = LinearModel.of(elements + given.elements(heights, names), names)
         for one, other in zip(as_number, as_parameter.matrices(values), strict=True):

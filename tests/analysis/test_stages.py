@@ -104,7 +104,7 @@ def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaig
 
 def test_a_nonlinear_term_that_is_nothing_at_the_optimum_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """The search ends a standard error away from the optimum, and does not know where the wheels last touched."""
-    rubbing = replace(TABLE_1_CAR, F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
+    rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
     drops = [{"wheels": list(wheels)} for wheels in KINDS]
     known = {"total_mass": TABLE_1_CAR.total_mass}
     campaign = sprung.simulate(rubbing, drops=drops, rate=200.0, noise=0.02, seed=1, duration=1.2, known=known)

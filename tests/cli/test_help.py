@@ -72,7 +72,7 @@ def test_the_shell_completes_campaigns_results_parameters_and_methods(
     assert completed("check car/", monkeypatch, tmp_path) == ["car/campaign.toml", "car/results/"]
     assert completed("compare car/", monkeypatch, tmp_path) == ["car/results"]
     assert completed("identify nowhere/", monkeypatch, tmp_path) == []
-    assert completed("identify --profile k_s", monkeypatch, tmp_path) == ["k_sf", "k_sr"]
+    assert completed("identify --profile k_s", monkeypatch, tmp_path) == ["k_sf", "k_sr", "k_s"]
     assert completed("modal car --method ssi", monkeypatch, tmp_path) == ["ssi-cov", "ssi-data"]
     assert completed("val", monkeypatch, tmp_path) == ["validate"]
 

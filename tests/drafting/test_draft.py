@@ -285,7 +285,7 @@ def test_every_draft_explains_how_a_load_is_described() -> None:
     )
     for lines, mass in (((head, name, first, second), 255), ((head, name, added), 470)):
         (load,) = tomllib.loads("\n".join(lines))["load"]
-        assert Load(**load).mass == mass
+        assert Load(**load).total_mass() == mass
 
 
 def test_every_draft_has_a_record_of_the_test_to_fill_in() -> None:

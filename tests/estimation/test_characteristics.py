@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,7 @@ from sprung.estimation import FitStatistics, characteristics_of, rates_at_motion
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, evaluate_quantity, wheel_loads
 
-UNEVEN = replace(TABLE_1_CAR, y_s=0.02, d_ksf=600.0, name="uneven")
+UNEVEN = TABLE_1_CAR.with_values(y_s=0.02, d_ksf=600.0, name="uneven")
 
 DRAWS = 600
 """The standard deviation of so many is known to 1 / sqrt(2 DRAWS), 2.9 %."""
@@ -46,7 +44,7 @@ def correlated(size: int, std: float) -> np.ndarray:
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, UNEVEN], ids=lambda one: one.name)
 def test_uncertainties_are_those_of_draws(vehicle: Vehicle) -> None:
     fit = fit_of(vehicle, correlated(len(vehicle.parameters), 0.003))
-    found = characteristics_of(fit, {}, vehicle.model())
+    found = characteristics_of(fit, {}, vehicle.linear_model())
     random = np.random.default_rng(1)
     # Coordinates are logarithms of what must be positive and multiples of the others: `moved` follows them.
     drawn = [
@@ -56,7 +54,7 @@ def test_uncertainties_are_those_of_draws(vehicle: Vehicle) -> None:
         if name in CHARACTERISTICS:
             values = np.array([evaluate_quantity(name, fit.names, one)[0] for one in drawn])
             assert estimate.std == pytest.approx(values.std(), rel=4 * 0.029), name
-    loads = np.array([wheel_loads(vehicle.model(), one)[0] for one in drawn])
+    loads = np.array([wheel_loads(vehicle.linear_model(), one)[0] for one in drawn])
     names = [name for name in found if name.endswith("wheel_load")]
     columns = [0, 2] if len(names) == 2 else [0, 1, 2, 3]
     stds = np.array([found[name].std for name in names], dtype=float)
@@ -69,8 +67,10 @@ def test_without_absolute_scale_what_does_not_depend_on_it_keeps_its_number() ->
     names = list(TABLE_1_CAR.parameters)
     tight = correlated(len(names), 0.003)
     scaling = np.array([float(PARAMETERS[name].scales) for name in names])
-    known = characteristics_of(fit_of(TABLE_1_CAR, tight), {}, TABLE_1_CAR.model())
-    free = characteristics_of(fit_of(TABLE_1_CAR, tight + 100 * np.outer(scaling, scaling)), {}, TABLE_1_CAR.model())
+    known = characteristics_of(fit_of(TABLE_1_CAR, tight), {}, TABLE_1_CAR.linear_model())
+    free = characteristics_of(
+        fit_of(TABLE_1_CAR, tight + 100 * np.outer(scaling, scaling)), {}, TABLE_1_CAR.linear_model()
+    )
     lost = {name for name, one in free.items() if one.value is None}
     assert lost == {"total_mass", "front_axle_mass", "rear_axle_mass", "front_wheel_load", "rear_wheel_load"}
     # The scale has 1e5 times the variance of the rest: 1e-11 of rounding is left of it.
@@ -83,16 +83,18 @@ def test_what_was_known_exactly_is_known() -> None:
     names = list(TABLE_1_CAR.parameters)
     total = TABLE_1_CAR.total_mass
     found = characteristics_of(
-        fit_of(TABLE_1_CAR, correlated(len(names), 0.003)), {"total_mass": KnownValue(total)}, TABLE_1_CAR.model()
+        fit_of(TABLE_1_CAR, correlated(len(names), 0.003)),
+        {"total_mass": KnownValue(total)},
+        TABLE_1_CAR.linear_model(),
     )
     assert (found["total_mass"].status, found["total_mass"].value, found["total_mass"].std) == ("known", total, 0.0)
 
 
 def test_a_lateral_centre_of_gravity_near_the_middle_has_a_number() -> None:
     """Zero is a value as any other: 2 ± 3 mm is not undetermined."""
-    vehicle = replace(UNEVEN, y_s=0.002)
+    vehicle = UNEVEN.with_values(y_s=0.002)
     fit = fit_of(vehicle, np.diag(np.full(len(vehicle.parameters), 0.03**2)))
-    found = characteristics_of(fit, {}, vehicle.model())["cg_left"]
+    found = characteristics_of(fit, {}, vehicle.linear_model())["cg_left"]
     share = vehicle.m_s / vehicle.total_mass
     assert found.value == pytest.approx(0.002 * share)
     assert found.std == pytest.approx(0.003 * share, rel=0.01)

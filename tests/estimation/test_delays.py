@@ -25,7 +25,7 @@ CAMPAIGN, QUIET = (
 )
 NAMES = tuple(TABLE_1_CAR.parameters)
 TRUTH = np.array(list(TABLE_1_CAR.parameters.values()))
-MODELS = {load.name: TABLE_1_CAR.model(load) for load in CAMPAIGN.loads}
+MODELS = {load.name: TABLE_1_CAR.linear_model(load) for load in CAMPAIGN.loads}
 ROWS = Readout.of(CAMPAIGN.sensors, NAMES)
 WEIGHTS = np.full(8, 0.02**-2)
 

@@ -38,7 +38,7 @@ def start(
 ) -> dict[str, float] | None:
     campaign = simulate(vehicle, loads=[] if load is None else [load], noise=noise, seed=1, rate=500, duration=3.2)
     decays = prepare(campaign).decays
-    models = [vehicle.model(campaign.load(name)) for name in sorted({decay.load for decay in decays})]
+    models = [vehicle.linear_model(campaign.load(name)) for name in sorted({decay.load for decay in decays})]
     given = {"wheelbase": KnownValue(vehicle.wheelbase, 0.0)} | (known or {})
     size = VehicleSize.of(given, campaign.sensors)
     return modulating_function_estimate(batch_records(decays), models, campaign.sensors, size)
@@ -77,13 +77,13 @@ def test_it_says_when_it_cannot() -> None:
     blind = np.array([0.0] * 4 + [np.nan] * 4)[:, None]
     batches = batch_records([replace(decay, values=decay.values + blind) for decay in prepare(campaign).decays])
     outline = VehicleSize.of({"wheelbase": KnownValue(TABLE_1_CAR.wheelbase, 0.0)}, campaign.sensors)
-    assert modulating_function_estimate(batches, [TABLE_1_CAR.model()], campaign.sensors, outline) is None
+    assert modulating_function_estimate(batches, [TABLE_1_CAR.linear_model()], campaign.sensors, outline) is None
 
 
 @settings(max_examples=20, deadline=None)
 @given(vehicle=vehicles)
 def test_the_poles_are_the_same_seen_from_the_front_axle(vehicle: Vehicle) -> None:
-    model, values = vehicle.model(BAGS), list(vehicle.parameters.values())
+    model, values = vehicle.linear_model(BAGS), list(vehicle.parameters.values())
     moved = model.referred_to_front_axle(vehicle.wheelbase)
     here, there = (np.poly(one.matrices(values).state / 50) for one in (model, moved))
     np.testing.assert_allclose(here, there, rtol=1e-7, atol=1e-9 * np.abs(here).max())

@@ -176,7 +176,9 @@ def critically_damped() -> Vehicle:
     """Two modes meet in one shape at a double real pole: damper rates found by bisection."""
 
     def vehicle(rate: float) -> Vehicle:
-        return replace(TABLE_1_CAR, t_f=None, t_r=None, t_f1=0.5, t_r1=0.5, t_f2=0.74, t_r2=0.74, c_sf=rate, c_sr=rate)
+        return TABLE_1_CAR.with_values(
+            t_f=None, t_r=None, t_f1=0.5, t_r1=0.5, t_f2=0.74, t_r2=0.74, c_sf=rate, c_sr=rate
+        )
 
     low, high = 1500.0, 40000.0
     for _ in range(60):

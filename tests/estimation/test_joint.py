@@ -23,8 +23,8 @@ from sprung.vehicle import (
     Sensor,
     Vehicle,
     Wheel,
+    linear_elements,
     parse_record,
-    seven_degrees_of_freedom,
 )
 from strategies import vehicles
 
@@ -50,7 +50,7 @@ def fit(
     known = dict(campaign.known)
     if campaign.wheelbase is not None:
         known["wheelbase"] = campaign.wheelbase
-    elements = seven_degrees_of_freedom(vehicle.tracks)
+    elements = linear_elements(vehicle.tracks)
     names = tuple(vehicle.parameters)
     models = {load.name: LinearModel.of(elements + load.elements(), names) for load in campaign.loads}
     found = fit_jointly(prepare(campaign).decays, models, campaign.sensors, known, start=start)

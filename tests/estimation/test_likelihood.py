@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -20,8 +18,7 @@ Real = NDArray[np.float64]
 LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 
 
-WITH_RUBBER = replace(
-    TABLE_1_CAR,
+WITH_RUBBER = TABLE_1_CAR.with_values(
     k_df=2.1e5,
     k_dr=2.6e5,
     c_df=80.0,
@@ -42,7 +39,7 @@ def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[ClosedFormObjec
     campaign = free_decays(vehicle, loads=[LOAD], states=2, noise=noise, seed=3, duration=1.5, rate=200)
     decays = prepare(campaign).decays
     names = tuple(vehicle.parameters)
-    models = {load.name: vehicle.model(load) for load in campaign.loads}
+    models = {load.name: vehicle.linear_model(load) for load in campaign.loads}
     sensors = Readout.of(campaign.sensors, names)
     likelihood = ClosedFormObjective(decays, models, sensors)
     values = np.array(list(vehicle.parameters.values()))
@@ -121,7 +118,7 @@ def test_information_is_the_projected_jacobian_squared() -> None:
 def test_poles_and_their_slopes(vehicle: Vehicle) -> None:
     names = tuple(vehicle.parameters)
     values = np.array(list(vehicle.parameters.values()))
-    model = vehicle.model()
+    model = vehicle.linear_model()
     sensors = Readout.of([], names)
     found = solve_modes(model, sensors, values)
     poles_by_parameter, _ = differentiate_modes(model, sensors, values, found, 3.0)
@@ -163,7 +160,9 @@ def critically_damped() -> Vehicle:
     """Make a vehicle two of whose modes meet in one shape, at a double real pole: damper rates tuned by bisection."""
 
     def vehicle(rate: float) -> Vehicle:
-        return replace(TABLE_1_CAR, t_f=None, t_r=None, t_f1=0.5, t_r1=0.5, t_f2=0.74, t_r2=0.74, c_sf=rate, c_sr=rate)
+        return TABLE_1_CAR.with_values(
+            t_f=None, t_r=None, t_f1=0.5, t_r1=0.5, t_f2=0.74, t_r2=0.74, c_sf=rate, c_sr=rate
+        )
 
     low, high = 1500.0, 40000.0  # without and with real poles
     for _ in range(60):

@@ -30,7 +30,7 @@ def test_the_higher_of_two_summits_is_found(seed: int, higher: float) -> None:
         "rear_axle_mass": {"value": rear, "std": 3.0},
     }
     campaign = simulate(car, noise=0.02, seed=seed, known=weighed, duration=3.2)
-    decays, models = prepare(campaign).decays, {"empty": car.model()}
+    decays, models = prepare(campaign).decays, {"empty": car.linear_model()}
     assert campaign.wheelbase is not None
     known = {"wheelbase": campaign.wheelbase, **campaign.known}
     from_truth = fit_linear(decays, models, campaign.sensors, known, start=car.parameters)
@@ -51,8 +51,8 @@ def test_the_gain_of_a_larger_model_is_known_before_it_is_fitted(apart: float) -
     decays = prepare(campaign).decays
     assert campaign.wheelbase is not None
     known = {"wheelbase": campaign.wheelbase}
-    small = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
-    large = {load.name: car.model(load) for load in campaign.loads}
+    small = {load.name: TABLE_1_CAR.linear_model(load) for load in campaign.loads}
+    large = {load.name: car.linear_model(load) for load in campaign.loads}
     fitted = fit_linear(decays, small, campaign.sensors, known)
     start = fitted.parameters | {f"t_{axle}{which}": fitted.parameters[f"t_{axle}"] for axle in "fr" for which in "12"}
     ((expected, _),) = score_linear_term(fitted, large, campaign.sensors, known, [start])

@@ -45,7 +45,7 @@ def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, Know
     assert campaign.wheelbase is not None
     known["wheelbase"] = campaign.wheelbase
     decays = prepare(campaign).decays
-    models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
+    models = {load.name: TABLE_1_CAR.linear_model(load) for load in campaign.loads}
     optimum = fit_linear(decays, models, campaign.sensors, known, start=TRUTH)
     return optimum, uncertainty_of(optimum), known
 
@@ -72,7 +72,7 @@ class LongWay:
 
     def __init__(self, campaign: Campaign) -> None:
         decays = prepare(campaign).decays
-        models = {load.name: TABLE_1_CAR.model(load) for load in campaign.loads}
+        models = {load.name: TABLE_1_CAR.linear_model(load) for load in campaign.loads}
         rows = Readout.of(campaign.sensors, NAMES)
         self.objective = ClosedFormObjective(decays, models, rows)
         self.free = [name for name in NAMES if name not in ("m_s", "b", "t_f")]
@@ -139,7 +139,7 @@ def test_well_determined_quantities_keep_their_intervals(name: str) -> None:
 def test_inflation_widens_the_profile_as_it_widens_the_curvature() -> None:
     """Drops of two different cars disagree; the weighing is as good as it was, and alone decides about the mass."""
     campaign = drops(seed=2, noise=0.02, known={"total_mass": KnownValue(1.001 * TABLE_1_CAR.total_mass, 5.0)})
-    other = replace(TABLE_1_CAR, k_sf=1.03 * TABLE_1_CAR.k_sf)
+    other = TABLE_1_CAR.with_values(k_sf=1.03 * TABLE_1_CAR.k_sf)
     differs = free_decays(other, states=3, noise=0.02, seed=2, rate=100, duration=1.5)
     mixed = campaign.with_recordings((*campaign.recordings[:2], differs.recordings[2]))
     optimum, fit, known = fitted(mixed)

@@ -23,7 +23,7 @@ Real = NDArray[np.float64]
 LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 EXACT = free_decays(TABLE_1_CAR, loads=[LOAD], states=2, noise=0.02, seed=3, duration=1.5, rate=200)
 NAMES = tuple(TABLE_1_CAR.parameters)
-MODELS = {load.name: TABLE_1_CAR.model(load) for load in EXACT.loads}
+MODELS = {load.name: TABLE_1_CAR.linear_model(load) for load in EXACT.loads}
 WEIGHTS = np.full(8, 0.02**-2)
 
 

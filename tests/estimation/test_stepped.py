@@ -21,7 +21,7 @@ from sprung.estimation import (
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
-from sprung.vehicle import EXTRA_PARAMETERS, TABLE_1_CAR, Readout, Vehicle
+from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle, parameters_of_term
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
@@ -107,7 +107,7 @@ def test_scores_of_forces_need_no_steps(
     larger = plain.with_terms(extras)
     neutral = {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5, "r_f": 1.0, "r_r": 1.0, "p_f": 0.0, "p_r": 0.0}
     values = found.parameters | neutral
-    brought = {extra: EXTRA_PARAMETERS[extra] for extra in extras}
+    brought = {extra: parameters_of_term(extra, "shared") for extra in extras}
     by_modes = score_nonlinear_terms(found, larger.nonlinear_models, values, brought)
     by_steps = score_stepped_terms(
         theirs,

@@ -1,7 +1,5 @@
 """The State Variable Method against state matrices that are known."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -56,7 +54,7 @@ def test_poles_and_shapes_of_any_vehicle_overdamped_ones_too(vehicle: Vehicle) -
 
 
 def test_pairs_of_real_poles_are_found_and_put_into_the_state_matrix() -> None:
-    vehicle = replace(TABLE_1_CAR, c_sf=9000.0, c_sr=9000.0)
+    vehicle = TABLE_1_CAR.with_values(c_sf=9000.0, c_sr=9000.0)
     matrices = vehicle.matrices()
     assert sum(mode.pole.imag == 0 for mode in compute_modes(matrices)) >= 4
     found = state_variable_method(decays(vehicle, 1000.0, 800), 1000.0, lag=5)

@@ -1,7 +1,6 @@
 """Structured least squares: exact from exact state matrices, honest from noisy ones."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -94,7 +93,7 @@ def test_the_papers_experiment() -> None:
 
 
 def test_anti_roll_bars_and_tyre_damping_even_where_they_are_zero() -> None:
-    with_bars = replace(TABLE_1_CAR, k_af=8000.0, k_ar=3000.0, c_tf=80.0, c_tr=120.0)
+    with_bars = TABLE_1_CAR.with_values(k_af=8000.0, k_ar=3000.0, c_tf=80.0, c_tr=120.0)
     for vehicle in (with_bars, TABLE_1_CAR):
         states = [(load, vehicle.matrices(load).state) for load in (EMPTY, body_load(vehicle))]
         fit = structured_least_squares(states, extras=("anti-roll", "tyre-damping"))
@@ -163,7 +162,7 @@ def test_the_scale_must_come_from_somewhere() -> None:
 
 def test_what_is_not_determined_is_named() -> None:
     # Without a force in the front dampers nobody can say how far apart they stand.
-    undamped = replace(SCHOOL_BUS, c_sf=0.0)
+    undamped = SCHOOL_BUS.with_values(c_sf=0.0)
     states = [(load, undamped.matrices(load).state) for load in (EMPTY, BUS_LOAD)]
     with pytest.raises(InputError, match="found t_f1 can change"):
         structured_least_squares(states, tracks="separate")

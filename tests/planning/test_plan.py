@@ -208,13 +208,13 @@ def test_a_campaign_goes_on_from_its_own_error_bars() -> None:
 
 
 def test_separate_half_distances_and_extras() -> None:
-    odd = dataclasses.replace(TABLE_1_CAR, t_f=None, t_f1=0.6, k_af=5000.0, name="odd")
+    odd = TABLE_1_CAR.with_values(t_f1=0.6, k_af=5000.0, name="odd")
     found = bound(sprung.plan(odd, known={"total_mass": odd.total_mass}), "as planned")
     assert {"t_f1", "t_f2", "t_r1", "t_r2", "k_af", "k_ar"} <= found.percents.keys()
 
 
 def test_a_load_under_which_the_vehicle_falls_over_is_refused() -> None:
-    narrow = dataclasses.replace(TABLE_1_CAR, a=0.15, b=2.61, name="nose-heavy")
+    narrow = TABLE_1_CAR.with_values(a=0.15, b=2.61, name="nose-heavy")
     plan = sprung.plan(narrow)
     refused = [row for row in plan.rows if row.bound is None]
     assert all(row.refused for row in refused)
@@ -253,7 +253,7 @@ def test_every_fault_at_once() -> None:
 
 def test_an_undamped_vehicle_has_no_bound() -> None:
     with pytest.raises(InputError, match="c_sf: found 0"):
-        sprung.plan(dataclasses.replace(TABLE_1_CAR, c_sf=0.0))
+        sprung.plan(TABLE_1_CAR.with_values(c_sf=0.0))
 
 
 def test_the_document_has_everything() -> None:

@@ -57,7 +57,7 @@ def test_what_refines_a_refused_term_goes_with_it() -> None:
 )
 def test_damping_of_mounts_is_found_where_it_is(loss: float) -> None:
     """A mount without damping of its own stays one: a fit that lets its damping go negative does not cost the mount."""
-    car = replace(TABLE_1_CAR, k_df=12 * TABLE_1_CAR.k_sf, k_dr=12 * TABLE_1_CAR.k_sr, c_df=loss, c_dr=loss)
+    car = TABLE_1_CAR.with_values(k_df=12 * TABLE_1_CAR.k_sf, k_dr=12 * TABLE_1_CAR.k_sr, c_df=loss, c_dr=loss)
     result = sprung.identify(simulate(car, loads=[BALLAST], rate=500.0, noise=0.01, seed=3))
     assert result.verdict.state == "accept"
     assert {"damper-mount", "mount-damping"} & {*result.fit.model} == {"damper-mount"} | (

@@ -14,8 +14,8 @@ from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, parse_record
 
 HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held
 
-WITH_ENGINE = replace(
-    TABLE_1_CAR, m_e=160.0, k_e=160.0 * HANGING**2, c_e=0.14 * 160.0 * HANGING, x_e=0.1, name="car with an engine"
+WITH_ENGINE = TABLE_1_CAR.with_values(
+    m_e=160.0, k_e=160.0 * HANGING**2, c_e=0.14 * 160.0 * HANGING, x_e=0.1, name="car with an engine"
 )
 
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": [-1.1, 0.3, 0.5]}]})
@@ -27,7 +27,10 @@ LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5
 
 @pytest.mark.parametrize(
     "vehicle",
-    [pytest.param(WITH_ENGINE, marks=pytest.mark.long), replace(WITH_ENGINE, x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2)],
+    [
+        pytest.param(WITH_ENGINE, marks=pytest.mark.long),
+        WITH_ENGINE.with_values(x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2),
+    ],
 )
 def test_an_engine_is_selected(vehicle: Vehicle) -> None:
     campaign = sprung.simulate(vehicle, loads=[BALLAST], noise=0.02, seed=1)
@@ -50,7 +53,7 @@ def test_a_requested_engine_is_fitted() -> None:
 
 @pytest.mark.long
 def test_an_engine_is_fitted_beside_friction() -> None:
-    rubbing = replace(WITH_ENGINE, F_f=80.0, F_r=80.0, s_f=4e5, s_r=4e5)
+    rubbing = WITH_ENGINE.with_values(F_f=80.0, F_r=80.0, s_f=4e5, s_r=4e5)
     drops = [
         {"wheels": wheels, "load": load} for wheels in (["fl", "fr"], ["rl", "rr"]) for load in ("empty", "ballast")
     ]
@@ -66,7 +69,7 @@ def test_an_engine_is_fitted_beside_friction() -> None:
 
 def test_a_body_that_could_carry_no_usual_engine_is_identified() -> None:
     # Its mass sits in its middle: a tenth of it above either axle would have more pitch inertia than all of it.
-    compact = replace(TABLE_1_CAR, I_yy=200.0, name="compact")
+    compact = TABLE_1_CAR.with_values(I_yy=200.0, name="compact")
     result = sprung.identify(sprung.simulate(compact, loads=[BALLAST], noise=0.02, seed=1))
     assert (result.verdict.state, result.fit.model) == ("accept", ())
 

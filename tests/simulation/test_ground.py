@@ -30,7 +30,7 @@ def test_wheel_loads_hold_the_weight_and_its_moments(vehicle: Vehicle, load: Loa
     item = load.items[0]
     assert item.position is not None
     x, y, _ = item.position
-    assert W.sum() == pytest.approx(STANDARD_GRAVITY * (vehicle.total_mass + load.mass))
+    assert W.sum() == pytest.approx(STANDARD_GRAVITY * (vehicle.total_mass + load.total_mass()))
     # Moment about the front axle: the rear axle carries what lies behind it.
     behind = vehicle.m_s * vehicle.a - item.mass * x + 2 * vehicle.m_ur * vehicle.wheelbase
     assert W[2:].sum() * vehicle.wheelbase == pytest.approx(STANDARD_GRAVITY * behind)

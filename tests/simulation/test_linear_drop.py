@@ -141,7 +141,7 @@ def test_in_free_flight_gravity_alone_changes_the_momentum(vehicle: Vehicle, loa
     first_landing = min(event.time for event in drop.events if event.kind == "landing")
     motion = drop.motion(first_landing / 50, 50)
     M = vehicle.matrices(load).M
-    weight = STANDARD_GRAVITY * (vehicle.total_mass + load.mass)
+    weight = STANDARD_GRAVITY * (vehicle.total_mass + load.total_mass())
     assert_allclose(HEAVE @ M @ motion.acceleration, -weight, rtol=1e-10)
     assert_allclose(HEAVE @ M @ motion.velocity, -weight * first_landing / 50 * np.arange(50), atol=1e-8 * weight)
 
@@ -322,7 +322,7 @@ def test_impossible_drops_name_every_fault() -> None:
     assert [problem.expected for problem in caught.value.problems] == [
         "a wheel station",
         "a positive height",
-        "four wheels pressed to the ground",
+        "all wheels pressed to the ground",
     ]
     with pytest.raises(InputError, match="found no wheels"):
         drop_from_blocks(TABLE_1_CAR, wheels=())

@@ -216,7 +216,7 @@ def test_every_fault_is_named_at_once() -> None:
         ({"noise": {"wheel_fl": 0.1}}, r"noise\['body_fl'\]: found nothing; expected .* Give every channel"),
         ({"rate": float("inf")}, "found inf samples per second"),
         ({"gravity": -9.8}, "simulate: gravity: found -9.8"),
-        ({"gravity": 0.0}, "four wheels pressed to the ground"),
+        ({"gravity": 0.0}, "all wheels pressed to the ground"),
         ({"rest": float("nan")}, "simulate: rest: found nan"),
         ({"sensors": []}, "simulate: sensors: found none"),
         ({"drops": []}, "simulate: drops: found none"),

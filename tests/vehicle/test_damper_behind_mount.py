@@ -12,9 +12,9 @@ from sprung.vehicle import (
     Stepper,
     Vehicle,
     differentiate_motions,
+    linear_elements,
     nonlinear_elements,
     parameter_names,
-    seven_degrees_of_freedom,
 )
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ CAR = Vehicle.from_parameters(
 NAMES = parameter_names("shared", EXTRAS)
 VALUES = np.array([getattr(CAR, name) for name in NAMES])
 MODEL = NonlinearModel.of(
-    seven_degrees_of_freedom("shared", EXTRAS), nonlinear_elements("shared", EXTRAS), NAMES
+    linear_elements("shared", EXTRAS), nonlinear_elements("shared", EXTRAS), NAMES
 )  # fmt: skip
 
 

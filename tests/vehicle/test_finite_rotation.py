@@ -17,9 +17,9 @@ from sprung.vehicle import (
     Load,
     affine_response,
     body_sinking,
+    linear_elements,
     parameter_names,
     second_order_readings,
-    seven_degrees_of_freedom,
 )
 from tall_car import BALLAST, HEIGHTS, RATE, SENSORS, TALL_CAR, second_order
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 G = 9.80665
 NAMES = tuple(TALL_CAR.parameters)
 VALUES = np.array(list(TALL_CAR.parameters.values()))
-EMPTY_MODEL = TALL_CAR.model()
+EMPTY_MODEL = TALL_CAR.linear_model()
 ARM = HEIGHTS.wheel_arms[1]
 
 DEFLECTIONS = {"roll": [0, 0, 0.02, 0, 0, 0, 0], "both": [0.01, 0.01, 0.02, 0.002, 0, 0, 0]}
@@ -36,9 +36,9 @@ DEFLECTIONS = {"roll": [0, 0, 0.02, 0, 0, 0, 0], "both": [0.01, 0.01, 0.02, 0.00
 
 def model_of(load: Load) -> tuple[LinearModel, float]:
     """Return the equations of motion where the body rests under a load, and how much lower that is."""
-    sunk = body_sinking(EMPTY_MODEL, TALL_CAR.model(load), "shared", VALUES)
+    sunk = body_sinking(EMPTY_MODEL, TALL_CAR.linear_model(load), "shared", VALUES)
     heights = HEIGHTS._replace(sunk=sunk)
-    elements = seven_degrees_of_freedom("shared", TALL_CAR.extras, heights) + load.elements(heights)
+    elements = linear_elements("shared", TALL_CAR.extras, heights) + load.elements(heights)
     return LinearModel.of(elements, NAMES), sunk
 
 
@@ -99,9 +99,9 @@ def test_a_load_lets_the_body_rest_lower_and_stiffens_roll() -> None:
         potential(rest + along, BALLAST) - 2 * potential(rest, BALLAST) + potential(rest - along, BALLAST)
     ) / 4e-6
     model, sunk = model_of(BALLAST)
-    unsunk = TALL_CAR.model(BALLAST).matrices(VALUES).K[2, 2]
+    unsunk = TALL_CAR.linear_model(BALLAST).matrices(VALUES).K[2, 2]
     change = curvature - unsunk
-    weight = G * (TALL_CAR.m_s + BALLAST.mass)
+    weight = G * (TALL_CAR.m_s + BALLAST.total_mass())
     assert sunk == pytest.approx(-rest[0] + np.mean(rest[3:]), rel=0.1)
     assert change == pytest.approx(weight * sunk, rel=0.02)
     assert model.matrices(VALUES).K[2, 2] - unsunk == pytest.approx(change, rel=0.02)
@@ -124,14 +124,14 @@ def test_a_vehicle_that_nothing_holds_turns_with_the_least_kinetic_energy() -> N
             right += [-np.sqrt(mass) * h * (angle == 1), np.sqrt(mass) * h * (angle == 2)]
         _, (left,), *_ = np.linalg.lstsq(np.array(rows), np.array(right), rcond=None)
         vertical = sum(m * (x**2 if angle == 1 else y**2) for m, x, y, _ in points[3:])
-        assert TALL_CAR.model(BALLAST).matrices(VALUES).M[angle, angle] == pytest.approx(
+        assert TALL_CAR.linear_model(BALLAST).matrices(VALUES).M[angle, angle] == pytest.approx(
             own + vertical + left, rel=1e-12
         )
 
 
 def test_derivatives_of_the_reduced_mass_matrix() -> None:
     """Central differences; their error is that of rounding, 1e-16 of the inertias over a step of 1e-6 of each parameter."""
-    model = TALL_CAR.model(BALLAST)
+    model = TALL_CAR.linear_model(BALLAST)
     assert model.is_reduced
     exact = model.slopes(VALUES).M
     for i, value in enumerate(VALUES):
@@ -142,7 +142,7 @@ def test_derivatives_of_the_reduced_mass_matrix() -> None:
 
 def test_without_heights_nothing_moves_sideways() -> None:
     names = parameter_names("shared", TALL_CAR.extras)
-    model = LinearModel.of(seven_degrees_of_freedom("shared", TALL_CAR.extras, LEVEL), names)
+    model = LinearModel.of(linear_elements("shared", TALL_CAR.extras, LEVEL), names)
     assert not model.is_reduced
     assert not model.unconstrained_motion(VALUES).any()
-    assert replace(TALL_CAR, cg_height=None, wheel_height=None).model(BALLAST).matrices(VALUES).M[2, 2] == 736.0
+    assert replace(TALL_CAR, cg_height=None, wheel_height=None).linear_model(BALLAST).matrices(VALUES).M[2, 2] == 736.0

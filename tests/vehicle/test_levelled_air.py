@@ -17,7 +17,7 @@ LOAD = {"name": "ballast", "items": [{"mass": 200.0, "position": (-2.07, 0.0, 0.
 def test_the_rate_grows_with_what_the_spring_carries() -> None:
     """The load lies at three quarters of the wheelbase of 2.76 m: a rear wheel carries 75 kg of it, a front wheel 25 kg."""
     load = parse_record(Load, LOAD)
-    assert load.mass_at_wheels(CAR.wheelbase) == pytest.approx((25.0, 75.0))
+    assert load.mass_at_wheels(CAR.wheelbase) == pytest.approx({"f": 25.0, "r": 75.0})
     stiffer = Vehicle.from_parameters(
         TABLE_1_CAR.parameters | {"k_sf": CAR.k_sf + 25.0 * 50.0, "k_sr": CAR.k_sr + 75.0 * 90.0}
     )

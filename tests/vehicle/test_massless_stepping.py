@@ -13,8 +13,8 @@ from sprung.vehicle import (
     Vehicle,
     differentiate_motions,
     free_decay,
+    linear_elements,
     nonlinear_elements,
-    seven_degrees_of_freedom,
 )
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ START: Array = np.random.default_rng(4).standard_normal(22) * np.repeat([0.02, 0
 
 
 def stepper(car: Vehicle, step: float, values: Array | None = None) -> Stepper:
-    elements = seven_degrees_of_freedom(car.tracks, car.extras)
+    elements = linear_elements(car.tracks, car.extras)
     nonlinear = nonlinear_elements(car.tracks, (*car.extras, "rebound"))
     names = tuple(dict.fromkeys((*car.parameters, "r_f", "r_r")))
     model = NonlinearModel.of(elements, nonlinear, names)

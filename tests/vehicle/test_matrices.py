@@ -14,8 +14,8 @@ from sprung.vehicle import (
     PARAMETERS,
     LinearModel,
     coordinates,
+    linear_elements,
     parameter_names,
-    seven_degrees_of_freedom,
 )
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ def equation_2(p: Mapping[str, float], f: float, r: float, t_f: float, t_r: floa
 
 
 def model_of(names: tuple[str, ...], extras: tuple[str, ...] = ()) -> LinearModel:
-    return LinearModel.of(seven_degrees_of_freedom("separate", extras, wheelbase=2.7), names)
+    return LinearModel.of(linear_elements("separate", extras, wheelbase=2.7), names)
 
 
 @given(values_of(NAMES))

@@ -1,7 +1,6 @@
 """The vehicle record: its parameters, and what it says when they cannot be."""
 
 import math
-from dataclasses import asdict
 
 import pytest
 from numpy.testing import assert_allclose
@@ -96,7 +95,6 @@ def test_an_undamped_vehicle_is_a_vehicle() -> None:
 
 def test_tables_of_the_paper() -> None:
     # Table 1.
-    assert asdict(TABLE_1_CAR) | TABLE_1 == asdict(TABLE_1_CAR)
     assert list(TABLE_1.values()) == [
         *(1380, 2440, 380, 40.5, 45.4),
         *(17_000, 22_000, 192_000, 192_000, 1500, 1500),

@@ -24,11 +24,11 @@ from sprung.vehicle import (
     free_decay,
     ground_contact_elements,
     integrate_near,
+    linear_elements,
     nonlinear_elements,
     parameter_names,
     parse_record,
     segments_of,
-    seven_degrees_of_freedom,
     stiffened_air_springs,
 )
 from sprung.vehicle.damper_curve import damper_curve
@@ -70,14 +70,14 @@ def model_of(extras: tuple[str, ...], load: Load = EMPTY, ground: bool = False) 
     names, _ = values_of(extras)
     forces = nonlinear_elements("separate", extras, load=load.mass_at_wheels(CAR.wheelbase))
     forces += ground_contact_elements(extras) if ground else ()
-    elements = seven_degrees_of_freedom("separate", extras)
+    elements = linear_elements("separate", extras)
     elements += stiffened_air_springs(load.mass_at_wheels(CAR.wheelbase), "separate", extras)
     return NonlinearModel.of(elements, forces, names, load)
 
 
 def linear_part(load: Load = EMPTY) -> Matrices:
     """Return the matrices of the elements that have one."""
-    return CAR.model(load).matrices(list(CAR.parameters.values()))
+    return CAR.linear_model(load).matrices(list(CAR.parameters.values()))
 
 
 def some_states(drops: int, seed: int = 0) -> Array:
@@ -192,7 +192,7 @@ def test_friction_grows_with_the_load() -> None:
     names, values = values_of(extras)
     states, step, steps = some_states(2, 3), 0.002, 100
     trajectory = stepper(extras, step).integrate(states, np.zeros((2, 8)), steps)
-    carried = dict(zip("fr", BALLAST.mass_at_wheels(CAR.wheelbase), strict=True))
+    carried = BALLAST.mass_at_wheels(CAR.wheelbase)
     assert 2 * sum(carried.values()) == pytest.approx(150.0)
     larger = dict(zip(names, values.tolist(), strict=True))
     for axle, mass in carried.items():

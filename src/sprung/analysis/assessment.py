@@ -45,9 +45,9 @@ from sprung.vehicle import (
     LOAD_MASS,
     SENSOR_UNKNOWNS,
     Sensor,
+    linear_elements,
     nonlinear_elements,
     sensor_unknown,
-    seven_degrees_of_freedom,
 )
 
 METHOD = "joint maximum likelihood"
@@ -142,8 +142,9 @@ def _curves_of(structure: ModelStructure, fit: FitStatistics, optimum: FitResult
     """Return the force curves of the dampers, springs and tyres that are not linear."""
     if not structure.is_nonlinear:
         return {}
-    linear = seven_degrees_of_freedom(structure.tracks, structure.terms, structure.heights, structure.wheelbase)
-    nonlinear = nonlinear_elements(structure.tracks, structure.terms, structure.wheelbase)
+    tracks, terms, wheelbase, layout = structure.tracks, structure.terms, structure.wheelbase, structure.layout
+    linear = linear_elements(tracks, terms, structure.heights, wheelbase, layout)
+    nonlinear = nonlinear_elements(tracks, terms, wheelbase, layout=layout)
     return force_curves(fit, optimum, structure.nonlinear_models, linear, nonlinear)
 
 
@@ -164,7 +165,7 @@ def _fit_report(
         model=structure.terms,
         tracks=structure.tracks,
         why=why,
-        axes=axes_of(structure.heights, structure.assumed_heights is not None),
+        axes=axes_of(structure.heights, structure.assumed_heights is not None, structure.layout),
         since="release" if structure.unilateral_tyres else "landing",
         path=path,
         method=METHOD,

@@ -6,14 +6,14 @@ import numpy as np
 
 from sprung.estimation import FitStatistics
 from sprung.uncertainty import NORMAL_95, Estimate
-from sprung.vehicle import Heights
+from sprung.vehicle import FULL, Heights, Layout
 
 ABOUT_ROLL_AXIS = "I_xx_roll_axis"
 """Name of the sprung mass's roll inertia about the axis of roll, among the derived quantities."""
 
 
-def axes_of(heights: Heights, assumed: bool = False) -> str:
-    """Return the axes to which I_xx and I_yy refer, as text.
+def axes_of(heights: Heights, assumed: bool = False, layout: Layout = FULL) -> str:
+    """Return the axes to which I_xx and I_yy refer, as text; nothing of a vehicle that does not turn.
 
     Parameters
     ----------
@@ -21,26 +21,37 @@ def axes_of(heights: Heights, assumed: bool = False) -> str:
         How high things are, as far as it was measured.
     assumed
         Whether they were not measured, but follow from the recordings.
+    layout
+        Of the vehicle.
     """
+    turns = {"I_xx": layout.rolls, "I_yy": layout.pitches}
+    inertias = " and ".join(name for name, does in turns.items() if does)
+    are, refer, include = ("are", "refer", "include") if all(turns.values()) else ("is", "refers", "includes")
+    if not inertias:
+        return ""
     arm = -heights.wheel_arms[1]
     if assumed and arm != 0:
         where = "above" if arm > 0 else "below"
         return (
-            "no heights are given; I_xx and I_yy are about the centre of gravity of the sprung mass, which according to the "
+            f"no heights are given; {inertias} {are} about the centre of gravity of the sprung mass, which according to the "
             f"recordings is {abs(arm):.2f} m {where} the wheel centres, where the body is carried"
         )
     if assumed or not heights.has_effect:
         return (
-            "no heights are given; I_xx and I_yy refer to the actual roll and pitch axes and include the lateral motion of "
+            f"no heights are given; {inertias} {refer} to the actual {_axes(layout)} and {include} the lateral motion of "
             "the wheels"
         )
     axis = "it" if heights.roll_axis_height is None else f"an axis at {heights.roll_axis_height:g} m"
     at_wheels = heights.carried_at == "wheels" and heights.wheel_height is not None
     carried_at = f"at its wheels ({heights.wheel_height:g} m)" if at_wheels else "at the axis of roll"
     return (
-        f"I_xx and I_yy are about the centre of gravity of the sprung mass ({heights.cg_height:g} m above the ground); the "
+        f"{inertias} {are} about the centre of gravity of the sprung mass ({heights.cg_height:g} m above the ground); the "
         f"body rolls about {axis} and is carried {carried_at}"
     )
+
+
+def _axes(layout: Layout) -> str:
+    return "roll and pitch axes" if layout == FULL else "roll axis" if layout.rolls else "pitch axis"
 
 
 def about_roll_axis(fit: FitStatistics, heights: Heights) -> dict[str, Estimate]:

@@ -37,7 +37,7 @@ def to_design(run: Analysis) -> PlannedTest:
 
     campaign, decays, fitted = run.campaign, run.decays, run.model.structure
     structure = fitted.with_terms(fitted.linear_terms)
-    own = parameter_names(structure.tracks, structure.terms)
+    own = parameter_names(structure.tracks, structure.terms, structure.layout)
     fit = run.uncertainty.only((*own, *filter(is_of_sensor, run.uncertainty.names)))
     setup = setup_from_fit(
         fit,

@@ -20,7 +20,7 @@ from sprung.estimation import CONVERGED, FitStatistics, uncertainty_of, weigh_st
 from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, fit_structure, select_gravity_leakage
-from sprung.vehicle import WHEELS, Readout, Vehicle, evaluate_quantity, parameter_names, state_variables
+from sprung.vehicle import Readout, Vehicle, evaluate_quantity, layout_of, parameter_names, state_variables
 
 Real = NDArray[np.float64]
 
@@ -102,7 +102,8 @@ def is_needed(fit: FitStatistics) -> bool:
     hopeless = np.abs(fit.undetermined - np.outer(scaling, scaling @ fit.undetermined) / (scaling @ scaling)).max(
         initial=0
     )
-    plain = np.isin(fit.names, [*parameter_names("shared"), *parameter_names("separate")])
+    layout = layout_of(fit.names)
+    plain = np.isin(fit.names, [*parameter_names("shared", (), layout), *parameter_names("separate", (), layout)])
     return bool(np.any((errors > NEEDED * sizes)[plain])) and hopeless < _UNDETERMINED
 
 
@@ -124,7 +125,7 @@ def _start(flight: FreeDecay, observation: DropObservation, vehicle: Vehicle, ca
     load, rate, height = campaign.load(flight.load), flight.rate, observation.drop.height
     from sprung.simulation import BlockSupport, simulate_nonlinear_drops  # noqa: PLC0415 (only the fall needs it)
 
-    wheels = observation.wheels or WHEELS
+    wheels = observation.wheels or campaign.layout.wheels
     blocks = [BlockSupport(load, wheels, one) for one in (_HEIGHTS if height is None else (height,))]
     first = round((flight.start - observation.recording.start) * rate)
     since = (first - observation.rest.sample) / rate

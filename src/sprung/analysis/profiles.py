@@ -10,12 +10,12 @@ from sprung.estimation import FitResult, FitStatistics, estimate_of, profiled
 from sprung.progress import Progress, counted
 from sprung.selection import choose_structure
 from sprung.uncertainty import Estimate, KnownValue
-from sprung.vehicle import DERIVED, Tracks, parameter_names
+from sprung.vehicle import DERIVED, Tracks, half_distances, parameter_names
 
 ALL = "all"
 """Stands for every parameter of the model."""
 
-_HALF_DISTANCES = ("t_f", "t_r")
+_HALF_DISTANCES = tuple(half_distances("shared").values())
 
 
 def check_asked(
@@ -46,7 +46,7 @@ def check_asked(
     choice = choose_structure(campaign, tracks, None if extras is None else tuple(extras))
     # Where the records are to decide about the half-distances, either names will do.
     either: tuple[Tracks, ...] = ("shared", "separate") if choice.tracks_open else (choice.tracks,)
-    allowed = {ALL, *DERIVED, *(name for one in either for name in parameter_names(one, choice.terms))}
+    allowed = {ALL, *DERIVED, *(name for one in either for name in parameter_names(one, choice.terms, choice.layout))}
     problems = Problems()
     for name in names:
         if name not in allowed:

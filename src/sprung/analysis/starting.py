@@ -35,7 +35,7 @@ def start_values(start: Result | Vehicle | Mapping[str, float] | None) -> dict[s
     if isinstance(start, Result):
         return {name: found.value for name, found in start.parameters.items() if found.value is not None}
     if isinstance(start, Vehicle):
-        return start.parameters
+        return dict(start.parameters)
     problems = Problems()
     if not isinstance(start, Mapping):
         do = 'Give start={"k_sf": 20000}, an earlier result, or nothing.'

@@ -13,7 +13,7 @@ from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import Readout, Sensor
+from sprung.vehicle import FULL, Readout, Sensor, layout_of
 
 Real = NDArray[np.float64]
 
@@ -131,8 +131,13 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
 
 
 def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
-    """Return the reading of each sensor per vertical, pitch and roll acceleration; zero on wheels, shape (channel, 3)."""
-    rows = Readout.of(sensors, fit.names).at(fit.values)[:, :3]
+    """Return the reading of each sensor per vertical, pitch and roll acceleration, shape (channel, 3).
+
+    Zero on wheels, and for a motion that the vehicle has not.
+    """
+    body = layout_of(fit.names).body
+    rows = np.zeros((len(sensors), 3))
+    rows[:, [FULL.body.index(one) for one in body]] = Readout.of(sensors, fit.names).at(fit.values)[:, : len(body)]
     on_body = np.array([sensor.on == "body" for sensor in sensors])
     return np.where(on_body[:, None], rows, 0.0)
 

@@ -18,7 +18,7 @@ from sprung.campaign.source_file import SourceFile
 from sprung.display import shown
 from sprung.errors import Fault, InputError, Problems, UnknownNameError
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, Heights, Load, Sensor, checked_record
+from sprung.vehicle import EMPTY, LAYOUTS, Heights, Layout, Load, Sensor, VehicleModel, checked_record
 
 
 @checked_record
@@ -85,6 +85,8 @@ class Campaign:
     unread
         Drops whose recordings could not be read, of a campaign that was read although it is not complete; they are not among
         `drops`.
+    vehicle_model
+        Which part of a vehicle is tested.
     identification
         Of the vehicle: chassis, registration or test number; None where nobody gave it.
     test
@@ -112,6 +114,7 @@ class Campaign:
     files: tuple[SourceFile, ...] = ()
     missing: tuple[MissingEntry, ...] = ()
     unread: tuple[Drop, ...] = ()
+    vehicle_model: VehicleModel = "full"
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
     motion_ratio: Mapping[str, KnownValue] = field(default_factory=dict)
@@ -136,9 +139,15 @@ class Campaign:
                     f"campaign {self.name}: drop {drop.label}", "no recording", "a drop with its recording", do
                 )
         problems.raise_if_any()
+        object.__setattr__(self, "drops", tuple(drop.on_wheels_of(self.layout) for drop in self.drops))
         object.__setattr__(self, "wheelbase", known.pop("wheelbase", None))
         object.__setattr__(self, "known", known)
         object.__setattr__(self, "motion_ratio", ratios)
+
+    @property
+    def layout(self) -> Layout:
+        """Coordinates and wheel stations of the vehicle."""
+        return LAYOUTS[self.vehicle_model]
 
     @property
     def recordings(self) -> tuple[Recording, ...]:

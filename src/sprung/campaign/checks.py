@@ -14,15 +14,27 @@ from sprung.campaign.schema import KNOWABLE, CampaignFile, VehicleFileSchema
 from sprung.errors import Problems, did_you_mean
 from sprung.uncertainty import KnownValue
 from sprung.units import acceleration_factor
-from sprung.vehicle import EXTRAS, PARAMETERS, Sensor
+from sprung.vehicle import EXTRAS, LAYOUTS, PARAMETERS, STATIONS, WHEELS, Sensor, all_names, terms_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from sprung.campaign.parsing import ParsedFile
+    from sprung.campaign.schema_problems import Place
 
 CONTRADICTION = 4.0
 """Two statements contradict each other from this many combined standard uncertainties on."""
+
+_APART = {
+    "full": ", to distinguish bounce, pitch and roll",
+    "pitch-plane": ", to distinguish bounce and pitch",
+    "roll-plane": ", to distinguish bounce and roll",
+    "quarter": "",
+}
+"""What the body's sensors are to distinguish, by the part of a vehicle."""
+
+_SAME_PLACE = 0.01
+"""m: sensors that are less apart tell nothing of rotation."""
 
 ROUNDING = 1e-6
 """By how much, relatively, numbers given as exact may differ."""
@@ -43,6 +55,7 @@ def check(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     check_body_sensors(parsed, problems)
     _check_loads(parsed, problems)
     _check_model(parsed, problems)
+    _check_stations(parsed, problems)
     _check_drops(parsed, problems)
     check_quantities(parsed, problems)
 
@@ -120,7 +133,7 @@ def _check_units(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 
 def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
-    """Check that the body's sensors tell bounce, pitch and roll apart: three unknowns, three sensors not on one line.
+    """Check that the body's sensors tell bounce, pitch and roll apart: as many unknowns, as many sensors apart from each other.
 
     Parameters
     ----------
@@ -129,7 +142,7 @@ def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> 
     problems
         Takes up what is wrong.
     """
-    if not parsed.complete("sensor") or _left_to_defaults(parsed, "sensor"):
+    if not parsed.complete("sensor") or _left_to_defaults(parsed, "sensor") or ("vehicle", "model") in parsed.lost:
         return
     if any(sensor.on == "body" and sensor.position is None for sensor in parsed.file.sensor):
         return  # said already
@@ -138,15 +151,23 @@ def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> 
     ]
     if any(not LIMITS["x"].contain(length) for position in placed for length in position):
         return  # said already, and what they span is not worth saying
-    if len(placed) < 3:
+    layout = LAYOUTS[parsed.file.vehicle.model]
+    turns = [layout.pitches, layout.rolls]
+    needed = 1 + sum(turns)
+    if len(placed) < needed:
         found, do = f"{len(placed)} sensors on the body", 'Add [[sensor]] entries with on = "body".'
-        problems.add(parsed.where("sensor"), found, "at least 3, to distinguish bounce, pitch and roll", do)
+        problems.add(parsed.where("sensor"), found, f"at least {needed}{_APART[layout.model]}", do)
         return
-    across = np.linalg.svd(np.array(placed) - np.mean(placed, axis=0), compute_uv=False)
-    if across[1] <= 0.01 * across[0]:
+    spread = (np.array(placed) - np.mean(placed, axis=0))[:, turns]
+    across = np.linalg.svd(spread, compute_uv=False) if spread.size else np.ones(1)
+    if all(turns) and across[1] <= 0.01 * across[0]:
         found = "body sensors on one line, seen from above"
         do = "Correct their x and y; if they are right, pitch cannot be distinguished from roll: move a sensor off the line."
         problems.add(parsed.where("sensor"), found, "at least 3 that span an area", do)
+    elif needed == 2 and across[0] < _SAME_PLACE:
+        along = "x" if layout.pitches else "y"
+        found, do = f"body sensors at one {along}", f"Correct their {along}; if it is right, move a sensor."
+        problems.add(parsed.where("sensor"), found, f"at least 2 at different {along}", do)
 
 
 def _left_to_defaults(parsed: ParsedFile[CampaignFile], section: str) -> bool:
@@ -172,11 +193,13 @@ def _check_loads(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     model = parsed.file.model
+    of_layout = terms_of(LAYOUTS[parsed.file.vehicle.model])
+    possible = [extra for extra in EXTRAS if extra in of_layout]
     for key, names in (("extras", model.extras or ()), ("forbid", model.forbid)):
         for name in names:
-            if name not in EXTRAS:
-                where, expected = parsed.where("model", key), f"any of {', '.join(EXTRAS)}"
-                problems.add(where, f"'{name}'", expected, did_you_mean(name, EXTRAS))
+            if name not in possible:
+                where, expected = parsed.where("model", key), f"any of {', '.join(possible)}"
+                problems.add(where, f"'{name}'", expected, did_you_mean(name, possible))
     for name in sorted(set(model.extras or ()) & set(model.forbid)):
         do = "Remove it from one of the two."
         problems.add(
@@ -189,14 +212,44 @@ def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
         problems.add(parsed.where("model", "tracks"), found, "t_f and t_r, which springs and dampers share", do)
 
 
+def _check_stations(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
+    """Check that everything is on a wheel that this part of a vehicle has."""
+    if ("vehicle", "model") in parsed.lost:
+        return
+    layout = LAYOUTS[parsed.file.vehicle.model]
+    named: list[tuple[Place, tuple[str | None, ...]]] = [
+        (("sensor", index, "on"), (sensor.on,) if sensor.on in STATIONS else ())
+        for index, sensor in zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True)
+    ]
+    named += [
+        (("drop", index, "wheels"), drop.wheels if drop.wheels != WHEELS else ())
+        for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True)
+    ]
+    named += [
+        (("load", index, "items", number, "on"), (item.on,) if item.on in STATIONS else ())
+        for index, load in zip(parsed.numbered("load"), parsed.file.load, strict=True)
+        for number, item in enumerate(load.items)
+    ]
+    for place, wheels in named:
+        for wheel in (one for one in wheels if one not in layout.wheels):
+            expected = f'any of {", ".join(layout.wheels)}, the wheels of a vehicle with model = "{layout.model}"'
+            do = "Correct it, or state model = ... under [vehicle] if a part of a vehicle is tested."
+            problems.add(parsed.where(*place), f"'{wheel}'", expected, do)
+
+
 def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[str, KnownValue]:
     """Return the known values that are valid, the wheelbase included."""
     known: dict[str, KnownValue] = {}
+    model = parsed.file.vehicle.model
     for name, measured in parsed.file.known.items():
         where = parsed.where("known", name)
         if name not in KNOWABLE:
             do = "Write it under [vehicle]." if name == "wheelbase" else did_you_mean(name, KNOWABLE)
             problems.add(where, f"the unknown quantity '{name}'", "the name of a parameter, or of a weighed mass", do)
+            continue
+        if name in PARAMETERS and name not in all_names(model):
+            do = did_you_mean(name, sorted(all_names(model)))
+            problems.add(where, f"'{name}'", f'a quantity of a vehicle with model = "{model}"', do)
             continue
         unit, describe_key, positive = "kg", name.replace("_", " "), True
         if name in PARAMETERS:

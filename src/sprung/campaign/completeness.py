@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from sprung.display import shown
 from sprung.errors import Problem
-from sprung.vehicle import EMPTY
+from sprung.vehicle import EMPTY, LAYOUTS
 
 if TYPE_CHECKING:
     from sprung.campaign.parsing import ParsedFile
@@ -97,7 +97,9 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
             if not known and ("drop", index, key) not in parsed.placeholders:
                 problem = Problem(parsed.where("drop", index, key), found, expected, "Correct it.")
                 yield MissingEntry(_item(("drop", index, key)), problem)
-    placed = file.vehicle.wheelbase is not None or {"a", "b"} <= file.known.keys()
+    placed = (
+        not LAYOUTS[file.vehicle.model].pitches or file.vehicle.wheelbase is not None or {"a", "b"} <= file.known.keys()
+    )
     if not placed and parsed.complete("vehicle") and ("vehicle", "wheelbase") not in parsed.placeholders:
         where, do = parsed.where("vehicle", "wheelbase"), "Measure it with a tape and add wheelbase = ... to [vehicle]."
         problem = Problem(where, "nothing", "front axle to rear axle, m", do)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import field, fields
+from dataclasses import field, fields, replace
 from pathlib import PurePath
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import Field, InstanceOf, model_validator
 
 from sprung.campaign.recording import Recording
-from sprung.vehicle import WHEELS, Finite, Positive, Wheel, checked_record
+from sprung.vehicle import WHEELS, Finite, Layout, Positive, Wheel, checked_record
 
 DROP_KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(WHEELS): "bounce",
@@ -20,6 +20,13 @@ DROP_KINDS: Mapping[frozenset[Wheel], str] = {
     frozenset(("rl", "rr")): "pitch rear",
     frozenset(("fl", "rl")): "roll left",
     frozenset(("fr", "rr")): "roll right",
+    frozenset(("front", "rear")): "bounce",
+    frozenset(("left", "right")): "bounce",
+    frozenset(("wheel",)): "bounce",
+    frozenset(("front",)): "pitch front",
+    frozenset(("rear",)): "pitch rear",
+    frozenset(("left",)): "roll left",
+    frozenset(("right",)): "roll right",
 }
 """The usual drops by the wheels that fall."""
 
@@ -60,7 +67,7 @@ class Drop:
     load: str = "empty"
     """Name of the load on the vehicle."""
     wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
-    """Which wheels were dropped; the others stood on the ground."""
+    """Which wheels were dropped, of a part of a vehicle all unless given; the others stood on the ground."""
     height: Positive | None = None
     """Height of the blocks, m."""
     start: Finite | None = None
@@ -83,6 +90,16 @@ class Drop:
         if self.window is not None and self.window[1] <= self.window[0]:
             raise ValueError(f"the window must end after {self.window[0]:g} s, where it begins")
         return self
+
+    def on_wheels_of(self, layout: Layout) -> Self:
+        """Return the drop on the wheels of a layout: those stated, or all where the default names other ones.
+
+        Parameters
+        ----------
+        layout
+            Of the vehicle.
+        """
+        return replace(self, wheels=layout.wheels) if self.wheels == WHEELS != layout.wheels else self
 
     @property
     def recording_files(self) -> tuple[str, ...]:

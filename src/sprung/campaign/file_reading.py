@@ -72,6 +72,7 @@ def read_campaign(
         unread=tuple(
             drop for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True) if index not in drops
         ),
+        vehicle_model=vehicle.model,
         identification=vehicle.identification,
         test=parsed.file.test,
         motion_ratio=vehicle.motion_ratio.known,

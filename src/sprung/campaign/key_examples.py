@@ -31,6 +31,7 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
     "VehicleSection": {
         "name": Key("School bus"),
         "identification": Key("WDB 906 1234"),
+        "model": Key("roll-plane"),
         "wheelbase": Key({"value": 3.95, "std": 0.005}, "m"),
         "cg_height": Key(0.9, "m"),
         "wheel_height": Key(0.34, "m"),
@@ -42,6 +43,8 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "spring_rear": Key(0.95),
         "damper_front": Key({"value": 0.68, "std": 0.01}),
         "damper_rear": Key(0.9),
+        "spring": Key(0.95),
+        "damper": Key(0.9),
     },
     "TestRecord": {
         "date": Key("2026-11-22"),
@@ -88,6 +91,7 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "I_xx": Key(339.6, "kg m²"),
         "m_uf": Key(10.0, "kg"),
         "m_ur": Key(10.0, "kg"),
+        "m_u": Key(10.0, "kg"),
     },
     "Drop": {
         "file": Key("empty_bounce.csv"),

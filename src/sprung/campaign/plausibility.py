@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from sprung.vehicle import parameter_of
+from sprung.vehicle import AXLES, parameter_name, parameter_of
 
 _OTHER_UNITS: Mapping[str, Mapping[str, float]] = {
     "kg": {"tonnes": 1e3, "g": 1e-3, "pounds": 0.45359237},
@@ -49,45 +49,54 @@ class Limits(NamedTuple):
     def expected(self) -> str:
         """What is expected, in words."""
         none = "0, or " if self.zero else ""
-        return f"{none}{self.low:g} to {self.high:g} {self.unit}, the range of two-axle vehicles"
+        return f"{none}{self.low:g} to {self.high:g} {self.unit}, the range of road vehicles"
 
 
 _SYMMETRIC_LENGTH = Limits(-20.0, 20.0, "m")
+
+
+def _of_axles(limits: Limits, *symbols: str) -> dict[str, Limits]:
+    """Return the limits of parameters of every axle, by their symbols; what is behind a star follows the index of the axle."""
+    return {
+        parameter_name(symbol, axle, number): limits
+        for symbol, _, number in (one.partition("*") for one in symbols)
+        for axle in AXLES
+    }
+
 
 LIMITS: Mapping[str, Limits] = {
     "total_mass": Limits(50, 60e3, "kg"),
     "front_axle_mass": Limits(20, 40e3, "kg"),
     "rear_axle_mass": Limits(20, 40e3, "kg"),
     "m_s": Limits(40, 60e3, "kg"),
-    "m_uf": Limits(1, 2e3, "kg"),
-    "m_ur": Limits(1, 2e3, "kg"),
+    **_of_axles(Limits(1, 2e3, "kg"), "m_u"),
     "I_yy": Limits(5, 2e6, "kg m^2"),
     "I_xx": Limits(1, 2e5, "kg m^2"),
-    **dict.fromkeys(("k_sf", "k_sr"), Limits(1e3, 1e7, "N/m")),
-    **dict.fromkeys(("k_tf", "k_tr"), Limits(8e3, 5e7, "N/m")),
-    **dict.fromkeys(("c_sf", "c_sr"), Limits(25, 5e5, "N s/m", zero=True)),
-    **dict.fromkeys(("c_tf", "c_tr"), Limits(0, 5e5, "N s/m")),
-    **dict.fromkeys(("k_af", "k_ar"), Limits(50, 1e7, "N/m", zero=True)),
-    **dict.fromkeys(("s_f", "s_r"), Limits(1e3, 1e10, "N/m")),
-    **dict.fromkeys(("k_bf", "k_br"), Limits(500, 1e8, "N/m", zero=True)),
-    **dict.fromkeys(("k_df", "k_dr"), Limits(5e3, 1e10, "N/m")),
-    **dict.fromkeys(("c_df", "c_dr"), Limits(0, 1e6, "N s/m")),
-    **dict.fromkeys(("k_zf", "k_zr"), Limits(0, 1e7, "N/m")),
-    **dict.fromkeys(("c_zf", "c_zr"), Limits(1, 1e7, "N s/m")),
-    **dict.fromkeys(("F_f", "F_r"), Limits(0, 1e5, "N")),
+    **_of_axles(Limits(1e3, 1e7, "N/m"), "k_s"),
+    **_of_axles(Limits(8e3, 5e7, "N/m"), "k_t"),
+    **_of_axles(Limits(25, 5e5, "N s/m", zero=True), "c_s"),
+    **_of_axles(Limits(0, 5e5, "N s/m"), "c_t"),
+    **_of_axles(Limits(50, 1e7, "N/m", zero=True), "k_a"),
+    **_of_axles(Limits(1e3, 1e10, "N/m"), "s"),
+    **_of_axles(Limits(500, 1e8, "N/m", zero=True), "k_b"),
+    **_of_axles(Limits(5e3, 1e10, "N/m"), "k_d"),
+    **_of_axles(Limits(0, 1e6, "N s/m"), "c_d"),
+    **_of_axles(Limits(0, 1e7, "N/m"), "k_z"),
+    **_of_axles(Limits(1, 1e7, "N s/m"), "c_z"),
+    **_of_axles(Limits(0, 1e5, "N"), "F"),
     "wheelbase": Limits(0.6, 12.0, "m"),
     **dict.fromkeys(("a", "b"), Limits(0.02, 12.0, "m")),
-    **dict.fromkeys(("t_f", "t_r", "t_f1", "t_r1", "t_f2", "t_r2"), Limits(0.03, 2.0, "m")),
-    **dict.fromkeys(("x_bf", "x_br"), Limits(0, 1.0, "m")),
-    **dict.fromkeys(("v_kf", "v_kr"), Limits(0.005, 5.0, "m/s")),
-    **dict.fromkeys(("v_2f", "v_2r", "v_3f", "v_3r"), Limits(0.005, 5.0, "m/s")),
-    **dict.fromkeys(("w_kf", "w_kr"), Limits(0, 5.0, "m/s")),
-    **dict.fromkeys(("q_f", "q_r", "q_2f", "q_2r", "q_3f", "q_3r"), Limits(0.01, 10.0, "1")),
-    **dict.fromkeys(("u_f", "u_r"), Limits(0, 1.0, "1")),
-    **dict.fromkeys(("e_f", "e_r", "e_lf", "e_lr"), Limits(0, 50.0, "1/m")),
+    **_of_axles(Limits(0.03, 2.0, "m"), "t", "t*1", "t*2"),
+    **_of_axles(Limits(0, 1.0, "m"), "x_b"),
+    **_of_axles(Limits(0.005, 5.0, "m/s"), "v_k"),
+    **_of_axles(Limits(0.005, 5.0, "m/s"), "v_2", "v_3"),
+    **_of_axles(Limits(0, 5.0, "m/s"), "w_k"),
+    **_of_axles(Limits(0.01, 10.0, "1"), "q", "q_2", "q_3"),
+    **_of_axles(Limits(0, 1.0, "1"), "u"),
+    **_of_axles(Limits(0, 50.0, "1/m"), "e", "e_l"),
     "w_l": Limits(10, 1e4, "1/s²"),
     "c_l": Limits(0, 1e3, "1/s"),
-    **dict.fromkeys(("g_f", "g_r"), Limits(0, 1e4, "N/(m kg)")),
+    **_of_axles(Limits(0, 1e4, "N/(m kg)"), "g"),
     "y_s": Limits(-1.5, 1.5, "m"),
     "x_e": _SYMMETRIC_LENGTH,
     "cg_height": Limits(0.1, 4.0, "m"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sprung.campaign.plausibility import LIMITS, Limits, explain_implausible, suggest_unit
 from sprung.campaign.schema import CampaignFile
 from sprung.units import acceleration_factor
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import LAYOUTS, PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -169,7 +169,7 @@ def check_relations(parsed: ParsedFile[CampaignFile], known: Mapping[str, KnownV
     for name, (low, high) in {
         **dict.fromkeys(("front_axle_mass", "rear_axle_mass"), _AXLE),
         "m_s": (1 - _UNSPRUNG, 1.0),
-        **dict.fromkeys(("m_uf", "m_ur"), (0.0, _UNSPRUNG / 2)),
+        **dict.fromkeys(("m_uf", "m_ur", "m_u"), (0.0, _UNSPRUNG / 2)),
     }.items():
         value = values.get(name)
         # What is more than the whole, the sums of the parts contradict already.
@@ -202,8 +202,9 @@ def _check_gyration(where: str, name: str, inertia: float, mass: float, problems
 def _check_load(
     parsed: ParsedFile[CampaignFile], index: int, load: Load, total: float | None, problems: Problems
 ) -> None:
-    if total is not None and load.mass > _LARGEST_LOAD * total:
-        found = f"a load of {load.mass:g} kg on a vehicle of {total:g} kg"
+    mass = load.total_mass(LAYOUTS[parsed.file.vehicle.model])
+    if total is not None and mass > _LARGEST_LOAD * total:
+        found = f"a load of {mass:g} kg on a vehicle of {total:g} kg"
         expected = f"at most {_LARGEST_LOAD * total:.4g} kg"
         problems.add(
             parsed.where("load", index), found, expected, "Correct the load's mass or the vehicle's, both in kg."

@@ -10,7 +10,18 @@ from sprung.campaign.campaign import ModelChoice, TestRecord
 from sprung.campaign.drop import Drop
 from sprung.campaign.schema_file import SCHEMA
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import DERIVED, MOTION_RATIOS, PARAMETERS, Finite, Heights, Load, NotNegative, Positive, Sensor
+from sprung.vehicle import (
+    DERIVED,
+    MOTION_RATIOS,
+    PARAMETERS,
+    Finite,
+    Heights,
+    Load,
+    NotNegative,
+    Positive,
+    Sensor,
+    VehicleModel,
+)
 
 KNOWABLE = (*PARAMETERS, *(name for name in DERIVED if name != "wheelbase"))
 """What ``[known]`` may hold; the wheelbase has its place in ``[vehicle]``."""
@@ -50,6 +61,10 @@ class MotionRatioSection(BaseModel):
     """Travel of the front dampers per wheel travel."""
     damper_rear: Measured | None = None
     """Travel of the rear dampers per wheel travel."""
+    spring: Measured | None = None
+    """Travel of the springs of a vehicle with one axle per wheel travel."""
+    damper: Measured | None = None
+    """Travel of the dampers of a vehicle with one axle per wheel travel."""
 
     @property
     def known(self) -> dict[str, KnownValue]:
@@ -66,6 +81,8 @@ class VehicleSection(BaseModel):
     """Name of the vehicle, for display; default: the name of the folder."""
     identification: str | None = Field(default=None, min_length=1)
     """Chassis number, registration or test number, for the record."""
+    model: VehicleModel = "full"
+    """Part of a vehicle that is tested: all of it, what moves in the pitch plane, in the roll plane, or only up and down."""
     wheelbase: Measured | None = None
     """Front axle to rear axle, m."""
     cg_height: Positive | None = None

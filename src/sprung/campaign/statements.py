@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from sprung.campaign.campaign import Campaign
     from sprung.campaign.drop import Drop
     from sprung.uncertainty import KnownValue
-    from sprung.vehicle import Heights, Load, Sensor
+    from sprung.vehicle import Heights, Load, Sensor, VehicleModel
 
 
 def require_plausible(campaign: Campaign) -> None:
-    """Check that the statements of a campaign are plausible for a two-axle vehicle and do not contradict each other.
+    """Check that the statements of a campaign are plausible for a road vehicle and do not contradict each other.
 
     Reading refuses it already in a file; a campaign made or changed in memory is refused by the same checks.
 
@@ -37,6 +37,7 @@ def require_plausible(campaign: Campaign) -> None:
         loads=campaign.loads,
         drops=campaign.drops,
         known=campaign.known,
+        vehicle_model=campaign.vehicle_model,
         wheelbase=campaign.wheelbase,
         heights=campaign.heights,
         motion_ratio=campaign.motion_ratio,
@@ -53,6 +54,7 @@ def check_statements(
     loads: Sequence[Load],
     drops: Sequence[Drop],
     known: Mapping[str, KnownValue],
+    vehicle_model: VehicleModel = "full",
     wheelbase: KnownValue | None,
     heights: Heights,
     motion_ratio: Mapping[str, KnownValue] | None = None,
@@ -65,7 +67,7 @@ def check_statements(
     ----------
     name
         What to call the whole in a problem.
-    sensors, loads, drops, known, wheelbase
+    sensors, loads, drops, known, vehicle_model, wheelbase
         As in a `Campaign`.
     heights
         Above the ground, m.
@@ -87,6 +89,7 @@ def check_statements(
     described = tuple(load for load in loads if load.name != EMPTY.name)
     file = CampaignFile.model_construct(
         vehicle=VehicleSection.model_construct(
+            model=vehicle_model,
             wheelbase=None if wheelbase is None else measured(wheelbase),
             cg_height=heights.cg_height,
             wheel_height=heights.wheel_height,

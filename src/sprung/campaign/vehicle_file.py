@@ -99,7 +99,8 @@ def _vehicle(parsed: ParsedFile[VehicleFileSchema], name: str, problems: Problem
     held = {str(place[1]): 1.0 for place in parsed.lost if place[0] == "parameters"}
     parameters = {**held, **parsed.file.parameters}
     try:
-        return Vehicle.from_parameters(parameters, name=name, **parsed.file.vehicle.heights.by_key)
+        section = parsed.file.vehicle
+        return Vehicle(parameters, name=name, model=section.model, **section.heights.by_key)
     except InputError as error:
         for problem in error.problems:
             where = problem.where.replace(f"vehicle {name}: ", f"{parsed.name}: parameters.")

@@ -109,6 +109,8 @@ def _document(campaign: Campaign, files: Sequence[Sequence[str]]) -> dict[str, A
     vehicle: dict[str, Any] = {"name": campaign.name}
     if campaign.identification is not None:
         vehicle["identification"] = campaign.identification
+    if campaign.vehicle_model != "full":
+        vehicle["model"] = campaign.vehicle_model
     if campaign.wheelbase is not None:
         vehicle["wheelbase"] = _measured(campaign.wheelbase)
     vehicle |= {name: getattr(campaign, name) for name in heights if getattr(campaign, name) is not None}

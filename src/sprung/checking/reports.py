@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from sprung.campaign import Campaign, MissingEntry
 from sprung.checking.recorded import PlottedRecording
 from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Fault
-from sprung.vehicle import Wheel
+from sprung.vehicle import SensorPlace, Wheel
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -57,7 +57,7 @@ class ChannelReport:
     """
 
     name: str
-    on: Literal["body", "fl", "fr", "rl", "rr"] | None
+    on: SensorPlace | None
     noise: float | None
     peak: float | None
     used: bool

@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.drafting.channel import Channel
-from sprung.drafting.detected_drop import DetectedDrop, SensorPlace, assign_dropped_wheels, wheel_score
+from sprung.drafting.detected_drop import DetectedDrop, assign_dropped_wheels, wheel_score
 from sprung.drafting.examination import ExaminedRecording
 from sprung.drafting.logger_groups import common_name, group_by_drop
 from sprung.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.drafting.records import DraftDrop, DraftSensor
 from sprung.preprocess import find_slower_drops
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import WHEELS, Wheel
+from sprung.vehicle import WHEELS, SensorPlace, Wheel
 
 Real = NDArray[np.float64]
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,12 +16,9 @@ from sprung.campaign import drop_kind
 from sprung.drafting.drop_features import DropFeatures
 from sprung.preprocess import detect_dropped_channels
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import WHEELS, Wheel
+from sprung.vehicle import WHEELS, SensorPlace, Wheel
 
 Real = NDArray[np.float64]
-
-SensorPlace = Literal["body", "wheel", "fl", "fr", "rl", "rr"]
-"""Where a channel's sensor sits: on the body, on some wheel, or on that wheel."""
 
 _WHEEL_SCORE = 400.0
 """Of depth times peak over the square root of the swing, from which a channel sits on a wheel: a body stays below 290 in

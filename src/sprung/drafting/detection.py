@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.drafting.classification import AFTER, BEFORE, DropEvent, classify_event
-from sprung.drafting.detected_drop import DetectedDrop, SensorPlace, assign_dropped_wheels, is_on_wheel
+from sprung.drafting.detected_drop import DetectedDrop, assign_dropped_wheels, is_on_wheel
 from sprung.preprocess import BLOW, extract_slow_motion
 from sprung.units import STANDARD_GRAVITY
+from sprung.vehicle import SensorPlace
 
 Real = NDArray[np.float64]
 

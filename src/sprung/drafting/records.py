@@ -11,11 +11,11 @@ import numpy as np
 
 from sprung.campaign import CAMPAIGN_FILE, SCHEMA_FILE, drop_kind, schema_text
 from sprung.display import shown
-from sprung.drafting.detected_drop import DetectedDrop, SensorPlace
+from sprung.drafting.detected_drop import DetectedDrop
 from sprung.drafting.detection import RejectedEvent
 from sprung.errors import Problem
 from sprung.files import atomic_write
-from sprung.vehicle import Wheel
+from sprung.vehicle import SensorPlace, Wheel
 
 
 @dataclass(frozen=True)

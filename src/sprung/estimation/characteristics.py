@@ -16,9 +16,11 @@ from sprung.vehicle import (
     DERIVED,
     MOTION_RATIOS,
     PARAMETERS,
-    WHEELS,
+    STATIONS,
     LinearModel,
+    Wheel,
     evaluate_quantity,
+    layout_of,
     wheel_loads,
 )
 
@@ -27,8 +29,8 @@ Real = NDArray[np.float64]
 _ROUNDING = 1e-12
 """Relative standard uncertainty below which a quantity follows exactly from what was known."""
 
-_SIDES = {"l": "left", "r": "right"}
-_AXLES = {"f": "front", "r": "rear"}
+_SIDES = {1.0: ("left",), -1.0: ("right",), 0.0: ()}
+_AXLES = {"f": ("front",), "r": ("rear",), "": ()}
 
 
 def characteristics_of(fit: FitStatistics, known: Mapping[str, KnownValue], empty: LinearModel) -> dict[str, Estimate]:
@@ -52,9 +54,11 @@ def characteristics_of(fit: FitStatistics, known: Mapping[str, KnownValue], empt
     """
     found = {}
     for name, one in CHARACTERISTICS.items():
+        if not one.needs <= set(fit.names):
+            continue
         if name in DERIVED:
             found[name] = estimate_of(fit, known, name)
-        elif one.needs <= set(fit.names):
+        else:
             value, gradient = evaluate_quantity(name, fit.names, fit.values)
             found[name] = estimate_quantity(fit, value, gradient, one.unit, one.signed)
     return found | _wheel_loads(fit, empty)
@@ -88,16 +92,21 @@ def rates_at_motion_ratios(fit: FitStatistics, ratios: Mapping[str, KnownValue])
 
 def _wheel_loads(fit: FitStatistics, empty: LinearModel) -> dict[str, Estimate]:
     loads, gradients = wheel_loads(empty, fit.values)
-    each = dict(zip(WHEELS, zip(loads.tolist(), gradients, strict=True), strict=True))
-    if "y_s" in fit.names:
-        names = {station: f"{_AXLES[station[0]]}_{_SIDES[station[1]]}_wheel_load" for station in WHEELS}
-    else:
-        names = {"fl": "front_wheel_load", "rl": "rear_wheel_load"}
+    layout = layout_of(fit.names)
+    each = dict(zip(layout.wheels, zip(loads.tolist(), gradients, strict=True), strict=True))
+    names = {wheel: _wheel_load(wheel, has_sides="y_s" in fit.names) for wheel in layout.wheels}
+    # Where left and right are alike the first of both stands for the axle.
+    names = {wheel: name for i, (wheel, name) in enumerate(names.items()) if name not in list(names.values())[:i]}
     return {
         name: estimate_quantity(fit, load, gradient, "N", signed=False)
         for station, name in names.items()
         for load, gradient in [each[station]]
     }
+
+
+def _wheel_load(wheel: Wheel, has_sides: bool) -> str:
+    _, axle, side, _ = STATIONS[wheel]
+    return "_".join((*_AXLES[axle], *(_SIDES[side] if has_sides else ()), "wheel_load"))
 
 
 def estimate_quantity(

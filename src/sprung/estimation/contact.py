@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.estimation.fit_result import FitResult
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import WHEELS_AT, LinearModel
+from sprung.vehicle import LinearModel, layout_of
 
 Real = NDArray[np.float64]
 
@@ -85,11 +85,12 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
     """Return the samples by which the start of each decay is to be moved, and {X, Ẋ} there, shape (drop, state)."""
     shifts, states = [], fit.states.copy()
     compressions = {load: _static_compression(models[load], fit.values) for load in {decay.load for decay in decays}}
+    wheels = layout_of(fit.names).wheels_at
     for drop, decay in enumerate(decays):
         static = compressions[decay.load][:, None]
         earlier, samples = decay.earlier.shape[1] if fit.is_reversible else 0, decay.samples
         motion = fit.motion(drop, earlier, min(samples, int(_LONGEST * decay.rate)))
-        loose = np.flatnonzero((static - motion[WHEELS_AT] < _COMPRESSED * static).any(axis=0))
+        loose = np.flatnonzero((static - motion[wheels] < _COMPRESSED * static).any(axis=0))
         first = int(loose[-1]) + 1 + _interpolated(decay) if loose.size else 0
         landing = 0 if fit.is_reversible else _landing(decay, fit, drop)
         first = max(first, earlier + landing) if landing else first
@@ -102,7 +103,7 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
 def _static_compression(model: LinearModel, values: Real) -> Real:
     """Return how far the standing vehicle compresses its tyres, m, shape (wheel,)."""
     matrices = model.matrices(values)
-    return matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)[WHEELS_AT]
+    return matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)[layout_of(model.names).wheels_at]
 
 
 def _landing(decay: FreeDecay, fit: FitResult, drop: int) -> int:

@@ -30,7 +30,17 @@ from sprung.optimisation import Maximum, maximise
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LinearModel, Readout, Sensor, is_nuisance, separate_track_names, uncertainties_of
+from sprung.vehicle import (
+    AXLES,
+    LinearModel,
+    Readout,
+    Sensor,
+    is_nuisance,
+    layout_of,
+    parameter_name,
+    separate_track_names,
+    uncertainties_of,
+)
 
 Real = NDArray[np.float64]
 
@@ -117,9 +127,9 @@ def fit_linear(
         values = nuisance | dict(start)
         problem = problem_of(objective, known, values, usual)
         return _fit_from(problem, values, enough, most)
-    size = VehicleSize.of(known, sensors)
-    has_engine = "m_e" in next(iter(models.values())).names
-    vehicles = [vehicle | nuisance for vehicle in start_grid(size, known, has_engine)]
+    names = next(iter(models.values())).names
+    size = VehicleSize.of(known, sensors, layout_of(names))
+    vehicles = [vehicle | nuisance for vehicle in start_grid(size, known, "m_e" in names)]
     problem = problem_of(objective, known, vehicles[0])
     coordinates = problem.priors.coordinates
     nominal = {load: model.with_known(nuisance) if nuisance else model for load, model in models.items()}
@@ -204,7 +214,10 @@ def _costs_as_they_are(problem: EstimationProblem, objective: ClosedFormObjectiv
 def _completed(guess: Mapping[str, float], usual: Mapping[str, float]) -> dict[str, float]:
     """Return a guess completed by a usual vehicle; half-distances that it shares hold for springs and dampers apart too."""
     shared = {own: value for name, value in guess.items() for own in separate_track_names(name)}
-    apart = {name: guess[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in guess}
+    springs = {
+        axle: [(parameter_name(place, axle), parameter_name(place, axle, "2")) for place in "tn"] for axle in AXLES
+    }
+    apart = {both: guess[own] for pairs in springs.values() for both, own in pairs if own in guess}
     return {**usual, **shared, **apart, **guess}
 
 

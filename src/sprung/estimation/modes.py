@@ -12,12 +12,12 @@ from sprung.display import shown
 from sprung.estimation.modal_solution import differentiate_modes, solve_modes
 from sprung.estimation.statistics import FitStatistics
 from sprung.vehicle import (
-    COORDINATES,
     LinearModel,
     Readout,
     Sensor,
     coordinates,
     differentiate_tyre_rates_at_rest,
+    layout_of,
     with_tyre_rates_at_rest,
 )
 from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
@@ -104,7 +104,7 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
     found = [Mode(complex(modes.poles[j]), modes.displacements[:, j]) for j in upper]
     names = coordinates(fit.names)
     named = name_modes(found, coordinates=names)
-    drawn = [i for i, name in enumerate(names) if name in (*COORDINATES, "z_e")]
+    drawn = [i for i, name in enumerate(names) if name in (*layout_of(fit.names).coordinates, "z_e")]
     left = set(upper.tolist())
     estimates = []
     for mode in named:

@@ -36,8 +36,8 @@ _BUMP = np.array([np.pad((_SHAPE.deriv(k) if k else _SHAPE).coef, (0, k)) for k 
 
 _RATE, _LONGEST, _MOST = 200.0, 6.0, 8  # samples per second, s, and records of one load that are enough
 
-_OWN = 2 * np.pi * np.array([1.5, 1.5, 1.5, 11.0, 11.0, 11.0, 11.0])
-"""Usual own frequency of each coordinate, 1/s: what its equation is weighed by."""
+_BODY, _HOP = 2 * np.pi * 1.5, 2 * np.pi * 11.0
+"""Usual own frequencies of the coordinates of body and wheels, 1/s: what their equations are weighed by."""
 
 _WHEEL = 0.035  # mass of a wheel as a part of the body's, to make the equations comparable
 
@@ -63,27 +63,34 @@ def modulating_function_estimate(
     dict or None
         Parameters, SI, by name; None where the sensors do not observe every coordinate, or no vehicle explains the records.
     """
-    wheelbase = size.wheelbase
-    moved = [model.referred_to_front_axle(wheelbase) for model in models]
-    names = moved[0].names
-    rows = Rows.of([sensor.row.referred_to_front_axle(wheelbase) for sensor in sensors], names).affine[:, :, 0]
-    sprung, ahead = 1 + names.index("m_s"), 1 + names.index("a")
-    # m_s a² stands where I_yy does: only their sum can be found.
+    wheelbase, layout, names = size.wheelbase, size.layout, models[0].names
+    own_rows = [sensor.row for sensor in sensors]
+    moved = models
+    if layout.pitches:
+        moved = [model.referred_to_front_axle(wheelbase) for model in models]
+        own_rows = [row.referred_to_front_axle(wheelbase) for row in own_rows]
+    rows = Rows.of(own_rows, names).affine[:, :, 0]
+    sprung = 1 + names.index("m_s")
     keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))
-    keys = [key for key in keys if key != _key(sorted((sprung, ahead, ahead)))]
-    records = [(batch, _terms(moved[batch.load[0]], keys, wheelbase)) for batch in _decimated(batches, rows)]
+    if layout.pitches:
+        # m_s a² stands where I_yy does: only their sum can be found.
+        ahead = 1 + names.index("a")
+        keys = [key for key in keys if key != _key(sorted((sprung, ahead, ahead)))]
+    frequencies = np.array([_BODY] * len(layout.body) + [_HOP] * len(layout.wheels))
+    records = [(batch, _terms(moved[batch.load[0]], keys, size)) for batch in _decimated(batches, rows)]
     motions = [(*_coordinates(batch, rows), float(batch.step[0]), terms) for batch, terms in records]
     normal = np.zeros((len(keys), len(keys)))
     for window in range(len(_WINDOWS)):
         for accelerations, noise, step, terms in motions:
             functions = _modulating_functions(accelerations.shape[2], step, window)
-            normal += _normal_equations(accelerations, noise, functions, terms)
+            normal += _normal_equations(accelerations, noise, functions, terms, frequencies)
     products = _products(normal, keys, (0, 0, sprung))
     if products is None:
         return None
     laws = [{key: term for key, term in expand(moved[0], law).items() if key in products} for law in LINEAR_LAWS]
     per_mass = dict(zip(names, parameters_of(products, laws, names).tolist(), strict=True))
-    per_mass |= {"I_yy": per_mass["I_yy"] - per_mass["a"] ** 2, "b": wheelbase - per_mass["a"]}
+    if layout.pitches:
+        per_mass |= {"I_yy": per_mass["I_yy"] - per_mass["a"] ** 2, "b": wheelbase - per_mass["a"]}
     # A known load stands beside the vehicle's own masses as a number.
     load_share = products.get((0, 0, 0), 0.0)
     mass = 1 / load_share if load_share > 0 and not size.weighed else size.sprung_mass
@@ -111,13 +118,14 @@ def _products(normal: Real, keys: Sequence[Key], unit: Key) -> dict[Key, float] 
     return {unit: 1.0, **dict(zip([keys[i] for i in others], found.tolist(), strict=True))}
 
 
-def _terms(model: LinearModel, keys: Sequence[Key], wheelbase: float) -> Real:
-    """Return what each product multiplies, equations divided by usual masses; shape (product, 7, 21)."""
-    masses = np.array([1.0, wheelbase**2 / 4, wheelbase**2 / 16, *[_WHEEL] * 4])
-    terms = np.zeros((len(keys), 7, 21))
+def _terms(model: LinearModel, keys: Sequence[Key], size: VehicleSize) -> Real:
+    """Return what each product multiplies, equations of n coordinates divided by usual masses; shape (product, n, 3 n)."""
+    usual, n = {"z_s": 1.0, "theta": size.wheelbase**2 / 4, "phi": size.wheelbase**2 / 16}, len(size.layout.coordinates)
+    masses = np.array([usual.get(coordinate, _WHEEL) for coordinate in size.layout.coordinates])
+    terms = np.zeros((len(keys), n, 3 * n))
     for key, term in zip(model.products.tolist(), model.terms, strict=True):
         if _key(key) in keys:
-            terms[keys.index(_key(key))] = np.concatenate(list(term[:, :7, :7]), axis=1)
+            terms[keys.index(_key(key))] = np.concatenate(list(term[:, :n, :n]), axis=1)
     terms /= masses[:, None]
     return terms
 
@@ -140,7 +148,7 @@ def _decimated(batches: Sequence[RecordBatch], rows: Real) -> list[RecordBatch]:
 
 
 def _coordinates(batch: RecordBatch, rows: Real) -> tuple[Real, Real]:
-    """Return accelerations of the coordinates, shape (record, 7, time), and the covariance of their noise, shape (7, 7)."""
+    """Return accelerations of the coordinates, shape (record, n, time), and the covariance of their noise, shape (n, n)."""
     used = batch.channel_weights > 0
     to_coordinates = np.linalg.pinv(rows[used])
     records = np.array([batch.record(i) for i in range(len(batch.samples))])[:, used]
@@ -177,18 +185,20 @@ def _modulating_functions(samples: int, step: float, window: int) -> tuple[Real,
     return real, imaginary, real @ np.swapaxes(real, 1, 2) + imaginary @ np.swapaxes(imaginary, 1, 2)
 
 
-def _normal_equations(accelerations: Real, noise: Real, functions: tuple[Real, Real, Real], terms: Real) -> Real:
+def _normal_equations(
+    accelerations: Real, noise: Real, functions: tuple[Real, Real, Real], terms: Real, frequencies: Real
+) -> Real:
     """Return the normal equations of the products, what noise adds on average subtracted; shape (product, product)."""
-    records, _, samples = accelerations.shape
+    records, n, samples = accelerations.shape
     flat = accelerations.reshape(-1, samples)
     *parts, overlap = functions
     integrals = np.array([flat @ part.reshape(-1, samples).T for part in parts])
-    integrals = integrals.reshape(2, records, 7, -1, 3).transpose(4, 2, 0, 1, 3).reshape(21, 2 * records, -1)
+    integrals = integrals.reshape(2, records, n, -1, 3).transpose(4, 2, 0, 1, 3).reshape(3 * n, 2 * records, -1)
     normal = np.zeros((len(terms), len(terms)))
-    for own in np.unique(_OWN):
+    for own in np.unique(frequencies):
         weights = 1 / (overlap[:, 0, 0] + own**4 * overlap[:, 2, 2])
-        weighted = (integrals * np.sqrt(weights)).reshape(21, -1)
+        weighted = (integrals * np.sqrt(weights)).reshape(3 * n, -1)
         noise_bias = records * np.kron(np.tensordot(weights, overlap, 1), noise)
-        design = terms[:, own == _OWN]
+        design = terms[:, own == frequencies]
         normal += np.tensordot(design @ (weighted @ weighted.T - noise_bias), design, axes=([1, 2], [1, 2]))
     return normal

@@ -18,8 +18,8 @@ from sprung.vehicle import (
     LinearModel,
     Matrices,
     Tracks,
+    linear_elements,
     parameter_names,
-    seven_degrees_of_freedom,
 )
 
 Real = NDArray[np.float64]
@@ -79,9 +79,12 @@ def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], n
     design: list[Real] = []
     observed: list[Real] = []
     lengths = np.flatnonzero(np.isnan(values)).tolist()
+    if not lengths:
+        return values
     for law in laws:
         pairs = {key: term for key, term in law.items() if key[0] == 0 < key[1] < key[2]}
-        sums = np.zeros((len(lengths), 7, 7))
+        shape = next(iter(law.values())).shape if law else (0, 0)
+        sums = np.zeros((len(lengths), *shape))
         for (_, two, three), term in pairs.items():
             for length, rate in ((two - 1, three - 1), (three - 1, two - 1)):
                 if length in lengths and np.isfinite(values[rate]):
@@ -89,7 +92,7 @@ def parameters_of(products: dict[Key, float], laws: Sequence[dict[Key, Real]], n
         largest = float(np.abs(sums).max(initial=0.0))
         size = largest if largest > _ZERO else 1.0
         design.append(sums.reshape(len(lengths), -1).T / size)
-        observed.append(sum((products[key] * term for key, term in pairs.items()), np.zeros((7, 7))).ravel() / size)
+        observed.append(sum((products[key] * term for key, term in pairs.items()), np.zeros(shape)).ravel() / size)
     stacked = np.vstack(design)
     found = np.linalg.lstsq(stacked, np.concatenate(observed), rcond=1e-12)[0]
     values[lengths] = np.where(stacked.any(axis=0), found, np.nan)
@@ -112,7 +115,7 @@ def parameters_from_matrices(matrices: Matrices, tracks: Tracks = "shared") -> d
         Value of each parameter by name; noisy matrices may give negative ones.
     """
     names = parameter_names(tracks)
-    model = LinearModel.of(seven_degrees_of_freedom(tracks), names)
+    model = LinearModel.of(linear_elements(tracks), names)
     products: dict[Key, float] = {}
     laws = [expand(model, law) for law in LINEAR_LAWS]
     for identified, terms in zip(matrices, laws, strict=True):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import evaluate_quantity, parameter_of
+from sprung.vehicle import evaluate_quantity, layout_of, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -237,12 +237,13 @@ def _reference(name: str, typical: Mapping[str, float]) -> float:
         return 1.0
     if not parameter.scales:
         return _SIZES.get(parameter.unit, 1.0)
-    stiffness = typical["k_sf"]
+    axle = layout_of(typical).axles[0]
+    stiffness = typical[f"k_s{axle}"]
     sizes = {
         "N": _TRAVEL * stiffness,
         "N/m": stiffness,
         "N m": stiffness,
-        "N s/m": typical["c_sf"],
-        "kg": typical["m_uf"],
+        "N s/m": typical[f"c_s{axle}"],
+        "kg": typical[f"m_u{axle}"],
     }
     return sizes[parameter.unit]

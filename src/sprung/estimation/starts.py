@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import NEUTRAL, Sensor
+from sprung.vehicle import FULL, NEUTRAL, Layout, Sensor, layout_of, parameter_name
 
 BODY_FREQUENCIES = (1.0, 1.6, 2.6)
 """Hz: from a limousine to an empty lorry."""
@@ -27,7 +27,11 @@ USUAL_MOUNT = 12.0
 USUAL_RELAXATION = 0.15
 """Part of a spring rate that usual rubber adds in fast motion."""
 
-_RELAXATION_TIMES = {"f": 0.05, "r": 0.07}  # s; unlike, as branches that do next to nothing would have equal poles
+_RELAXATION_TIMES = {
+    "f": 0.05,
+    "r": 0.07,
+    "": 0.05,
+}  # s; unlike, as branches that do next to nothing would have equal poles
 
 _MOUNTED = (7.0, 10.0, 14.0)  # Hz of an engine on its mounts
 
@@ -86,14 +90,14 @@ def usual_rubber(values: Mapping[str, float]) -> dict[str, float]:
     Parameters
     ----------
     values
-        Its spring rates, SI, by name.
+        Its parameters, SI, by name.
 
     Returns
     -------
     dict
         Parameters, SI, by name.
     """
-    rates = {axle: values[f"k_s{axle}"] for axle in "fr"}
+    rates = {axle: values[f"k_s{axle}"] for axle in layout_of(values).axles}
     return {
         **{f"k_d{axle}": USUAL_MOUNT * rate for axle, rate in rates.items()},
         **{f"c_d{axle}": _LOSS * USUAL_MOUNT * rate / (2 * np.pi * _USUAL_HOP) for axle, rate in rates.items()},
@@ -117,6 +121,8 @@ class VehicleSize(NamedTuple):
         Whether the mass is known; a usual one for the wheelbase otherwise.
     half_track
         m.
+    layout
+        Of the vehicle.
     """
 
     wheelbase: float
@@ -124,9 +130,10 @@ class VehicleSize(NamedTuple):
     mass: float
     weighed: bool
     half_track: float
+    layout: Layout = FULL
 
     @classmethod
-    def of(cls, known: Mapping[str, KnownValue], sensors: Sequence[Sensor]) -> VehicleSize:
+    def of(cls, known: Mapping[str, KnownValue], sensors: Sequence[Sensor], layout: Layout = FULL) -> VehicleSize:
         """Return the size from what is known beforehand, the rest from the sensors' positions.
 
         Parameters
@@ -135,6 +142,8 @@ class VehicleSize(NamedTuple):
             Quantities measured beforehand, by name.
         sensors
             The sensors.
+        layout
+            Of the vehicle.
 
         Returns
         -------
@@ -142,11 +151,11 @@ class VehicleSize(NamedTuple):
         """
         value = {name: one.value for name, one in known.items()}
         places = np.array([sensor.position for sensor in sensors if sensor.position is not None]).reshape(-1, 3)
-        wheelbase, front_share = _length(value, places)
+        wheelbase, front_share = _length(value, places if layout.pitches else places[:0])
         mass = _mass(value)
         half_track = float(np.abs(places[:, 1]).sum()) / max(len(places), 1) or 0.27 * wheelbase
-        usual = _GRAVITY_FREE_MASS * (wheelbase / 2.7) ** 3
-        return cls(wheelbase, front_share, usual if mass is None else mass, mass is not None, half_track)
+        usual = _GRAVITY_FREE_MASS * (wheelbase / 2.7) ** 3 * len(layout.wheels) / 4
+        return cls(wheelbase, front_share, usual if mass is None else mass, mass is not None, half_track, layout)
 
     @property
     def sprung_mass(self) -> float:
@@ -200,9 +209,12 @@ def usual_vehicle(
     """
     wheelbase, front_share, half_track = size.wheelbase, size.front_share, size.half_track
     a, b = (1 - front_share) * wheelbase, front_share * wheelbase
-    wheel, sprung_mass = _WHEEL_SHARE * size.mass, size.sprung_mass
+    layout, sprung_mass = size.layout, size.sprung_mass
+    wheel = 4 * _WHEEL_SHARE * size.mass / len(layout.wheels)
     values = {"m_s": sprung_mass, "I_yy": sprung_mass * a * b, "I_xx": sprung_mass * (0.8 * half_track) ** 2}
-    for axle, corner in (("f", sprung_mass * front_share / 2), ("r", sprung_mass * (1 - front_share) / 2)):
+    shares = {"f": front_share, "r": 1 - front_share, "": 1.0}
+    for axle in layout.axles:
+        corner = sprung_mass * shares[axle] / len(layout.wheels_of(axle))
         spring = corner * (2 * np.pi * body) ** 2
         values |= {
             f"m_u{axle}": wheel,
@@ -210,8 +222,10 @@ def usual_vehicle(
             f"k_t{axle}": max(wheel * (2 * np.pi * hop) ** 2 - spring, 2 * spring),
             f"c_s{axle}": 2 * damping * np.sqrt(corner * spring),
         }
-        values |= dict.fromkeys((f"t_{axle}", f"t_{axle}1", f"t_{axle}2"), half_track)
-    return values | {"a": a, "b": b}
+        values |= dict.fromkeys((parameter_name("t", axle, number) for number in ("", "1", "2")), half_track)
+    values |= {"a": a, "b": b}
+    absent = {*(("I_yy", "a", "b") if not layout.pitches else ()), *(("I_xx",) if not layout.rolls else ())}
+    return {name: value for name, value in values.items() if name not in absent}
 
 
 def _length(value: Mapping[str, float], places: NDArray[np.float64]) -> tuple[float, float]:

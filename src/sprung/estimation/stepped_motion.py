@@ -84,7 +84,7 @@ class SteppedMotion:
     @cached_property
     def _readings(self) -> Real:
         """What the sensors read, shape (drop, channel, time)."""
-        sensors, angles = self.objective.sensors, self._inputs[:, :, 1:3]
+        sensors, angles = self.objective.sensors, self._inputs[:, :, self.objective.angles]
         readings: Real = sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
         if self._gravity:
             readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
@@ -140,7 +140,8 @@ class SteppedMotion:
             by_row[:shared] += S @ slopes
         if self._gravity:
             # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
-            angles = np.broadcast_to(np.eye(2, outputs.shape[2], k=1), (len(outputs), 2, outputs.shape[2]))
+            units = np.eye(outputs.shape[2])[objective.angles]
+            angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
         stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
         if skipped > 1:
@@ -154,7 +155,7 @@ class SteppedMotion:
         for drop, (moved, samples) in enumerate(zip(moved_drops, objective.samples, strict=True)):
             inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
             if self._gravity:
-                readings -= self._gravity * (inputs[:, None, 1:3] @ moved[:samples, channels:])
+                readings -= self._gravity * (inputs[:, None, self.objective.angles] @ moved[:samples, channels:])
             # The unknowns of the sensors come between the parameters of the model and the initial states.
             readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
             by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)

@@ -25,6 +25,7 @@ from sprung.vehicle import (
     Stepper,
     coordinates,
     integrate_near,
+    layout_of,
 )
 
 Real = NDArray[np.float64]
@@ -145,6 +146,11 @@ class TimeSteppingObjective:
     def coordinates(self) -> int:
         """How many numbers X has."""
         return len(coordinates(self.models_by_kind[0].names))
+
+    @property
+    def angles(self) -> slice:
+        """Positions of the angles of the body among the coordinates."""
+        return slice(1, len(layout_of(self.models_by_kind[0].names).body))
 
     @cached_property
     def prior_std(self) -> Real:

@@ -19,8 +19,8 @@ from sprung.vehicle import (
     Load,
     Tracks,
     evaluate_quantity,
+    linear_elements,
     parameter_names,
-    seven_degrees_of_freedom,
 )
 
 Real = NDArray[np.float64]
@@ -81,13 +81,13 @@ def structured_least_squares(
     """
     names = parameter_names(tracks, tuple(extras))
     _check_arguments(states, known, names, std)
-    elements = seven_degrees_of_freedom(tracks, extras)
+    elements = linear_elements(tracks, extras)
     lower = [np.asarray(A, dtype=float)[7:] for _, A in states]
     models = [LinearModel.of(elements + load.elements(Heights(cg_height)), names) for load, _ in states]
     weights = [_row_weights(A) for A in lower] if std is None else [1 / np.asarray(s, dtype=float) for s in std]
     fitted = [IdentifiedState(*state) for state in zip(models, lower, weights, strict=True)]
 
-    lightest = min(range(len(states)), key=lambda i: states[i][0].mass)
+    lightest = min(range(len(states)), key=lambda i: states[i][0].total_mass())
     shape = shape_of(np.vstack([np.zeros((7, 14)), lower[lightest]]), LinearModel.of(elements, names))
     start = _scaled(_usable(shape, names), names, fitted, known)
     return fit_state_matrices(start, names, fitted, known, relative=std is None)
@@ -113,7 +113,7 @@ def _check_arguments(
     allowed = (*names, *DERIVED)
     for name in known.keys() - set(allowed):
         problems.add("structured: known", f"'{name}'", "a parameter or derived one", did_you_mean(name, allowed))
-    if not any(load.mass for load, _ in states) and not any(_gives_scale(name) for name in known):
+    if not any(load.total_mass() for load, _ in states) and not any(_gives_scale(name) for name in known):
         found = "no loaded state and no known mass or rate"
         expected = "one of the two: free vibration does not determine the common factor of all masses and rates"
         problems.add("structured: scale", found, expected, "Add a load, or known = {'total_mass': ...}.")

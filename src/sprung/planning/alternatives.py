@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from sprung.planning.cramer_rao import CramerRaoBound
 from sprung.planning.setup import PlannedDrop, PlannedTest
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity
+from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity, parameter_name
 
 Real = NDArray[np.float64]
 
@@ -43,6 +43,13 @@ DROP_LABELS: Mapping[frozenset[Wheel], str] = {
     frozenset(("fr", "rr")): "right wheels",
     frozenset(("fl", "rr")): "fl and rr",
     frozenset(("fl",)): "fl alone",
+    frozenset(("front", "rear")): "all wheels",
+    frozenset(("front",)): "front wheel",
+    frozenset(("rear",)): "rear wheel",
+    frozenset(("left", "right")): "all wheels",
+    frozenset(("left",)): "left wheel",
+    frozenset(("right",)): "right wheel",
+    frozenset(("wheel",)): "all wheels",
 }
 """Labels of drops by their wheels."""
 
@@ -149,8 +156,9 @@ def _weighings(test: PlannedTest) -> Iterator[Alternative]:
         values = {name: evaluate_quantity(name, setup.names, setup.values)[0] for name in names}
         return {name: KnownValue(value, std) for name, value in values.items() if name not in setup.known}
 
-    axles = weighed("front_axle_mass", "rear_axle_mass")
-    total = weighed("total_mass") if axles else {}
+    has_axles = setup.vehicle.layout.pitches
+    axles = weighed("front_axle_mass", "rear_axle_mass") if has_axles else {}
+    total = weighed("total_mass") if axles or not has_axles else {}
     if total:
         yield Alternative("total mass", "knowing the total mass", test, Cost.TOTAL_MASS, known=total)
     if axles:
@@ -166,9 +174,10 @@ def _repeats(test: PlannedTest) -> Iterator[Alternative]:
 def _drops(test: PlannedTest) -> Iterator[Alternative]:
     done = {frozenset(drop.wheels) for drop in test.drops if drop.load == EMPTY}
     height = test.drops[0].height
+    stations = test.setup.vehicle.layout.wheels
     for wheels, name in DROP_LABELS.items():
-        if wheels not in done:
-            ordered = tuple(wheel for wheel in WHEELS if wheel in wheels)
+        if wheels not in done and wheels <= {*stations}:
+            ordered = tuple(wheel for wheel in stations if wheel in wheels)
             text = f"a drop of {name if name.startswith('fl') else f'the {name}'.replace('the all', 'all')}"
             added = (PlannedDrop(EMPTY, ordered, height),)
             yield Alternative(f"+ {name}", text, test, Cost.DROP, added=added)
@@ -176,14 +185,15 @@ def _drops(test: PlannedTest) -> Iterator[Alternative]:
 
 def _loads(test: PlannedTest) -> Iterator[Alternative]:
     vehicle = test.setup.vehicle
-    middle = (-vehicle.a, 0.0)
-    half = max(float(getattr(vehicle, f"t_f{which}")) for which in "12")
+    layout = vehicle.layout
+    middle = (-vehicle.a if layout.pitches else 0.0, 0.0)
     places = [(fraction, "middle", "in the middle", middle) for fraction in FRACTIONS]
-    places += [
-        (ELSEWHERE, "front", "over the front axle", (0.0, 0.0)),
-        (ELSEWHERE, "rear", "over the rear axle", (-vehicle.wheelbase, 0.0)),
-        (ELSEWHERE, "left", "on the left", (-vehicle.a, half)),
-    ]
+    if layout.pitches:
+        places.append((ELSEWHERE, "front", "over the front axle", (0.0, 0.0)))
+        places.append((ELSEWHERE, "rear", "over the rear axle", (-vehicle.wheelbase, 0.0)))
+    if layout.rolls:
+        half = max(float(getattr(vehicle, parameter_name("t", layout.axles[0], which))) for which in "12")
+        places.append((ELSEWHERE, "left", "on the left", (middle[0], half)))
     ways = dict.fromkeys((drop.wheels, drop.height) for drop in test.drops)
     for fraction, label, where, (x, y) in places:
         # Level with the centre of gravity: how high it sits is a matter of the vehicle, not of the plan.

@@ -32,9 +32,9 @@ from sprung.vehicle import (
     Vehicle,
     Wheel,
     is_nuisance,
+    linear_elements,
     parameter_names,
     parameter_of,
-    seven_degrees_of_freedom,
     stiffened_air_springs,
     uncertainties_of,
 )
@@ -113,7 +113,7 @@ class MeasurementSetup:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Parameters of the model, masses of loads that are known with an uncertainty, and what is uncertain of the sensors."""
-        return (*parameter_names(self.tracks, self.extras), *filter(is_nuisance, self.statements))
+        return (*parameter_names(self.tracks, self.extras, self.vehicle.layout), *filter(is_nuisance, self.statements))
 
     @cached_property
     def statements(self) -> Mapping[str, KnownValue]:
@@ -218,11 +218,14 @@ class MeasurementSetup:
 
     def _objective(self, decays: Sequence[FreeDecay], names: Mapping[Load, str]) -> ClosedFormObjective:
         heights, wheelbase = self.vehicle.heights, self.vehicle.wheelbase
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, heights, wheelbase)
+        layout = self.vehicle.layout
+        elements = linear_elements(self.tracks, self.extras, heights, wheelbase, layout)
         models = {
             name: LinearModel.of(
                 elements
-                + stiffened_air_springs(load.mass_at_wheels(wheelbase), self.tracks, self.extras, wheelbase)
+                + stiffened_air_springs(
+                    load.mass_at_wheels(wheelbase, layout), self.tracks, self.extras, wheelbase, layout
+                )
                 + load.elements(heights, self.names),
                 self.names,
             )

@@ -12,7 +12,7 @@ from sprung.errors import Fault
 from sprung.preprocess.fall import IMPACT, detect_dropped_channels, measure_fall
 from sprung.preprocess.release import Release
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import WHEELS, Sensor, Wheel
+from sprung.vehicle import STATIONS, Sensor, Wheel
 
 Dropped = Mapping[Wheel, bool]
 """For each wheel of which the release shows it: whether it lost its block."""
@@ -58,7 +58,7 @@ def detect_dropped_wheels(recording: Recording, release: Release | None, sensors
         falls = channel in channels
         if falls != (depth[channel] > STANDARD_GRAVITY) or dropped.setdefault(station, falls) != falls:
             unclear.add(station)
-    return {station: dropped[station] for station in WHEELS if station in dropped and station not in unclear}
+    return {station: dropped[station] for station in STATIONS if station in dropped and station not in unclear}
 
 
 def find_contradicted_drops(drops: Sequence[Drop], dropped: Sequence[Dropped]) -> tuple[int, ...]:
@@ -83,7 +83,9 @@ def find_contradicted_drops(drops: Sequence[Drop], dropped: Sequence[Dropped]) -
     alone = set().union(*wrong.values())
     if len(alone) == 1 and (len(wrong) > 1 or any(shown and not alone <= shown.keys() for shown in dropped)):
         return ()
-    for first, second in combinations(WHEELS, 2):
+    named = {wheel for drop in drops for wheel in drop.wheels}.union(*dropped)
+    present = [wheel for wheel in STATIONS if wheel in named]
+    for first, second in combinations(present, 2):
         swap = {first: second, second: first}
         exchanged = [{swap.get(wheel, wheel): falls for wheel, falls in shown.items()} for shown in dropped]
         if not any(_contradicted_wheels(*pair) for pair in zip(drops, exchanged, strict=True)):
@@ -113,7 +115,7 @@ def merge_dropped_wheels(drop: Drop, dropped: Dropped) -> tuple[Wheel, ...]:
     tuple
         Wheel stations.
     """
-    return tuple(wheel for wheel in WHEELS if dropped.get(wheel, wheel in drop.wheels))
+    return tuple(wheel for wheel in STATIONS if dropped.get(wheel, wheel in drop.wheels))
 
 
 def dropped_wheels_fault(drop: Drop, dropped: Dropped, where: str) -> Fault:

@@ -16,7 +16,7 @@ from sprung.preprocess.high_pass import integrate_from_rest
 from sprung.preprocess.landing import Landing, detect_landing, measure_suspension_force
 from sprung.preprocess.release import Release, unknown_release
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Wheel
+from sprung.vehicle import STATIONS, Wheel
 
 Flags = NDArray[np.bool_]
 
@@ -45,8 +45,6 @@ _NOT_PLACED = (
 _TYPICAL_SUSPENSION = 70.0
 """Static suspension force over unsprung mass, m/s², for a wheel whose fall was never recorded: between car and bus."""
 
-_ACROSS: Mapping[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
-
 
 def pool_suspension_forces(campaign: Campaign, releases: Sequence[Release | None]) -> dict[Wheel, float]:
     """Pool the static suspension forces over all releases; a wheel that never fell is taken to be like its neighbour.
@@ -72,7 +70,12 @@ def pool_suspension_forces(campaign: Campaign, releases: Sequence[Release | None
                 if np.isfinite(force):
                     measured[wheel].append(force)
     pooled: dict[Wheel, float] = {wheel: float(np.median(forces)) for wheel, forces in measured.items()}
-    return {wheel: pooled.get(wheel, pooled.get(_ACROSS[wheel], _TYPICAL_SUSPENSION)) for wheel in _ACROSS}
+    layout = campaign.layout
+    of_axle = {
+        axle: next((pooled[wheel] for wheel in layout.wheels_of(axle) if wheel in pooled), _TYPICAL_SUSPENSION)
+        for axle in layout.axles
+    }
+    return {wheel: pooled.get(wheel, of_axle[STATIONS[wheel].axle]) for wheel in layout.wheels}
 
 
 def extract_decay(

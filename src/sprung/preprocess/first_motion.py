@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Campaign
 from sprung.preprocess.dropped_wheels import Dropped, detect_dropped_wheels
 from sprung.preprocess.prepare import Prepared
-from sprung.vehicle import Wheel
+from sprung.vehicle import STATIONS, Wheel
 
 Real = NDArray[np.float64]
 
@@ -117,14 +117,11 @@ def is_first_motion_consistent(
     bool or None
         None where there are neither drops of one end nor of one side.
     """
-    counts = np.array([[sum(wheel[0] == end for wheel in wheels) for end in "fr"] for wheels in dropped], dtype=float)
-    sides = np.array(
-        [
-            [sum((1 if wheel[1] == "l" else -1) for wheel in wheels if wheel[0] == end) for end in "fr"]
-            for wheels in dropped
-        ],
-        dtype=float,
-    )
+    # A vehicle with one axle counts as one front axle.
+    stations = [[STATIONS[wheel] for wheel in wheels] for wheels in dropped]
+    at_ends = [[[one for one in own if (one.end < 0) == rear] for rear in (False, True)] for own in stations]
+    counts = np.array([[len(own) for own in ends] for ends in at_ends], dtype=float)
+    sides = np.array([[sum(one.side for one in own) for own in ends] for ends in at_ends], dtype=float)
     placed = {
         i: sensor.position for i, sensor in enumerate(campaign.sensors) if sensor.on == "body" and sensor.position
     }

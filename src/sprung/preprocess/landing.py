@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from sprung.preprocess.release import Release
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Sensor, Wheel
+from sprung.vehicle import STATIONS, Sensor, Wheel
 
 Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -132,7 +132,7 @@ def detect_landing(
     Returns
     -------
     Landing or None
-        None where no wheel with a sensor left the ground and came back, or fewer than three body sensors have a position.
+        None where no wheel with a sensor left the ground and came back, or too few body sensors have a position.
     """
     whole = np.logical_not(np.isnan(values).any(axis=1))
     body = [i for i, sensor in enumerate(sensors) if sensor.position is not None and whole[i]]
@@ -141,18 +141,18 @@ def detect_landing(
         for i, sensor in enumerate(sensors)
         if sensor.on is not None and sensor.on != "body" and sensor.on in suspension and whole[i]
     ]
-    if len(body) < 3:
+    stations = [STATIONS[wheel] for _, wheel in wheels]
+    # Where front and rear, or left and right, are not told apart, the body does not turn so.
+    turns = [True, any(station.end for station in stations), any(station.side for station in stations)]
+    if len(body) < sum(turns):
         return None
     reading = values[:, release.sample : release.sample + int(_LONGEST * rate)] - release.level[:, None]
     places = np.array([sensors[i].position for i in body], dtype=float)
-    plane = np.column_stack([np.ones(len(body)), places[:, :2]])
+    plane = np.column_stack([np.ones(len(body)), places[:, :2]])[:, turns]
     half_track = float(np.abs(places[:, 1]).mean())
     corners = np.array(
-        [
-            [1.0, 0.0 if station[0] == "f" else -wheelbase, half_track if station[1] == "l" else -half_track]
-            for _, station in wheels
-        ]
-    ).reshape(-1, 3)
+        [[1.0, -wheelbase if station.end < 0 else 0.0, station.side * half_track] for station in stations]
+    ).reshape(-1, 3)[:, turns]
     static = np.array([suspension[station] for _, station in wheels])[:, None]
     above = corners @ np.linalg.pinv(plane) @ (reading[body] + STANDARD_GRAVITY)
     own = reading[[channel for channel, _ in wheels]]

@@ -28,15 +28,15 @@ _DERIVED = {
 _CHARACTERISTICS = (
     ("mass, kg", "front_axle_mass", "rear_axle_mass", "total_mass"),
     ("share of the mass", "front_axle_share", "", ""),
-    ("load of each wheel, N", "front_wheel_load", "rear_wheel_load", ""),
-    ("load of the left wheel, N", "front_left_wheel_load", "rear_left_wheel_load", ""),
-    ("load of the right wheel, N", "front_right_wheel_load", "rear_right_wheel_load", ""),
+    ("load of each wheel, N", "front_wheel_load", "rear_wheel_load", "wheel_load"),
+    ("load of the left wheel, N", "front_left_wheel_load", "rear_left_wheel_load", "left_wheel_load"),
+    ("load of the right wheel, N", "front_right_wheel_load", "rear_right_wheel_load", "right_wheel_load"),
     ("centre of gravity, m behind front axle", "", "", "cg_from_front_axle"),
     ("centre of gravity, m left of centreline", "", "", "cg_left"),
-    ("ride frequency, Hz", "front_ride_frequency", "rear_ride_frequency", ""),
-    ("ride damping ratio", "front_ride_damping", "rear_ride_damping", ""),
-    ("wheel hop frequency, Hz", "front_hop_frequency", "rear_hop_frequency", ""),
-    ("wheel hop damping ratio", "front_hop_damping", "rear_hop_damping", ""),
+    ("ride frequency, Hz", "front_ride_frequency", "rear_ride_frequency", "ride_frequency"),
+    ("ride damping ratio", "front_ride_damping", "rear_ride_damping", "ride_damping"),
+    ("wheel hop frequency, Hz", "front_hop_frequency", "rear_hop_frequency", "hop_frequency"),
+    ("wheel hop damping ratio", "front_hop_damping", "rear_hop_damping", "hop_damping"),
     ("twist of the body, Hz", "", "", "twist_frequency"),
     ("damping ratio of twist", "", "", "twist_damping"),
     ("bending of the body, Hz", "", "", "bending_frequency"),
@@ -144,14 +144,17 @@ def characteristics_tables(vehicle: str, derived: Mapping[str, Estimate]) -> tup
     """
     rows = []
     for label, *names in _CHARACTERISTICS:
-        cells = [_with_uncertainty(derived.get(name)) if name else "" for name in names]
+        cells = [_with_uncertainty(derived[name]) if name in derived else "" for name in names]
         if any(name in derived for name in names):
             rows.append((label, *cells))
     if not any(derived[name].value is not None for _, *names in _CHARACTERISTICS for name in names if name in derived):
         return ()
     headers = ("empty vehicle", "front", "rear", "whole")
+    # A vehicle with one axle has neither front nor rear.
+    used = [i for i, column in enumerate(zip(headers, *rows, strict=True)) if any(column[1:])]
+    shown, cells_of = tuple(headers[i] for i in used), [tuple(row[i] for i in used) for row in rows]
     title = f"{vehicle}: masses, ride and wheel hop, ± one standard uncertainty"
-    return (Table(title, headers, tuple(rows), frozenset(headers[1:])),)
+    return (Table(title, shown, tuple(cells_of), frozenset(shown[1:])),)
 
 
 def damper_tables(curves: Mapping[str, ForceCurve]) -> tuple[Table, ...]:

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from sprung.estimation import FitStatistics, estimate_quantity
 from sprung.uncertainty import Estimate
+from sprung.vehicle import layout_of
 
 Real = NDArray[np.float64]
 
 Values = Mapping[str, float]
 """Parameters by name, SI."""
 
-_AXLES = {"f": "front", "r": "rear"}
+_AXLES = {"f": "front", "r": "rear", "": ""}
 
 _SIGNIFICANT = 2.0
 """Standard errors from its neutral value within which a quantity is not there."""
@@ -38,7 +39,7 @@ class TermDescription:
     text
         With {0}, {1} ... for the quantities, and {axle} for front or rear where the term has a size for each axle.
     quantities
-        Each a function of the parameters and of the axle, ``f`` or ``r``, and its unit. The first one decides whether the
+        Each a function of the parameters and of the index of the axle, and its unit. The first one decides whether the
         term is there.
     again
         Text of the rear axle where the front axle is stated before; empty where the term belongs to the whole vehicle.
@@ -60,11 +61,11 @@ class TermDescription:
             Uncertainty of the fit.
         """
         parts: list[str] = []
-        for axle, name in _AXLES.items() if self.again else [("", "")]:
+        for axle in layout_of(fit.names).axles if self.again else [""]:
             found = [_estimate(fit, quantity, axle, unit) for quantity, unit in self.quantities]
             if self._is_there(found[0]):
                 text = self.again if parts else self.text
-                parts.append(text.format(*map(_in_words, found), axle=name))
+                parts.append(" ".join(text.format(*map(_in_words, found), axle=_AXLES[axle]).split()))
         return " and ".join(parts)
 
     def _is_there(self, found: Estimate) -> bool:

@@ -19,7 +19,7 @@ from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, Heights, body_sinking, second_order_readings
+from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, second_order_readings
 
 _WHEEL_HEIGHT = 0.32
 """Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans
@@ -62,7 +62,8 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     """
     structure = search.structure
     is_held = structure.campaign.heights.roll_axis_height is not None
-    if structure.is_time_stepped or is_held or any(decay.clocks for decay in search.decays):
+    # The second-order terms are those of a body that pitches and rolls.
+    if structure.layout != FULL or structure.is_time_stepped or is_held or any(decay.clocks for decay in search.decays):
         return search
     # Angles are small: what is large is something else, a fault perhaps, which would be taken for it.
     if search.is_misfit_large:

@@ -6,7 +6,7 @@ import numpy as np
 
 from sprung.estimation import USUAL_ENGINE, USUAL_MOUNT, USUAL_RELAXATION, usual_engine, usual_rubber
 from sprung.selection.description import TermDescription, Values
-from sprung.selection.model_term import ModelTerm, of_axles
+from sprung.selection.model_term import ModelTerm, axles_of, of_axles
 from sprung.selection.structure import SEAT_LOAD, ModelStructure
 from sprung.selection.usual_parts import (
     SEAT_FREQUENCY,
@@ -17,6 +17,7 @@ from sprung.selection.usual_parts import (
     usual_occupants,
     usual_twist,
 )
+from sprung.vehicle import layout_of, parameter_name
 
 SEPARATE_TRACKS = "tracks apart"
 """Springs and dampers at half-distances of their own."""
@@ -35,8 +36,6 @@ _ALMOST_NO_ENGINE = 1e-5
 
 _AT_REST = 1e4
 """Factor on a usual modal mass that is an infinite one in practice."""
-
-_ZENER = ("k_zf", "k_zr", "c_zf", "c_zr")
 
 _ALMOST_NONE = 0.01
 """Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
@@ -59,7 +58,8 @@ def _engine(own: Values, structure: ModelStructure, share: float = USUAL_ENGINE)
 
 def _half_distance(values: Values, axle: str) -> float:
     """Half-distance of an axle's springs, m."""
-    return values[f"t_{axle}"] if f"t_{axle}" in values else values[f"t_{axle}2"]
+    shared, own = parameter_name("t", axle), parameter_name("t", axle, "2")
+    return values[shared if shared in values else own]
 
 
 def _asymmetry(values: Values, axle: str) -> float:
@@ -69,7 +69,8 @@ def _asymmetry(values: Values, axle: str) -> float:
 
 def _inboard_share(values: Values, axle: str) -> float:
     """Place of the springs on a rigid axle, as a part of its wheels' half-distance."""
-    return values[f"n_{axle}" if f"n_{axle}" in values else f"n_{axle}2"]
+    shared, own = parameter_name("n", axle), parameter_name("n", axle, "2")
+    return values[shared if shared in values else own]
 
 
 def _gravity(values: Values) -> float:
@@ -78,24 +79,34 @@ def _gravity(values: Values) -> float:
 
 
 def _roll_rate(values: Values) -> float:
-    """Roll stiffness of the springs of both axles, N m."""
-    return 2 * sum(values[f"k_s{axle}"] * _half_distance(values, axle) ** 2 for axle in "fr")
+    """Roll stiffness of all springs, N m; of a vehicle that does not roll their stiffness over half its wheelbase."""
+    layout = layout_of(values)
+    lever = {
+        axle: _half_distance(values, axle) if layout.rolls else (values["a"] + values["b"]) / 2 for axle in layout.axles
+    }
+    return sum(len(layout.wheels_of(axle)) * values[f"k_s{axle}"] * lever[axle] ** 2 for axle in layout.axles)
+
+
+def _bounce_rate(values: Values) -> float:
+    """Rate of all springs together, N/m."""
+    layout = layout_of(values)
+    return sum(len(layout.wheels_of(axle)) * values[f"k_s{axle}"] for axle in layout.axles)
 
 
 LINEAR_TERMS = (
     ModelTerm(
         SEPARATE_TRACKS,
-        of_axles(lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"] - 1),
+        of_axles(lambda p, axle: p[parameter_name("t", axle, "1")] / p[parameter_name("t", axle, "2")] - 1),
         typical=0.15,
         spread=2.0,
         negligible=0.01,
         description=TermDescription(
             "{axle} dampers at {0} times the half-distance of the springs",
-            ((lambda p, axle: p[f"t_{axle}1"] / p[f"t_{axle}2"], "1"),),
+            ((lambda p, axle: p[parameter_name("t", axle, "1")] / p[parameter_name("t", axle, "2")], "1"),),
             again="{axle} ones at {0} times",
             neutral=1.0,
         ),
-        equal_tracks=(("t_f1", "t_f2"), ("t_r1", "t_r2")),
+        separates_tracks=True,
     ),
     ModelTerm(
         "anti-roll",
@@ -112,7 +123,7 @@ LINEAR_TERMS = (
     ModelTerm(
         "tyre-damping",
         of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
-        usual=lambda own, _: {f"c_t{axle}": _TYRE_DAMPING * own[f"c_s{axle}"] for axle in "fr"},
+        usual=lambda own, _: {f"c_t{axle}": _TYRE_DAMPING * own[f"c_s{axle}"] for axle in axles_of(own)},
         typical=_TYRE_DAMPING,
         spread=2.5,
         negligible=0.005,
@@ -141,7 +152,7 @@ LINEAR_TERMS = (
         negligible=0.01,
         description=TermDescription(
             "left and right sides that differ by up to {0}",
-            ((lambda p, _: 200 * max(_asymmetry(p, axle) for axle in "fr"), "%"),),
+            ((lambda p, _: 200 * max(_asymmetry(p, axle) for axle in axles_of(p)), "%"),),
         ),
         explains_all=True,
     ),
@@ -185,7 +196,7 @@ LINEAR_TERMS = (
             again="{axle} ones on mounts of {0}",
             neutral=None,
         ),
-        undefined=lambda own, _: {f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in "fr"},
+        undefined=lambda own, _: {f"k_d{axle}": _RIGID * own[f"k_s{axle}"] for axle in axles_of(own)},
         first=lambda own, _: usual_rubber(own),
     ),
     ModelTerm(
@@ -200,7 +211,7 @@ LINEAR_TERMS = (
             ((lambda p, axle: p[f"c_d{axle}"], "N s/m"),),
             again="{0} in those of the {axle} ones",
         ),
-        character=lambda p: [p[f"c_d{axle}"] / p[f"k_d{axle}"] for axle in "fr"],
+        character=lambda p: [p[f"c_d{axle}"] / p[f"k_d{axle}"] for axle in axles_of(p)],
         band=(-np.inf, _MOST_LOSS),
         counterpart="zener",
     ),
@@ -220,7 +231,9 @@ LINEAR_TERMS = (
             again="{axle} ones by {0}, which relaxes in {1}",
         ),
         held="c_z",
-        undefined=lambda own, _: {name: _ALMOST_NONE * usual_rubber(own)[name] for name in _ZENER},
+        undefined=lambda own, _: {
+            name: _ALMOST_NONE * value for name, value in usual_rubber(own).items() if name.startswith(("k_z", "c_z"))
+        },
         first=lambda own, _: usual_rubber(own),
     ),
     ModelTerm(
@@ -240,7 +253,7 @@ LINEAR_TERMS = (
     ),
     ModelTerm(
         BENDING,
-        lambda p: 2 * (p["k_sf"] + p["k_sr"]) / p["k_v"],
+        lambda p: _bounce_rate(p) / p["k_v"],
         typical=0.015,
         spread=2.5,
         negligible=0.0015,

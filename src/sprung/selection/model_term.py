@@ -11,12 +11,16 @@ from sprung.selection.description import TermDescription, Values
 from sprung.selection.structure import ModelStructure
 from sprung.vehicle import (
     COORDINATES,
+    FULL,
     LINEAR_EXTRAS,
     NEUTRAL,
     PARAMETERS,
     REFINED,
+    Layout,
     Tracks,
     coordinates,
+    half_distances,
+    layout_of,
     parameters_of_term,
 )
 
@@ -55,8 +59,8 @@ class ModelTerm:
         Values of those parameters that have none where the term is absent.
     first
         Values with which a fit begins instead of the neutral ones.
-    equal_tracks
-        Parameters that are equal to another one where the term is absent.
+    separates_tracks
+        Whether it is that dampers and springs have half-distances of their own: where it is absent they are equal.
     character
         What tells it from other things that move alike: a natural frequency, Hz, or relaxation times, s; None where nothing
         does.
@@ -79,7 +83,7 @@ class ModelTerm:
     held: str = ""
     undefined: StartValues | None = None
     first: StartValues | None = None
-    equal_tracks: tuple[tuple[str, str], ...] = ()
+    separates_tracks: bool = False
     character: Callable[[Values], Sequence[float]] | None = None
     band: tuple[float, float] = (0.0, np.inf)
     counterpart: str = ""
@@ -87,7 +91,7 @@ class ModelTerm:
     @property
     def is_linear(self) -> bool:
         """Whether mass, damping and stiffness matrices carry it."""
-        return self.name in LINEAR_EXTRAS or bool(self.equal_tracks)
+        return self.name in LINEAR_EXTRAS or self.separates_tracks
 
     @property
     def refines(self) -> str:
@@ -99,39 +103,41 @@ class ModelTerm:
         """Whether a vehicle with it moves in more coordinates than the paper's."""
         return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
 
-    def parameters(self, tracks: Tracks) -> tuple[str, ...]:
+    def parameters(self, tracks: Tracks, layout: Layout = FULL) -> tuple[str, ...]:
         """Return the parameters that a model with the term has and one without it has not, or not free.
 
         Parameters
         ----------
         tracks
             Whether springs and dampers share their half-distance.
+        layout
+            Of the vehicle.
         """
-        if self.equal_tracks:
-            return tuple(name for name, _ in self.equal_tracks)
-        return parameters_of_term(self.name, tracks)
+        if self.separates_tracks:
+            return tuple(damper for damper, _ in _tracks_apart(layout))
+        return parameters_of_term(self.name, tracks, layout)
 
-    def neutral(self, tracks: Tracks) -> list[tuple[str, str | float]]:
+    def neutral(self, tracks: Tracks, layout: Layout = FULL) -> list[tuple[str, str | float]]:
         """Return what each parameter is where the term is absent: a value, or another parameter.
 
         Parameters
         ----------
-        tracks
+        tracks, layout
             As for `parameters`.
         """
-        if self.equal_tracks:
-            return list(self.equal_tracks)
-        return [(name, NEUTRAL[name]) for name in self.parameters(tracks) if name in NEUTRAL]
+        if self.separates_tracks:
+            return list(_tracks_apart(layout))
+        return [(name, NEUTRAL[name]) for name in self.parameters(tracks, layout) if name in NEUTRAL]
 
-    def not_negative(self, tracks: Tracks) -> tuple[str, ...]:
+    def not_negative(self, tracks: Tracks, layout: Layout = FULL) -> tuple[str, ...]:
         """Return the parameters that physics does not allow to be negative, though the fit does.
 
         Parameters
         ----------
-        tracks
+        tracks, layout
             As for `parameters`.
         """
-        about = {name: PARAMETERS[name] for name in self.parameters(tracks)}
+        about = {name: PARAMETERS[name] for name in self.parameters(tracks, layout)}
         return tuple(name for name, one in about.items() if not (one.positive or one.signed))
 
     def is_something_else(self, values: Values) -> bool:
@@ -157,5 +163,16 @@ class ModelTerm:
 
 
 def of_axles(ratio: Callable[[Values, str], float]) -> Callable[[Values], float]:
-    """Return the larger of both axles' sizes."""
-    return lambda values: max(abs(ratio(values, axle)) for axle in "fr")
+    """Return the largest of the sizes of all axles."""
+    return lambda values: max(abs(ratio(values, axle)) for axle in axles_of(values))
+
+
+def axles_of(values: Values) -> tuple[str, ...]:
+    """Return the indices of the axles of a vehicle, from its parameters."""
+    return layout_of(values).axles
+
+
+def _tracks_apart(layout: Layout) -> list[tuple[str, str]]:
+    """Return the half-distances of dampers and springs of each axle."""
+    names = half_distances("separate")
+    return [(names[axle, "damper"], names[axle, "spring"]) for axle in layout.axles] if layout.rolls else []

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from sprung.selection.description import TermDescription, Values
-from sprung.selection.model_term import ModelTerm, of_axles
+from sprung.selection.model_term import ModelTerm, axles_of, of_axles
 from sprung.selection.structure import ModelStructure
+from sprung.vehicle import parameter_name
 
 BUMP_STOP = "bump-stop"
 """A term with starts of its own."""
@@ -35,27 +36,32 @@ _REBOUND, _TYRE_GROWTH = 0.8, 0.2
 
 
 def _air_springs(name: str, height: str, levelled: str) -> ModelTerm:
-    """Return the row of air springs, given the first letters of the parameter that is one over the height of their columns."""
+    """Return the row of air springs, given the symbol of the parameter that is one over the height of their columns."""
     return ModelTerm(
         name,
-        of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[f"{height}{axle}"]),
+        of_axles(lambda p, axle: _STROKE * _AIR_GROWTH * p[parameter_name(height, axle)]),
         typical=0.6,
         spread=1.6,
         negligible=0.02,
         description=TermDescription(
             f"{{axle}} air springs{levelled} with a column of {{1}}",
-            ((lambda p, axle: p[f"{height}{axle}"], "1/m"), (lambda p, axle: 1e3 / p[f"{height}{axle}"], "mm")),
+            (
+                (lambda p, axle: p[parameter_name(height, axle)], "1/m"),
+                (lambda p, axle: 1e3 / p[parameter_name(height, axle)], "mm"),
+            ),
             again="{axle} ones with a column of {1}",
         ),
     )
 
 
 def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
-    """Return the term of a further knee of the damper curves, given the indices of the knee before it."""
+    """Return the term of a further knee of the damper curves; of the one before, the velocity's index, the ratio's symbol."""
 
     def first(own: Values, _: ModelStructure) -> Values:
-        velocities = {f"v_{number}{axle}": _NEXT_KNEE * own.get(f"v_{before}{axle}", _KNEE) for axle in "fr"}
-        return velocities | {f"q_{number}{axle}": math.sqrt(own.get(f"q_{ratio}{axle}", 1.0)) for axle in "fr"}
+        axles = axles_of(own)
+        velocities = {f"v_{number}{axle}": _NEXT_KNEE * own.get(f"v_{before}{axle}", _KNEE) for axle in axles}
+        ratios = {axle: own.get(parameter_name(ratio, axle), 1.0) for axle in axles}
+        return velocities | {f"q_{number}{axle}": math.sqrt(before) for axle, before in ratios.items()}
 
     return ModelTerm(
         f"{word}-knee",
@@ -69,7 +75,7 @@ def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
             again="{axle} ones with {0} beyond {1}",
             neutral=1.0,
         ),
-        undefined=lambda _, __: {f"v_{number}{axle}": _NEXT_KNEE * _KNEE for axle in "fr"},
+        undefined=lambda own, _: {f"v_{number}{axle}": _NEXT_KNEE * _KNEE for axle in axles_of(own)},
         first=first,
     )
 
@@ -77,61 +83,67 @@ def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
 NONLINEAR_TERMS = (
     ModelTerm(
         "friction",
-        of_axles(lambda p, axle: p[f"F_{axle}"] / (_TRAVEL * p[f"k_s{axle}"])),
-        usual=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
+        of_axles(lambda p, axle: p[parameter_name("F", axle)] / (_TRAVEL * p[f"k_s{axle}"])),
+        usual=lambda own, _: {parameter_name("F", axle): _TRAVEL * own[f"k_s{axle}"] for axle in axles_of(own)},
         typical=1.0,
         spread=3.0,
         negligible=0.01,
         description=TermDescription(
             "dry friction of {0} at each {axle} wheel",
-            ((lambda p, axle: p[f"F_{axle}"], "N"),),
+            ((lambda p, axle: p[parameter_name("F", axle)], "N"),),
             again="{0} at each {axle} wheel",
         ),
         resembles_others=True,
         held="s_",
-        undefined=lambda own, _: {f"s_{axle}": _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in "fr"},
-        first=lambda own, _: {f"F_{axle}": _TRAVEL * own[f"k_s{axle}"] for axle in "fr"},
+        undefined=lambda own, _: {
+            parameter_name("s", axle): _PRESLIDING_RATIO * own[f"k_s{axle}"] for axle in axles_of(own)
+        },
+        first=lambda own, _: {parameter_name("F", axle): _TRAVEL * own[f"k_s{axle}"] for axle in axles_of(own)},
     ),
     ModelTerm(
         "load-friction",
-        of_axles(lambda p, axle: p[f"u_{axle}"]),
+        of_axles(lambda p, axle: p[parameter_name("u", axle)]),
         typical=0.05,
         spread=2.0,
         negligible=0.005,
         description=TermDescription(
             "dry friction that grows by {0} of the load on each {axle} wheel",
-            ((lambda p, axle: 100 * p[f"u_{axle}"], "%"),),
+            ((lambda p, axle: 100 * p[parameter_name("u", axle)], "%"),),
             again="by {0} on each {axle} wheel",
         ),
     ),
     ModelTerm(
         "rebound",
-        of_axles(lambda p, axle: p[f"r_{axle}"] - 1),
-        usual=lambda _, __: dict.fromkeys(("r_f", "r_r"), 1 + _REBOUND),
+        of_axles(lambda p, axle: p[parameter_name("r", axle)] - 1),
+        usual=lambda own, _: {parameter_name("r", axle): 1 + _REBOUND for axle in axles_of(own)},
         typical=_REBOUND,
         spread=2.0,
         negligible=0.01,
         description=TermDescription(
             "{axle} dampers {0} times as stiff in rebound as in compression",
-            ((lambda p, axle: p[f"r_{axle}"], "1"),),
+            ((lambda p, axle: p[parameter_name("r", axle)], "1"),),
             again="{axle} ones {0} times",
             neutral=1.0,
         ),
     ),
     ModelTerm(
         "damper-curve",
-        of_axles(lambda p, axle: 1 - p[f"q_{axle}"]),
-        usual=lambda _, __: {"v_kf": _KNEE, "v_kr": _KNEE, "q_f": 1 - _KNEE_LOSS, "q_r": 1 - _KNEE_LOSS},
+        of_axles(lambda p, axle: 1 - p[parameter_name("q", axle)]),
+        usual=lambda own, _: {
+            name: value
+            for axle in axles_of(own)
+            for name, value in ((f"v_k{axle}", _KNEE), (parameter_name("q", axle), 1 - _KNEE_LOSS))
+        },
         typical=_KNEE_LOSS,
         spread=1.6,
         negligible=0.02,
         description=TermDescription(
             "{axle} dampers with {0} of their rate beyond {1}",
-            ((lambda p, axle: p[f"q_{axle}"], "1"), (lambda p, axle: p[f"v_k{axle}"], "m/s")),
+            ((lambda p, axle: p[parameter_name("q", axle)], "1"), (lambda p, axle: p[f"v_k{axle}"], "m/s")),
             again="{axle} ones with {0} beyond {1}",
             neutral=1.0,
         ),
-        undefined=lambda _, __: {f"v_k{axle}": _KNEE for axle in "fr"},
+        undefined=lambda own, _: {f"v_k{axle}": _KNEE for axle in axles_of(own)},
     ),
     ModelTerm(
         "rounded-knee",
@@ -145,28 +157,28 @@ NONLINEAR_TERMS = (
             again="{axle} ones over {0}",
         ),
         is_stationary=True,
-        first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in "fr"},
+        first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in axles_of(own)},
     ),
-    _further_knee(2, "second", "k", ""),
-    _further_knee(3, "third", "2", "2"),
+    _further_knee(2, "second", "k", "q"),
+    _further_knee(3, "third", "2", "q_2"),
     ModelTerm(
         "progressive",
-        of_axles(lambda p, axle: _STROKE * p[f"p_{axle}"]),
+        of_axles(lambda p, axle: _STROKE * p[parameter_name("p", axle)]),
         typical=0.2,
         spread=2.5,
         negligible=0.02,
         description=TermDescription(
             "{axle} springs whose rate grows by {0} over 5 cm of compression",
-            ((lambda p, axle: 100 * _STROKE * p[f"p_{axle}"], "%"),),
+            ((lambda p, axle: 100 * _STROKE * p[parameter_name("p", axle)], "%"),),
             again="{axle} ones by {0}",
         ),
     ),
-    _air_springs("air", "e_", ""),
+    _air_springs("air", "e", ""),
     _air_springs("levelled-air", "e_l", ", levelled under every load,"),
     ModelTerm(
         "tyre-curve",
         of_axles(lambda p, axle: _TYRE_STROKE * p[f"h_t{axle}"]),
-        usual=lambda _, __: dict.fromkeys(("h_tf", "h_tr"), _TYRE_GROWTH / _TYRE_STROKE),
+        usual=lambda own, _: {f"h_t{axle}": _TYRE_GROWTH / _TYRE_STROKE for axle in axles_of(own)},
         typical=_TYRE_GROWTH,
         spread=2.0,
         negligible=0.01,
@@ -187,6 +199,6 @@ NONLINEAR_TERMS = (
             ((lambda p, axle: p[f"k_b{axle}"] / 1e3, "N/mm"), (lambda p, axle: 1e3 * p[f"x_b{axle}"], "mm")),
             again="{axle} ones of {0}, met after {1}",
         ),
-        undefined=lambda _, structure: dict.fromkeys(("x_bf", "x_br"), structure.stop_gap),
+        undefined=lambda own, structure: {f"x_b{axle}": structure.stop_gap for axle in axles_of(own)},
     ),
 )

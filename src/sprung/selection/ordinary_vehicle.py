@@ -25,7 +25,7 @@ _SPREADS: Mapping[str, float] = {
     "c_s": 2.0,
     "a": 1.25,
     "b": 1.25,
-    "t_": 1.2,
+    "t": 1.2,
 }
 """Factors within which a parameter of an ordinary vehicle usually is, where only its size is known, by the first letters of its
 name (Gillespie, Fundamentals of Vehicle Dynamics, 1992; Heydinger and others, SAE 1999-01-1336)."""
@@ -55,7 +55,7 @@ def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[
     usual
         Usual values of all parameters that are not those of a load, with their spread.
     """
-    own = usual_vehicle(VehicleSize.of(structure.known, structure.campaign.sensors))
+    own = usual_vehicle(VehicleSize.of(structure.known, structure.campaign.sensors, structure.layout))
     plain = structure.with_terms(())
     masses = {name: known.value for name, known in structure.known.items() if name in structure.names}
     own = {name: own[name] for name in plain.names if name in own} | masses
@@ -102,7 +102,7 @@ def usual_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[
     return {
         name: UsualValue(values[name], TERMS[term].spread)
         for term in structure.terms
-        for name in TERMS[term].parameters(structure.tracks)
+        for name in TERMS[term].parameters(structure.tracks, structure.layout)
         if values[name] > 0
     }
 

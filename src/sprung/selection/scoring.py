@@ -70,7 +70,10 @@ def _of_same_coordinates(search: ModelSearch, terms: Sequence[str]) -> Scores:
     larger, own = search.with_terms(terms), search.fit.parameters
     values = {term: neutral_values(search.with_terms([term]), own) for term in terms}
     candidates = {
-        term: {name: values[term][name] for name in TERMS[term].parameters(search.with_terms([term]).tracks)}
+        term: {
+            name: values[term][name]
+            for name in TERMS[term].parameters(search.with_terms([term]).tracks, search.structure.layout)
+        }
         for term in terms
     }
     tests = score_linear_terms(search.fit, larger.linear_models, neutral_values(larger, own), candidates) or {}
@@ -98,7 +101,7 @@ def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple
 
 def _nonlinear(search: ModelSearch, terms: Sequence[str]) -> Scores:
     larger, own = search.with_terms(terms), search.fit.parameters
-    candidates = {term: TERMS[term].parameters(larger.tracks) for term in terms}
+    candidates = {term: TERMS[term].parameters(larger.tracks, larger.layout) for term in terms}
     tests = score_nonlinear_terms(search.fit, larger.nonlinear_models, neutral_values(larger, own), candidates)
     return {term: (gain, abs(TERMS[term].size(own | estimates))) for term, (gain, estimates) in tests.items()}
 
@@ -141,6 +144,8 @@ def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Seq
         values=neutral_values(largest, own),
         states=states_by_coordinates(search.fit.states, search.fit.names, largest.names),
         together=[separate_track_names(name) if separated else (name,) for name in own],
-        candidates={term: [(name,) for name in TERMS[term].parameters(largest.tracks)] for term in terms},
+        candidates={
+            term: [(name,) for name in TERMS[term].parameters(largest.tracks, largest.layout)] for term in terms
+        },
         tilting=search.structure.gravity_leakage,
     )

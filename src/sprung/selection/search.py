@@ -94,7 +94,8 @@ class ModelSearch:
 
     def significant(self, term: str) -> float:
         """Gain in twice the log-likelihood from which a term is significant: what a score test has to promise."""
-        return required_gain(len(TERMS[term].parameters(self.structure.tracks)), _HYPOTHESES, self.samples)
+        parameters = TERMS[term].parameters(self.structure.tracks, self.structure.layout)
+        return required_gain(len(parameters), _HYPOTHESES, self.samples)
 
     def required(self, term: str) -> float:
         """Gain in twice the log-likelihood that is required of a term; where much is left to explain, a part of that."""
@@ -294,17 +295,21 @@ class ModelSearch:
         terms
             Of the model.
         """
-        neutral = [value for term in terms for value in TERMS[term].neutral(self.structure.tracks)]
+        neutral = [
+            value for term in terms for value in TERMS[term].neutral(self.structure.tracks, self.structure.layout)
+        ]
         return wald_test(self.fit, neutral) / self.overdispersion
 
     def veto(self, term: str) -> str:
         """Reason against a term of the model, whatever it gains; empty where there is none."""
         row, parameters = TERMS[term], self.fit.parameters
         limit = required_gain(1, 1, 1.0, self.overdispersion)
-        below = [name for name in row.not_negative(self.structure.tracks) if parameters[name] < 0]
+        below = [
+            name for name in row.not_negative(self.structure.tracks, self.structure.layout) if parameters[name] < 0
+        ]
         if any(wald_test(self.fit, [(name, 0.0)]) > limit for name in below):
             return "the estimate is negative, which is not physical"
-        undetermined = self._undetermined(row.parameters(self.structure.tracks))
+        undetermined = self._undetermined(row.parameters(self.structure.tracks, self.structure.layout))
         if undetermined:
             return f"the recordings do not determine {', '.join(undetermined)}"
         if row.is_something_else(parameters):

@@ -15,6 +15,7 @@ from sprung.selection.linear_terms import BENDING, ENGINE, OCCUPANTS, TWIST
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.vehicle import (
+    AXLES,
     NEUTRAL,
     LinearModel,
     Rows,
@@ -22,6 +23,7 @@ from sprung.vehicle import (
     heave,
     is_nuisance,
     nonlinear_elements,
+    parameter_name,
     state_variables,
     with_separate_tracks,
 )
@@ -50,7 +52,8 @@ def neutral_values(structure: ModelStructure, own: Mapping[str, float]) -> dict[
     dict
         By name, SI.
     """
-    shared = {name: own[f"{name}2"] for name in ("t_f", "t_r", "n_f", "n_r") if f"{name}2" in own}
+    springs = [(parameter_name(place, axle), parameter_name(place, axle, "2")) for place in "tn" for axle in AXLES]
+    shared = {both: own[spring] for both, spring in springs if spring in own}
     undefined = [
         term.undefined(own, structure)
         for term in TERMS.values()
@@ -163,7 +166,7 @@ def fit_structure(
 
 def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDecay]) -> list[float]:
     """Return compressions at which stops may be met, m, from how far a fitted vehicle moves."""
-    elements = nonlinear_elements(structure.tracks, ("bump-stop",), structure.wheelbase)
+    elements = nonlinear_elements(structure.tracks, ("bump-stop",), structure.wheelbase, layout=structure.layout)
     G = Rows.of([element.row for element in elements], fit.names).at(fit.values)
     motions = (fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(decays))
     largest = max(float(-(G @ motion[: G.shape[1]]).min()) for motion in motions)
@@ -183,7 +186,7 @@ def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float
         return [structure]
     variants = [
         replace(structure, engine_frequency=frequency, engine_place=place)
-        for frequency, place in engine_mountings(own["a"] + own["b"])
+        for frequency, place in engine_mountings(own.get("a", 0.0) + own.get("b", 0.0))
     ]
     # They differ in their values alone: one compilation of the equations of motion serves all.
     return [variant for variant in variants if has_positive_masses(structure.linear_models, start_values(variant, own))]

@@ -11,13 +11,13 @@ from sprung.errors import Problems, did_you_mean
 from sprung.estimation import USUAL_ENGINE_FREQUENCY, UsualValue, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
-    COORDINATES,
     EXTRAS,
     LINEAR_EXTRAS,
     REFINED,
     CarriedAt,
     Element,
     Heights,
+    Layout,
     LinearModel,
     Load,
     NonlinearModel,
@@ -25,18 +25,20 @@ from sprung.vehicle import (
     Tracks,
     coordinates,
     ground_contact_elements,
+    half_distances,
+    linear_elements,
     nonlinear_elements,
     parameter_names,
     parameters_of_term,
-    seven_degrees_of_freedom,
     stiffened_air_springs,
+    terms_of,
 )
 
 SEAT_LOAD = "seat-load"
 """Term of loads on seats: the campaign says whether it is there."""
 
-_SEPARATE = ("t_f1", "t_f2", "t_r1", "t_r2")
-_SHARED = ("t_f", "t_r")
+_BOTH: tuple[Tracks, ...] = ("separate", "shared")
+_SEPARATE, _SHARED = (tuple(half_distances(tracks).values()) for tracks in _BOTH)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +112,12 @@ class ModelStructure:
     @property
     def wheelbase(self) -> float:
         """Wheelbase over which the body twists and bends, m: the known one, or that of the sensors."""
-        return VehicleSize.of(self.known, self.campaign.sensors).wheelbase
+        return VehicleSize.of(self.known, self.campaign.sensors, self.layout).wheelbase
+
+    @property
+    def layout(self) -> Layout:
+        """Coordinates and wheel stations of the vehicle."""
+        return self.campaign.layout
 
     @cached_property
     def sensors(self) -> tuple[Sensor, ...]:
@@ -123,7 +130,7 @@ class ModelStructure:
         """The parameters: the vehicle's, and the masses of loads that are known with an uncertainty."""
         used = {drop.load for drop in self.campaign.drops}
         masses = [name for load in self.campaign.loads if load.name in used for name in load.uncertain_masses]
-        return (*parameter_names(self.tracks, self.terms), *masses)
+        return (*parameter_names(self.tracks, self.terms, self.layout), *masses)
 
     @cached_property
     def linear_models(self) -> Mapping[str, LinearModel]:
@@ -138,20 +145,21 @@ class ModelStructure:
     @cached_property
     def nonlinear_models(self) -> Mapping[str, NonlinearModel]:
         """Equations of motion by load name, with nonlinear forces."""
-        contact = ground_contact_elements(self.terms) if self.unilateral_tyres else ()
+        contact = ground_contact_elements(self.terms, self.layout) if self.unilateral_tyres else ()
         models = {}
         for load in self.campaign.loads:
-            at_wheels = load.mass_at_wheels(self.wheelbase)
-            forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase, at_wheels) + contact
+            at_wheels = load.mass_at_wheels(self.wheelbase, self.layout)
+            forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase, at_wheels, self.layout) + contact
             heights = self.heights_of(load.name)
             models[load.name] = NonlinearModel.of(self._elements(load), forces, self.names, load, heights)
         return models
 
     def _elements(self, load: Load) -> tuple[Element, ...]:
         """Return the linear elements of the vehicle, as it stands under a load."""
-        elements = seven_degrees_of_freedom(self.tracks, self.terms, self.heights_of(load.name), self.wheelbase)
-        at_wheels = load.mass_at_wheels(self.wheelbase)
-        return elements + stiffened_air_springs(at_wheels, self.tracks, self.terms, self.wheelbase)
+        heights, layout = self.heights_of(load.name), self.layout
+        elements = linear_elements(self.tracks, self.terms, heights, self.wheelbase, layout)
+        at_wheels = load.mass_at_wheels(self.wheelbase, layout)
+        return elements + stiffened_air_springs(at_wheels, self.tracks, self.terms, self.wheelbase, layout)
 
     @property
     def is_nonlinear(self) -> bool:
@@ -166,7 +174,7 @@ class ModelStructure:
     @property
     def needs_start(self) -> bool:
         """Whether it has coordinates that only a vehicle which is fitted already shows: no fit begins from nothing."""
-        return not {*coordinates(self.names)} <= {*COORDINATES, "z_e"}
+        return not {*coordinates(self.names)} <= {*self.layout.coordinates, "z_e"}
 
     @property
     def linear_terms(self) -> tuple[str, ...]:
@@ -208,7 +216,7 @@ def choose_structure(
     chosen_extras = (*(wanted or ()), *((SEAT_LOAD,) if is_soft and SEAT_LOAD not in (wanted or ()) else ()))
     forbidden = campaign.model.forbid if extras is None else ()
     for extra in chosen_extras:
-        _check_extra(extra, chosen_extras, forbidden, where, problems)
+        _check_extra(extra, campaign.layout, chosen_extras, forbidden, where, problems)
 
     apart = [name for name in _SEPARATE if name in campaign.known]
     together = [name for name in _SHARED if name in campaign.known]
@@ -224,9 +232,10 @@ def choose_structure(
     if SEAT_LOAD in chosen_extras and not is_soft:
         do = f"Say which items do, or remove '{SEAT_LOAD}'."
         problems.add(f"{where}: model.extras", "no item of a load on a seat", 'an item with on = "seat"', do)
-    names = parameter_names(chosen, chosen_extras) if not problems else ()
+    layout = campaign.layout
+    names = parameter_names(chosen, chosen_extras, layout) if not problems else ()
     for extra in EXTRAS:
-        brought = parameters_of_term(extra, chosen)
+        brought = parameters_of_term(extra, chosen, layout)
         for name in (one for one in brought if one in campaign.known and names and one not in names):
             problems.add(
                 f"{where}: known.{name}", "a parameter that the model does not have", f"the extra '{extra}'",
@@ -239,22 +248,27 @@ def choose_structure(
         known["wheelbase"] = campaign.wheelbase
     for load in campaign.loads:
         known |= load.uncertain_masses
-    undecided = tracks is None and campaign.model.tracks is None and not apart and not together
+    undecided = layout.rolls and tracks is None and campaign.model.tracks is None and not apart and not together
     # Where heights are known they say all that gravity does.
     said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.has_effect else ()))
     said += tuple(extra for extra, refined in REFINED.items() if refined in said)
-    free = tuple(extra for extra in EXTRAS if wanted is None and extra not in (*said, SEAT_LOAD))
+    free = tuple(
+        extra for extra in EXTRAS if wanted is None and extra not in (*said, SEAT_LOAD) and extra in terms_of(layout)
+    )
     ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
     return ModelStructure(campaign, chosen, ordered, known, undecided, free)
 
 
 def _check_extra(
-    extra: str, chosen: Collection[str], forbidden: Collection[str], where: str, problems: Problems
+    extra: str, layout: Layout, chosen: Collection[str], forbidden: Collection[str], where: str, problems: Problems
 ) -> None:
     """Add what is wrong with an extra that is wanted, beside all others that are."""
     if extra not in EXTRAS:
         do = did_you_mean(extra, EXTRAS)
         problems.add(f"{where}: model.extras", f"'{extra}'", f"any of {', '.join(EXTRAS)}", do)
+    elif extra not in terms_of(layout):
+        found, do = f"'{extra}', of a vehicle with model = \"{layout.model}\"", "Remove it."
+        problems.add(f"{where}: model.extras", found, f"any of {', '.join(terms_of(layout))}", do)
     elif REFINED.get(extra, extra) not in (extra, *chosen):
         problems.add(
             f"{where}: model.extras",

@@ -39,6 +39,6 @@ def usual_bending(own: Values, structure: ModelStructure, factor: float = 1.0) -
 def usual_occupants(own: Values, structure: ModelStructure, share: float = USUAL_OCCUPANTS) -> Values:
     """Return people who are a part of the sprung mass, on usual seats."""
     mass, omega = share * own["m_s"], 2 * np.pi * SEAT_FREQUENCY
-    place = -structure.seat_place * (own["a"] + own["b"])
+    place = -structure.seat_place * (own.get("a", 0.0) + own.get("b", 0.0))
     rates = {"m_o": mass, "k_o": mass * omega**2, "c_o": 2 * _SEAT_DAMPING * mass * omega}
     return {**rates, "x_o": place, "y_o": 0.0}

@@ -13,48 +13,66 @@ from pydantic import ValidationError
 
 from sprung.campaign import Drop
 from sprung.errors import Problems
-from sprung.vehicle import WHEELS, Load, Sensor, Vehicle, Wheel, parse_record, problems_of_record
+from sprung.vehicle import (
+    FULL,
+    STATIONS,
+    Layout,
+    Load,
+    Sensor,
+    Vehicle,
+    Wheel,
+    parameter_name,
+    parse_record,
+    problems_of_record,
+)
 
 Record = TypeVar("Record")
 
-FIVE_DROPS: tuple[tuple[Wheel, ...], ...] = (WHEELS, ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
-"""The wheels of the paper's bounce, front, rear, left and right drop."""
-
 
 def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
-    """Return eight accelerometers as in the paper: one at each corner of the body, one on each wheel.
+    """Return accelerometers as in the paper: one at each corner of the body, one on each wheel.
 
     Parameters
     ----------
     vehicle
-        The corners are 0.1 m ahead of its front and behind its rear axle, at the wider of its half-distances.
+        The corners are 0.1 m ahead of its front and behind its rear axle, at the wider of its half-distances; of a part of a
+        vehicle above its wheel stations.
 
     Returns
     -------
     tuple of Sensor
     """
     corners = []
-    for station in WHEELS:
-        x = 0.1 if station[0] == "f" else -vehicle.wheelbase - 0.1
-        half = max(getattr(vehicle, f"t_{station[0]}{suffix}") for suffix in "12")
-        y = half if station[1] == "l" else -half
-        corners.append(Sensor(channel=f"body_{station}", on="body", position=(x, y, 0.5)))
-    return (*corners, *(Sensor(channel=f"wheel_{station}", on=station) for station in WHEELS))
+    for wheel in vehicle.layout.wheels:
+        _, axle, side, end = STATIONS[wheel]
+        x = {1.0: 0.1, -1.0: -vehicle.wheelbase - 0.1, 0.0: 0.0}[end]
+        half = max(getattr(vehicle, parameter_name("t", axle, number)) for number in "12") if side else 0.0
+        corners.append(Sensor(channel=_channel("body", wheel), on="body", position=(x, side * half, 0.5)))
+    return (*corners, *(Sensor(channel=_channel("wheel", wheel), on=wheel) for wheel in vehicle.layout.wheels))
 
 
-def default_drops(loads: Iterable[Load]) -> tuple[Drop, ...]:
+def _channel(what: str, wheel: Wheel) -> str:
+    return what if wheel == "wheel" else f"{what}_{wheel}"
+
+
+def default_drops(loads: Iterable[Load], layout: Layout = FULL) -> tuple[Drop, ...]:
     """Return the paper's drops of all, front, rear, left and right wheels with each load.
 
     Parameters
     ----------
     loads
         All of them, ``empty`` among them where it is wanted.
+    layout
+        Of the vehicle.
 
     Returns
     -------
     tuple of Drop
     """
-    return tuple(Drop(load=load.name, wheels=wheels) for load in loads for wheels in FIVE_DROPS)
+    sides = [tuple(one for one in layout.wheels if STATIONS[one].side == side) for side in (1.0, -1.0)]
+    ends = [layout.wheels_of(axle) for axle in layout.axles]
+    which = dict.fromkeys((layout.wheels, *ends, *(wheels for wheels in sides if wheels)))
+    return tuple(Drop(load=load.name, wheels=wheels) for load in loads for wheels in which)
 
 
 def records(

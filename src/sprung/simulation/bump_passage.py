@@ -14,13 +14,13 @@ from sprung.simulation.ground import tyre_rates
 from sprung.simulation.half_sine_bump import drive_over_half_sine_bump
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, Wheel
+from sprung.vehicle import STATIONS, Load, Sensor, Vehicle, Wheel
 
 
 def half_sine_bumps(
     vehicle: Vehicle,
     *,
-    wheels: tuple[Wheel, ...] = ("fl", "rl"),
+    wheels: tuple[Wheel, ...] | None = None,
     height: float = 0.09,
     passage: float = 0.2,
     sensors: Sequence[Sensor | Mapping[str, Any]] | None = None,
@@ -41,7 +41,7 @@ def half_sine_bumps(
     vehicle, sensors, loads, rate, noise, seed, known, model, gravity
         As for `simulate`; here there is no noise unless asked for.
     wheels
-        That run over the bump, all at once; the paper's are the left ones. They stay on the ground, as in the paper.
+        That run over the bump, all at once: the left ones unless given, as in the paper. They stay on the ground.
     height, passage
         Of the bump, m, and how long it takes to pass it, s.
     duration, rest
@@ -58,6 +58,8 @@ def half_sine_bumps(
         If something does not fit together; all faults at once.
     """
     problems = Problems()
+    if wheels is None:
+        wheels = tuple(wheel for wheel in vehicle.layout.wheels if STATIONS[wheel].side >= 0)
     setup = SimulationSetup.of(
         vehicle,
         sensors=sensors,

@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, WHEELS, WHEELS_AT, Load, Matrices, Vehicle, Wheel, highest_derivatives
+from sprung.vehicle import EMPTY, STATIONS, Load, Matrices, Vehicle, Wheel, highest_derivatives
 
 Array = NDArray[np.float64]
+
+_FEWEST = 3
+"""Wheels on which a vehicle stands anyhow: fewer than four are all on their blocks."""
 
 
 def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
@@ -27,12 +30,12 @@ def tyre_rates(vehicle: Vehicle) -> dict[Wheel, tuple[float, float]]:
     dict
         By wheel station: stiffness, N/m, and damping, N s/m.
     """
-    return {
-        "fl": (vehicle.k_tf + vehicle.d_ktf, vehicle.c_tf),
-        "fr": (vehicle.k_tf - vehicle.d_ktf, vehicle.c_tf),
-        "rl": (vehicle.k_tr + vehicle.d_ktr, vehicle.c_tr),
-        "rr": (vehicle.k_tr - vehicle.d_ktr, vehicle.c_tr),
-    }
+    found = {}
+    for wheel in vehicle.layout.wheels:
+        _, axle, side, _ = STATIONS[wheel]
+        own = [vehicle.parameters.get(f"{rate}{axle}", 0.0) for rate in ("k_t", "d_kt", "c_t")]
+        found[wheel] = (own[0] + side * own[1], own[2])
+    return found
 
 
 def static_wheel_loads(vehicle: Vehicle, load: Load = EMPTY, gravity: float = STANDARD_GRAVITY) -> Array:
@@ -48,7 +51,7 @@ def static_wheel_loads(vehicle: Vehicle, load: Load = EMPTY, gravity: float = ST
     Returns
     -------
     ndarray
-        N, shape (4,), in the order of `WHEELS`. Negative where the wheel would have to be held down.
+        N, shape (wheel,), in the order of the wheel stations. Negative where the wheel would have to be held down.
     """
     return Ground.under(vehicle, load, gravity).wheel_loads
 
@@ -62,38 +65,42 @@ class Ground:
     matrices
         M, C and K of the loaded vehicle with all wheels on the ground.
     stiffness, damping
-        Of each tyre, N/m and N s/m, shape (4,).
+        Of each tyre, N/m and N s/m, shape (wheel,).
     wheel_loads
-        Static, N, shape (4,).
+        Static, N, shape (wheel,).
+    wheels_at
+        Positions of the wheels among the coordinates.
     """
 
     matrices: Matrices
     stiffness: Array
     damping: Array
     wheel_loads: Array
+    wheels_at: slice
 
     @classmethod
     def under(cls, vehicle: Vehicle, load: Load, gravity: float) -> Ground:
         """Return a vehicle with its load on the ground; gravity in m/s²."""
-        stiffness, damping = np.array([tyre_rates(vehicle)[station] for station in WHEELS]).T
-        model = vehicle.model(load)
+        stiffness, damping = np.array(list(tyre_rates(vehicle).values())).T
+        model = vehicle.linear_model(load)
         matrices = vehicle.matrices(load)
         sag = matrices.deflection(gravity * matrices.M @ model.heave)
-        return cls(matrices, stiffness, damping, stiffness * sag[WHEELS_AT])
+        wheels_at = vehicle.layout.wheels_at
+        return cls(matrices, stiffness, damping, stiffness * sag[wheels_at], wheels_at)
 
     @property
     def compression(self) -> Array:
-        """Tyre rate times tyre compression, N: rows over Y, shape (4, n + m + 1) with n coordinates, m with mass."""
-        rows = np.zeros((4, len(self.matrices.M) + self.matrices.massive + 1))
-        rows[:, WHEELS_AT] = -np.diag(self.stiffness)
+        """Tyre rate times tyre compression, N: rows over Y, shape (wheel, n + m + 1) with n coordinates, m with mass."""
+        rows = np.zeros((len(self.stiffness), len(self.matrices.M) + self.matrices.massive + 1))
+        rows[:, self.wheels_at] = -np.diag(self.stiffness)
         rows[:, -1] = self.wheel_loads
         return rows
 
     @property
     def force(self) -> Array:
-        """Force of each tyre if it is in contact, N: rows over Y, shape (4, n + m + 1)."""
+        """Force of each tyre if it is in contact, N: rows over Y, shape (wheel, n + m + 1)."""
         rows = self.compression
-        rows[:, len(self.matrices.M) :][:, WHEELS_AT] = -np.diag(self.damping)
+        rows[:, len(self.matrices.M) :][:, self.wheels_at] = -np.diag(self.damping)
         return rows
 
     def generator(self, contact: NDArray[np.bool_]) -> Array:
@@ -102,7 +109,7 @@ class Ground:
         Parameters
         ----------
         contact
-            Which wheels are on the ground, shape (4,).
+            Which wheels are on the ground, shape (wheel,).
 
         Returns
         -------
@@ -119,8 +126,8 @@ class Ground:
 
     @property
     def _wheels(self) -> Array:
-        """The rows of the wheels, shape (4, n)."""
-        wheels: Array = np.eye(len(self.matrices.M))[WHEELS_AT]
+        """The rows of the wheels, shape (wheel, n)."""
+        wheels: Array = np.eye(len(self.matrices.M))[self.wheels_at]
         return wheels
 
     def rest(self, blocks: Array) -> Array:
@@ -129,22 +136,23 @@ class Ground:
         Parameters
         ----------
         blocks
-            Height under each wheel, m, shape (4,).
+            Height under each wheel, m, shape (wheel,).
 
         Returns
         -------
         ndarray
-            X, shape (n,). One wheel at most is off its block: a vehicle that stands on flat ground rests on any three.
+            X, shape (n,). Of four wheels one at most is off its block: a vehicle that stands on flat ground rests on any three.
         """
         candidates = []
-        for lifted in (-1, 0, 1, 2, 3):
-            on = np.arange(4) != lifted
+        wheels = len(self.stiffness)
+        for lifted in range(-1, wheels if wheels > _FEWEST else 0):
+            on = np.arange(wheels) != lifted
             K = self.matrices.K - np.diag(np.where(on, 0.0, self.stiffness) @ self._wheels)
             F = np.where(on, self.stiffness * blocks, -self.wheel_loads) @ self._wheels
             X = self.matrices._replace(K=K).deflection(F)
-            force = self.wheel_loads - self.stiffness * (X[WHEELS_AT] - blocks)
+            force = self.wheel_loads - self.stiffness * (X[self.wheels_at] - blocks)
             candidates.append((float(np.min(np.where(on, force, -force))), X))
-        # In one of the five no tyre pulls and none sinks into the ground; where two are equal but for rounding, either will do.
+        # In one of them no tyre pulls and none sinks into the ground; where two are equal but for rounding, either will do.
         return max(candidates, key=lambda candidate: candidate[0])[1]
 
     def keeps_contact(self, Y: Array) -> bool:
@@ -156,7 +164,7 @@ class Ground:
         energy = 0.5 * (X @ K @ X + V @ M @ V)
         # Energy never grows, and by the Cauchy-Schwarz inequality |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
         # where 1 / K_z and 1 / M_z are the wheel's diagonal entries of K⁻¹ and M⁻¹: no tyre unloads by more.
-        flexibility = np.diag(self.matrices.deflection(np.eye(len(K))))[WHEELS_AT]
-        mobility = np.diag(np.linalg.inv(M))[WHEELS_AT]
+        flexibility = np.diag(self.matrices.deflection(np.eye(len(K))))[self.wheels_at]
+        mobility = np.diag(np.linalg.inv(M))[self.wheels_at]
         largest = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
         return bool(np.all(math.sqrt(2 * energy) * largest < self.wheel_loads))

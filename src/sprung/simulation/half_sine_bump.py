@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from sprung.vehicle import WHEELS, Matrices, Motion, Wheel, affine_response
+from sprung.vehicle import LAYOUTS, Matrices, Motion, Wheel, affine_response
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ def drive_over_half_sine_bump(
     matrices
         M, C and K.
     tyre_rates
-        Tyre stiffness and damping under each wheel, N/m and N s/m.
+        Tyre stiffness and damping under each wheel of the vehicle, in order, N/m and N s/m.
     wheels
         The wheels that run over the bump, all at the same time.
     height
@@ -51,9 +51,10 @@ def drive_over_half_sine_bump(
     """
     omega, n = np.pi / duration, len(matrices.M)
     force = np.zeros(n, dtype=complex)
+    layout = next(one for one in LAYOUTS.values() if one.wheels == tuple(tyre_rates))
     for station in wheels:
         stiffness, damping = tyre_rates[station]
-        force[3 + WHEELS.index(station)] = height * (stiffness + 1j * omega * damping)
+        force[layout.wheels_at.start + layout.wheels.index(station)] = height * (stiffness + 1j * omega * damping)
     dynamic = matrices.K - omega**2 * matrices.M + 1j * omega * matrices.C
     amplitude = np.linalg.solve(dynamic, force)  # X = Im(amplitude exp(iωt)), the steady-state response to the sine
     m = matrices.massive

@@ -21,7 +21,7 @@ from sprung.errors import Problems, SprungError, did_you_mean
 from sprung.simulation.ground import Ground
 from sprung.simulation.zero_crossing import find_first_zero
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import COORDINATES, EMPTY, WHEELS, Load, Motion, Vehicle, Wheel, affine_response
+from sprung.vehicle import COORDINATES, EMPTY, Load, Motion, Vehicle, Wheel, affine_response
 
 Array = NDArray[np.float64]
 
@@ -161,7 +161,7 @@ class DropMotion:
 def drop_from_blocks(
     vehicle: Vehicle,
     load: Load = EMPTY,
-    wheels: tuple[Wheel, ...] = WHEELS,
+    wheels: tuple[Wheel, ...] | None = None,
     height: float = 0.05,
     *,
     duration: float = 60.0,
@@ -205,11 +205,13 @@ def drop_from_blocks(
     >>> [event.kind for event in drop.events]
     ['lift-off', 'lift-off', 'landing', 'landing']
     """
+    stations = vehicle.layout.wheels
+    wheels = stations if wheels is None else wheels
     ground = Ground.under(vehicle, load, gravity)
     rest = _rest(ground, vehicle, load, wheels, height)
     Y = np.concatenate([rest, np.zeros(ground.matrices.massive), [1.0]])
     phases: list[Phase] = ["contact" if value >= 0 else "air" for value in ground.compression @ Y]
-    lifted = [wheel for wheel, phase in zip(WHEELS, phases, strict=True) if phase == "air"]
+    lifted = [wheel for wheel, phase in zip(stations, phases, strict=True) if phase == "air"]
     events = [ContactEvent(0.0, wheel, "lift-off") for wheel in lifted]
     # A tenth of the fastest time constant: within it a response has one extremum at most.
     step = 0.1 / float(np.abs(np.linalg.eigvals(ground.matrices.state)).max())
@@ -225,7 +227,7 @@ def drop_from_blocks(
             return DropMotion(starts, states, generators, tuple(events), change, len(rest))
         time, Y, station, phases[station] = change
         if contact[station] != (phases[station] == "contact"):
-            events.append(ContactEvent(time, WHEELS[station], "lift-off" if contact[station] else "landing"))
+            events.append(ContactEvent(time, stations[station], "lift-off" if contact[station] else "landing"))
     raise SprungError(
         f"the drop of {vehicle.name} was given up after {len(events)} lift-offs and landings within {time:g} s of the "
         "release; is the vehicle damped?"
@@ -259,16 +261,16 @@ def _next_change(
 def _rest(ground: Ground, vehicle: Vehicle, load: Load, wheels: tuple[Wheel, ...], height: float) -> Array:
     """Return the rest position X on the blocks, shape (coordinate,), or raise an error if there is none."""
     problems = Problems()
-    where = f"drop of {vehicle.name}, load '{load.name}'"
+    where, stations = f"drop of {vehicle.name}, load '{load.name}'", vehicle.layout.wheels
     if not wheels:
         problems.add(where, "no wheels", "at least one wheel on a block", "Name the wheels that are dropped.")
     for wheel in wheels:
-        if wheel not in WHEELS:
-            problems.add(where, f"wheel '{wheel}'", "a wheel station", did_you_mean(wheel, WHEELS))
+        if wheel not in stations:
+            problems.add(where, f"wheel '{wheel}'", "a wheel station", did_you_mean(wheel, stations))
     if not (math.isfinite(height) and height > 0):
         problems.add(where, f"blocks of {height} m", "a positive height", "Give the height of the blocks in m.")
     if np.any(ground.wheel_loads <= 0):
-        each = ", ".join(f"{wheel} {weight:.0f} N" for wheel, weight in zip(WHEELS, ground.wheel_loads, strict=True))
-        problems.add(where, f"static wheel loads {each}", "four wheels pressed to the ground", "Move the load inwards.")
+        each = ", ".join(f"{wheel} {weight:.0f} N" for wheel, weight in zip(stations, ground.wheel_loads, strict=True))
+        problems.add(where, f"static wheel loads {each}", "all wheels pressed to the ground", "Move the load inwards.")
     problems.raise_if_any()
-    return ground.rest(np.array([height if wheel in wheels else 0.0 for wheel in WHEELS]))
+    return ground.rest(np.array([height if wheel in wheels else 0.0 for wheel in stations]))

@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from sprung.simulation.ground import Ground
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import (
-    WHEELS,
-    WHEELS_AT,
+    STATIONS,
     ElementInput,
     Load,
     Motion,
@@ -27,8 +26,9 @@ from sprung.vehicle import (
     Vehicle,
     Wheel,
     ground_contact_elements,
+    layout_of,
+    linear_elements,
     nonlinear_elements,
-    seven_degrees_of_freedom,
     stiffened_air_springs,
 )
 
@@ -90,10 +90,11 @@ def simulate_nonlinear_drops(
         Displacement from static equilibrium with the load, velocity and acceleration, each (coordinate, samples).
     """
     values = np.array(list(vehicle.parameters.values()))
-    models, kind = _models(vehicle, [block.load for block in blocks], ground_contact_elements(vehicle.extras), gravity)
+    contact = ground_contact_elements(vehicle.extras, vehicle.layout)
+    models, kind = _models(vehicle, [block.load for block in blocks], contact, gravity)
     states = np.zeros((len(blocks), models[0].state_size))
     for state, block, which in zip(states, blocks, kind, strict=True):
-        heights = np.array([block.height if station in block.wheels else 0.0 for station in WHEELS])
+        heights = np.array([block.height if station in block.wheels else 0.0 for station in vehicle.layout.wheels])
         linear = Ground.under(vehicle, block.load, gravity).rest(heights) + models[which].sag(values)
         state[: len(linear)] = _rest(models[which], values, linear, heights)
     return _sample(models, kind, values, states, step, samples, start)
@@ -133,13 +134,14 @@ def _models(
     vehicle: Vehicle, loads: Sequence[Load], contact: Sequence[NonlinearElement], gravity: float
 ) -> tuple[list[NonlinearModel], NDArray[np.int64]]:
     """Return a model for each different load, and which of them each of the loads has."""
-    elements = seven_degrees_of_freedom(vehicle.tracks, vehicle.extras, vehicle.heights, vehicle.wheelbase)
+    tracks, extras, wheelbase, layout = vehicle.tracks, vehicle.extras, vehicle.wheelbase, vehicle.layout
+    elements = linear_elements(tracks, extras, vehicle.heights, wheelbase, layout)
     names, different = tuple(vehicle.parameters), list({load.name: load for load in loads}.values())
     models = []
     for load in different:
-        at_wheels = load.mass_at_wheels(vehicle.wheelbase)
-        further = stiffened_air_springs(at_wheels, vehicle.tracks, vehicle.extras, vehicle.wheelbase)
-        nonlinear = nonlinear_elements(vehicle.tracks, vehicle.extras, vehicle.wheelbase, at_wheels)
+        at_wheels = load.mass_at_wheels(wheelbase, layout)
+        further = stiffened_air_springs(at_wheels, tracks, extras, wheelbase, layout)
+        nonlinear = nonlinear_elements(tracks, extras, wheelbase, at_wheels, layout)
         models.append(
             NonlinearModel.of(elements + further, [*nonlinear, *contact], names, load, vehicle.heights, gravity)
         )
@@ -153,11 +155,12 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array) ->
     K = matrices.K
     G, directions = forces.rows.at(values), forces.directions(values)
     offsets = model.travel_offsets(values)[0]
-    tyres = np.array([values[model.names.index(f"k_t{station[0]}")] for station in WHEELS])
+    layout = layout_of(model.names)
+    tyres = np.array([values[model.names.index(f"k_t{STATIONS[wheel].axle}")] for wheel in layout.wheels])
     load = -K @ model.sag(values)
-    load[WHEELS_AT] -= tyres * heights
+    load[layout.wheels_at] -= tyres * heights
     raised = np.zeros(forces.number)
-    raised[-4:] = heights
+    raised[-len(heights) :] = heights
     X = start
     for _ in range(_ITERATIONS):
         travel = G @ X - raised + offsets

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Rows, Sensor, Vehicle
+from sprung.vehicle import Row, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
 
@@ -74,13 +74,15 @@ class SensorErrors:
         parameters = vehicle.parameters
         rows = Rows.of([sensor.row for sensor in moved], tuple(parameters)).at(list(parameters.values()))
         readings = np.cos(np.linalg.norm(self.tilt, axis=1))[:, None] * (rows @ acceleration)
-        pitch, roll = STANDARD_GRAVITY * displacement[1:3]
+        angles = Rows.of([Row({"theta": 1.0}), Row({"phi": 1.0})], tuple(parameters)).at(list(parameters.values()))
+        pitch, roll = STANDARD_GRAVITY * (angles @ displacement)
+        by_pitch, by_roll = angles @ acceleration
         for channel, (sensor, (forward, left)) in enumerate(zip(sensors, np.sin(self.tilt), strict=True)):
             if sensor.position is not None:
                 # Nose down and left side up are positive: what is above the axis then moves forward and to the right.
                 height = 0.0 if vehicle.cg_height is None else sensor.position[2] - vehicle.cg_height
-                readings[channel] += forward * (height * acceleration[1] - pitch)
-                readings[channel] -= left * (height * acceleration[2] - roll)
+                readings[channel] += forward * (height * by_pitch - pitch)
+                readings[channel] -= left * (height * by_roll - roll)
         readings *= 1 + self.gain[:, None]
         return np.array([_delayed(*pair, rate) for pair in zip(readings, self.delay.tolist(), strict=True)])
 

@@ -26,7 +26,7 @@ from sprung.simulation.arguments import check_unique, default_drops, default_sen
 from sprung.simulation.sensor_errors import SensorErrors
 from sprung.simulation.sensor_model import Sensing
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Sensor, Vehicle
+from sprung.vehicle import EMPTY, STATIONS, Load, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
 
@@ -85,7 +85,7 @@ class SimulationSetup:
             Takes what does not fit.
         """
         chosen_sensors = default_sensors(vehicle) if sensors is None else records(Sensor, "sensors", sensors, problems)
-        placed = [sensor.on in WHEELS or sensor.position is not None for sensor in chosen_sensors]
+        placed = [sensor.on in STATIONS or sensor.position is not None for sensor in chosen_sensors]
         for i, known_place in enumerate(placed):
             if not known_place:
                 do = "A body sensor needs its position = [x, y, z], m; a wheel sensor its station."
@@ -100,7 +100,10 @@ class SimulationSetup:
                 do = "A load needs items = [...] or added = {...}."
                 problems.add(f"simulate: loads[{i}]", "neither items nor added", "what the load adds", do)
         all_loads = (EMPTY, *(load for load in given_loads if load != EMPTY))
-        chosen_drops = default_drops(all_loads) if drops is None else records(Drop, "drops", drops, problems)
+        given_drops = (
+            default_drops(all_loads, vehicle.layout) if drops is None else records(Drop, "drops", drops, problems)
+        )
+        chosen_drops = tuple(drop.on_wheels_of(vehicle.layout) for drop in given_drops)
 
         for i, drop in enumerate(chosen_drops):
             if not drop.wheels:
@@ -121,9 +124,8 @@ class SimulationSetup:
             problems.add("simulate: drops", f"load '{name}'", "the name of a load", did_you_mean(name, names))
         stated_sensors = chosen_sensors if sensor_errors else tuple(sensor.exact for sensor in chosen_sensors)
         sensing = Sensing.of(stated_sensors, rate, noise, offset=offset, gravity=gravity, problems=problems)
-        stated = {"wheelbase": KnownValue(vehicle.wheelbase)} | parse_known_values(
-            known or {}, "simulate: known", problems
-        )
+        tape = {"wheelbase": KnownValue(vehicle.wheelbase)} if vehicle.layout.pitches else {}
+        stated = tape | parse_known_values(known or {}, "simulate: known", problems)
         _check_plausible(vehicle, chosen_sensors, all_loads, chosen_drops, stated, problems)
         return cls(
             vehicle,
@@ -187,7 +189,8 @@ class SimulationSetup:
             sensors=sensors,
             drops=tuple(recorded),
             loads=self.loads,
-            wheelbase=self.known["wheelbase"],
+            vehicle_model=self.vehicle.model,
+            wheelbase=self.known.get("wheelbase"),
             cg_height=self.vehicle.cg_height,
             wheel_height=self.vehicle.wheel_height,
             roll_axis_height=self.vehicle.roll_axis_height,
@@ -211,7 +214,8 @@ def _check_plausible(
         loads=loads,
         drops=drops,
         known={name: quantity for name, quantity in known.items() if name != "wheelbase"},
-        wheelbase=known["wheelbase"],
+        vehicle_model=vehicle.model,
+        wheelbase=known.get("wheelbase"),
         heights=vehicle.heights,
         whole=False,
         problems=problems,

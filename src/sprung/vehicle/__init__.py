@@ -16,22 +16,33 @@ from sprung.vehicle.elements import (
     LINEAR_EXTRAS,
     REFINED,
     Element,
-    LinearLaw,
-    NonlinearElement,
-    Tracks,
-    ground_contact_elements,
-    half_distances,
-    nonlinear_elements,
-    seven_degrees_of_freedom,
+    linear_elements,
     stiffened_air_springs,
 )
 from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import COORDINATES, WHEELS, WHEELS_AT, Row, Wheel, coordinates, heave, state_variables
+from sprung.vehicle.kinematics import Row, coordinates, heave, state_variables
+from sprung.vehicle.layout import (
+    AXLES,
+    COORDINATES,
+    FULL,
+    LAYOUTS,
+    STATIONS,
+    WHEELS,
+    Layout,
+    LinearLaw,
+    Tracks,
+    VehicleModel,
+    Wheel,
+    half_distances,
+    layout_of,
+    parameter_name,
+)
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
+from sprung.vehicle.nonlinear_elements import NonlinearElement, ground_contact_elements, nonlinear_elements
 from sprung.vehicle.nuisances import (
     LOAD_MASS,
     SENSOR_UNKNOWNS,
@@ -42,33 +53,36 @@ from sprung.vehicle.nuisances import (
     sensor_unknown,
 )
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
+from sprung.vehicle.parameter_values import all_names
 from sprung.vehicle.parameters import (
-    EXTRA_PARAMETERS,
     NEUTRAL,
     PARAMETERS,
     Parameter,
     parameter_names,
     parameters_of_term,
     separate_track_names,
+    terms_of,
     with_separate_tracks,
 )
 from sprung.vehicle.readout import Readout
 from sprung.vehicle.response import Motion, affine_response, free_decay
 from sprung.vehicle.segments import integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
-from sprung.vehicle.sensor import Sensor, uncertainties_of
+from sprung.vehicle.sensor import Sensor, SensorPlace, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.tyre_rates import differentiate_tyre_rates_at_rest, with_tyre_rates_at_rest
 from sprung.vehicle.vehicle import Vehicle
 
 __all__ = [
+    "AXLES",
     "CHARACTERISTICS",
     "COORDINATES",
     "DERIVED",
     "EMPTY",
     "EXTRAS",
-    "EXTRA_PARAMETERS",
     "FORCE_CURVES",
+    "FULL",
+    "LAYOUTS",
     "LEVEL",
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
@@ -79,10 +93,10 @@ __all__ = [
     "REFINED",
     "SCHOOL_BUS",
     "SENSOR_UNKNOWNS",
+    "STATIONS",
     "TABLE_1_CAR",
     "UNKNOWN_KEY",
     "WHEELS",
-    "WHEELS_AT",
     "WHEEL_LOADS",
     "Added",
     "CarriedAt",
@@ -93,6 +107,7 @@ __all__ = [
     "Finite",
     "Heights",
     "Item",
+    "Layout",
     "LinearLaw",
     "LinearModel",
     "Load",
@@ -108,13 +123,16 @@ __all__ = [
     "Row",
     "Rows",
     "Sensor",
+    "SensorPlace",
     "SensorQuantity",
     "Stepper",
     "Tracks",
     "Trajectory",
     "Vehicle",
+    "VehicleModel",
     "Wheel",
     "affine_response",
+    "all_names",
     "body_sinking",
     "checked_record",
     "coordinates",
@@ -129,7 +147,10 @@ __all__ = [
     "integrate_near",
     "is_nuisance",
     "is_of_sensor",
+    "layout_of",
+    "linear_elements",
     "nonlinear_elements",
+    "parameter_name",
     "parameter_names",
     "parameter_of",
     "parameters_of_term",
@@ -139,10 +160,10 @@ __all__ = [
     "segments_of",
     "sensor_unknown",
     "separate_track_names",
-    "seven_degrees_of_freedom",
     "state_matrix",
     "state_variables",
     "stiffened_air_springs",
+    "terms_of",
     "uncertainties_of",
     "wheel_loads",
     "with_separate_tracks",

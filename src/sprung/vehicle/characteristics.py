@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.kinematics import WHEELS_AT
+from sprung.vehicle.layout import layout_of, parameter_name
 from sprung.vehicle.model import LinearModel
 
 Real = NDArray[np.float64]
@@ -49,15 +49,19 @@ class Characteristic(NamedTuple):
     signed: bool = False
 
 
+def _wheels(p: Values, axle: str) -> int:
+    return len(layout_of(p).wheels_of(axle))
+
+
 def _corner_mass(p: Values, axle: str) -> Any:
-    """Sprung mass on one wheel, kg: half of what the axle carries."""
-    lever = p["b"] if axle == "f" else p["a"]
-    return p["m_s"] * lever / (p["a"] + p["b"]) / 2
+    """Sprung mass on one wheel, kg: its part of what the axle carries."""
+    share = p[{"f": "b", "r": "a"}[axle]] / (p["a"] + p["b"]) if axle else 1.0
+    return p["m_s"] * share / _wheels(p, axle)
 
 
 def _damper_rate(p: Values, axle: str) -> Any:
     """Damper rate, N s/m: the mean of compression and rebound, where these differ."""
-    return p[f"c_s{axle}"] * (1 + p.get(f"r_{axle}", 1.0)) / 2
+    return p[f"c_s{axle}"] * (1 + p.get(parameter_name("r", axle), 1.0)) / 2
 
 
 def _ride_frequency(p: Values, axle: str) -> Any:
@@ -79,11 +83,11 @@ def _hop_damping(p: Values, axle: str) -> Any:
 
 
 def _total_mass(p: Values) -> Any:
-    return p["m_s"] + 2 * (p["m_uf"] + p["m_ur"])
+    return p["m_s"] + sum(_wheels(p, axle) * p[f"m_u{axle}"] for axle in layout_of(p).axles)
 
 
 def _axle_mass(p: Values, axle: str) -> Any:
-    return 2 * (_corner_mass(p, axle) + p[f"m_u{axle}"])
+    return _wheels(p, axle) * (_corner_mass(p, axle) + p[f"m_u{axle}"])
 
 
 def _cg_from_front_axle(p: Values) -> Any:
@@ -107,6 +111,9 @@ def _of_axle(function: Callable[[Values, str], Any], axle: str) -> Callable[[Val
 
 
 _AXLES = {"front": "f", "rear": "r"}
+_EITHER = {**_AXLES, "": ""}
+_OF_TWO = frozenset({"a"})
+"""Parameters of a vehicle with two axles."""
 
 _AXLE_QUANTITIES: Mapping[str, tuple[str, str, Callable[[Values, str], Any]]] = {
     "ride_frequency": ("Hz", "natural frequency of the body on spring and tyre, {} quarter car", _ride_frequency),
@@ -117,13 +124,20 @@ _AXLE_QUANTITIES: Mapping[str, tuple[str, str, Callable[[Values, str], Any]]] = 
 
 CHARACTERISTICS: Mapping[str, Characteristic] = {
     "total_mass": Characteristic("kg", "mass of the empty vehicle", _total_mass),
-    "front_axle_mass": Characteristic("kg", "on the front wheels of the empty vehicle", _of_axle(_axle_mass, "f")),
-    "rear_axle_mass": Characteristic("kg", "on the rear wheels of the empty vehicle", _of_axle(_axle_mass, "r")),
+    "front_axle_mass": Characteristic(
+        "kg", "on the front wheels of the empty vehicle", _of_axle(_axle_mass, "f"), _OF_TWO
+    ),
+    "rear_axle_mass": Characteristic(
+        "kg", "on the rear wheels of the empty vehicle", _of_axle(_axle_mass, "r"), _OF_TWO
+    ),
     "front_axle_share": Characteristic(
-        "1", "part of the empty vehicle's mass on its front wheels", lambda p: _axle_mass(p, "f") / _total_mass(p)
+        "1",
+        "part of the empty vehicle's mass on its front wheels",
+        lambda p: _axle_mass(p, "f") / _total_mass(p),
+        _OF_TWO,
     ),
     "cg_from_front_axle": Characteristic(
-        "m", "centre of gravity of the empty vehicle, behind the front axle", _cg_from_front_axle
+        "m", "centre of gravity of the empty vehicle, behind the front axle", _cg_from_front_axle, _OF_TWO
     ),
     "cg_left": Characteristic(
         "m",
@@ -133,9 +147,11 @@ CHARACTERISTICS: Mapping[str, Characteristic] = {
         signed=True,
     ),
     **{
-        f"{name}_{quantity}": Characteristic(unit, meaning.format(name), _of_axle(function, axle))
+        f"{name}_{quantity}".lstrip("_"): Characteristic(
+            unit, " ".join(meaning.format(name).split()), _of_axle(function, axle), frozenset({f"m_u{axle}"})
+        )
         for quantity, (unit, meaning, function) in _AXLE_QUANTITIES.items()
-        for name, axle in _AXLES.items()
+        for name, axle in _EITHER.items()
     },
     **{
         f"{name}_{quantity}": Characteristic(unit, meaning.format(what), function(index, mass), frozenset({mass}))
@@ -154,19 +170,19 @@ CHARACTERISTICS: Mapping[str, Characteristic] = {
 
 DERIVED: Mapping[str, Characteristic] = {
     **{name: CHARACTERISTICS[name] for name in ("total_mass", "front_axle_mass", "rear_axle_mass")},
-    "wheelbase": Characteristic("m", "front axle to rear axle", lambda p: p["a"] + p["b"]),
+    "wheelbase": Characteristic("m", "front axle to rear axle", lambda p: p["a"] + p["b"], _OF_TWO),
 }
 """Those that a campaign may state as known beforehand, by the names it gives them."""
 
 
 MOTION_RATIOS: Mapping[str, tuple[str, str, str]] = {
-    f"{part}_{name}": (
+    f"{part}_{name}".rstrip("_"): (
         f"{letter}_s{axle}",
         f"{letter}_s{axle}_at_{part}",
-        f"{part} rate at each {name} {part}: {letter}_s{axle} over the squared motion ratio",
+        " ".join(f"{part} rate at each {name} {part}: {letter}_s{axle} over the squared motion ratio".split()),
     )
     for part, letter in (("spring", "k"), ("damper", "c"))
-    for name, axle in _AXLES.items()
+    for name, axle in _EITHER.items()
 }
 """Motion ratios, travel of a spring or damper per travel of its wheel, by the names that a campaign gives them.
 
@@ -180,6 +196,9 @@ WHEEL_LOADS: Mapping[str, str] = {
     "front_right_wheel_load": "static load of the right front wheel of the empty vehicle",
     "rear_left_wheel_load": "static load of the left rear wheel of the empty vehicle",
     "rear_right_wheel_load": "static load of the right rear wheel of the empty vehicle",
+    "wheel_load": "static load of each wheel of the empty vehicle",
+    "left_wheel_load": "static load of the left wheel of the empty vehicle",
+    "right_wheel_load": "static load of the right wheel of the empty vehicle",
 }
 """Meaning of the static wheel loads, N, by name: one for each axle where left and right are alike."""
 
@@ -228,17 +247,18 @@ def wheel_loads(model: LinearModel, values: Real) -> tuple[Real, Real]:
     Returns
     -------
     loads
-        N, shape (4,), in the order of `WHEELS`.
+        N, shape (wheel,), in the order of the wheel stations.
     gradient
-        By each parameter, SI, shape (4, parameter).
+        By each parameter, SI, shape (wheel, parameter).
     """
     matrices, heave = model.matrices(values), model.heave
     M, _, K = matrices
     dM, _, dK = model.slopes(values)
+    wheels = layout_of(model.names).wheels_at
     # Heave strains nothing but the tyres: K times it is their rates.
-    tyres, tyre_slopes = (K @ heave)[WHEELS_AT], (dK @ heave)[:, WHEELS_AT]
+    tyres, tyre_slopes = (K @ heave)[wheels], (dK @ heave)[:, wheels]
     sag = matrices.deflection(STANDARD_GRAVITY * M @ heave)
     sag_slopes = matrices.deflection((STANDARD_GRAVITY * dM @ heave - dK @ sag).T).T
-    loads = tyres * sag[WHEELS_AT]
-    gradient = tyre_slopes * sag[WHEELS_AT] + tyres * sag_slopes[:, WHEELS_AT]
+    loads = tyres * sag[wheels]
+    gradient = tyre_slopes * sag[wheels] + tyres * sag_slopes[:, wheels]
     return loads, gradient.T

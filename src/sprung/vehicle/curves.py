@@ -12,20 +12,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.elements import Element, LinearLaw, NonlinearElement
+from sprung.vehicle.elements import Element
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.kinematics import Row
+from sprung.vehicle.layout import LinearLaw
+from sprung.vehicle.nonlinear_elements import NonlinearElement
 
 Array = NDArray[np.float64]
 
 
+_RATES: Mapping[str, tuple[str, LinearLaw]] = {
+    "damper": ("c_s", "damper"),
+    "spring": ("k_s", "spring"),
+    "tyre": ("k_t", "spring"),
+}
+
 FORCE_CURVES: Mapping[str, tuple[str, LinearLaw]] = {
-    "damper_front": ("c_sf", "damper"),
-    "damper_rear": ("c_sr", "damper"),
-    "spring_front": ("k_sf", "spring"),
-    "spring_rear": ("k_sr", "spring"),
-    "tyre_front": ("k_tf", "spring"),
-    "tyre_rear": ("k_tr", "spring"),
+    f"{part}{end}": (f"{rate}{axle}", law)
+    for part, (rate, law) in _RATES.items()
+    for end, axle in (("_front", "f"), ("_rear", "r"), ("", ""))
 }
 """Every force curve by its name in a result: the linear rate on whose row it is, and the law of the linear elements."""
 

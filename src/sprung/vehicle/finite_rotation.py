@@ -18,9 +18,8 @@ from scipy.signal import lfilter
 
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
-from sprung.vehicle.elements import LinearLaw, Tracks, half_distances
 from sprung.vehicle.heights import Heights
-from sprung.vehicle.kinematics import WHEELS, Wheel
+from sprung.vehicle.layout import WHEELS, LinearLaw, Tracks, Wheel, half_distances
 from sprung.vehicle.load import Load
 from sprung.vehicle.model import LinearModel, Rows, highest_derivatives
 from sprung.vehicle.sensor import Sensor

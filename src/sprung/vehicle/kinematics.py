@@ -18,27 +18,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
 
 from sprung.display import shown
-
-Wheel = Literal["fl", "fr", "rl", "rr"]
-"""A wheel station: front left, front right, rear left, rear right."""
-
-WHEELS: tuple[Wheel, ...] = ("fl", "fr", "rl", "rr")
-"""Wheel stations in the order of the coordinates: A, B, C, D of the paper."""
-
-AXLES: tuple[tuple[Wheel, Wheel], ...] = (("fl", "fr"), ("rl", "rr"))
-"""Left and right wheel of each axle, front first."""
-
-COORDINATES = ("z_s", "theta", "phi", "z_uA", "z_uB", "z_uC", "z_uD")
-"""The paper's coordinates, displacements in m and angles in rad."""
-
-WHEELS_AT = slice(3, 7)
-"""Positions of the wheels among the coordinates."""
-
-_LETTERS = "ABCD"
-"""Letters of the wheel stations in the paper."""
+from sprung.vehicle.layout import LAYOUTS, STATIONS, Wheel, layout_of
 
 SEAT_LOADS = ("z_l1", "z_l2", "z_l3", "z_l4")
 """Coordinates of the items of a load on seats: vertical displacements in m. Every load has all, for an item or for none."""
@@ -52,17 +34,14 @@ _WITH_MASS: Mapping[str, tuple[str, ...]] = {
 }
 """By parameter: the coordinates with mass that a vehicle with it has beside the paper's."""
 
-_WITHOUT_MASS: Mapping[str, tuple[str, ...]] = {
-    "k_df": ("x_dA", "x_dB", "x_dC", "x_dD"),
-    "k_zf": ("x_zA", "x_zB", "x_zC", "x_zD"),
-}
-"""By parameter: the coordinates without mass, likewise: travels of dampers that a spring connects, at each wheel."""
+_WITHOUT_MASS: Mapping[str, str] = {"k_df": "x_d", "k_d": "x_d", "k_zf": "x_z", "k_z": "x_z"}
+"""By parameter: the coordinates without mass, likewise, each without its wheel: travels of dampers on a spring."""
 
 _BESIDE, _RISE_AT_SEATS = 0.37, 0.9
 """Half-distance of two people beside each other, m, and what the body under their seats rises as it bends, over the rise of its
 middle: 0.75 to 1 in the middle half of the wheelbase."""
 
-_RISES_IN_HEAVE = frozenset({"z_s", "z_uA", "z_uB", "z_uC", "z_uD", "z_e", "z_o", *SEAT_LOADS})
+_RISES_IN_HEAVE = frozenset({"z_s", *(station.coordinate for station in STATIONS.values()), "z_e", "z_o", *SEAT_LOADS})
 """Coordinates that are vertical displacements over the ground."""
 
 UNCONSTRAINED = ("x", "y", "psi")
@@ -129,14 +108,18 @@ def coordinates(names: Collection[str]) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The paper's seven, others that move a mass, then those without mass.
+        Those of body and wheels, others that move a mass, then those without mass.
     """
-    return (*massive_coordinates(names), *_of(_WITHOUT_MASS, names))
+    suffixes = [STATIONS[wheel].suffix for wheel in layout_of(names).wheels]
+    travels = [travel for name, travel in _WITHOUT_MASS.items() if name in names]
+    return (*massive_coordinates(names), *(f"{travel}{suffix}" for travel in travels for suffix in suffixes))
 
 
 def massive_coordinates(names: Collection[str]) -> tuple[str, ...]:
     """Return the names of those coordinates of a vehicle that move a mass; `names` are its parameters."""
-    return (*COORDINATES, *_of(_WITH_MASS, names))
+    layout = layout_of(names)
+    added = (one for name, further in _WITH_MASS.items() if name in names for one in further)
+    return (*layout.coordinates, *(one for one in added if layout.rolls or one != "dz_o"))
 
 
 def state_variables(names: Collection[str]) -> tuple[tuple[str, int], ...]:
@@ -173,8 +156,11 @@ def heave(names: Collection[str]) -> tuple[float, ...]:
     return tuple(float(name in _RISES_IN_HEAVE) for name in coordinates(names))
 
 
-def _of(table: Mapping[str, tuple[str, ...]], names: Collection[str]) -> tuple[str, ...]:
-    return tuple(coordinate for name, added in table.items() if name in names for coordinate in added)
+def unconstrained(names: Collection[str]) -> tuple[str, ...]:
+    """Return those of `UNCONSTRAINED` along which the body of a vehicle may move; `names` are its parameters."""
+    layout = layout_of(names)
+    free = {"x": layout.pitches, "y": layout.rolls, "psi": layout.pitches and layout.rolls}
+    return tuple(coordinate for coordinate in UNCONSTRAINED if free[coordinate])
 
 
 def body_point(x: float, y: float) -> Row:
@@ -247,7 +233,7 @@ def sideways_at(axle: str, height: float) -> Row:
     height
         Above the centre of gravity, m.
     """
-    along: dict[str, Mapping[str, Shape]] = {"f": {"a": {"psi": 1.0}}, "r": {"b": {"psi": -1.0}}}
+    along: Mapping[str, Mapping[str, Shape]] = {"f": {"a": {"psi": 1.0}}, "r": {"b": {"psi": -1.0}}}
     return Row({"y": 1.0, "psi": 0.0, "phi": -height}, along.get(axle, {}))
 
 
@@ -270,14 +256,9 @@ def bounce(off_centre: bool = False, wheelbase: float = 0.0) -> Row:
     return Row({"z_s": 1.0}, {**own, "b_v": {"q_v": sag(wheelbase)}})
 
 
-def side(station: Wheel) -> float:
-    """1 for a wheel on the left, -1 for one on the right."""
-    return 1.0 if station[1] == "l" else -1.0
-
-
 def wheel(station: Wheel) -> Row:
     """Vertical displacement of one wheel."""
-    return Row({COORDINATES[WHEELS_AT][WHEELS.index(station)]: 1.0})
+    return Row({STATIONS[station].coordinate: 1.0})
 
 
 def corner(station: Wheel, half_distance: str, wheelbase: float = 0.0) -> Row:
@@ -288,14 +269,14 @@ def corner(station: Wheel, half_distance: str, wheelbase: float = 0.0) -> Row:
     station
         The wheel station.
     half_distance
-        Name of the parameter: ``t_f2`` for the front springs.
+        Name of the parameter: ``t_f2`` for the front springs; of no effect where the sides are not told apart.
     wheelbase
         Of a body that twists, m.
     """
-    own = side(station)
-    half_angle = 0.5 * wheelbase if station[0] == "f" else -0.5 * wheelbase
-    along = {"a": {"theta": -1.0}} if station[0] == "f" else {"b": {"theta": 1.0}}
-    return Row({"z_s": 1.0}, {**along, half_distance: {"phi": own, "q_w": own * half_angle}})
+    _, _, side, end = STATIONS[station]
+    along = {1.0: {"a": {"theta": -1.0}}, -1.0: {"b": {"theta": 1.0}}, 0.0: {}}[end]
+    across = {half_distance: {"phi": side, "q_w": side * end * 0.5 * wheelbase}} if side else {}
+    return Row({"z_s": 1.0}, {**along, **across})
 
 
 def engine() -> Row:
@@ -344,24 +325,20 @@ def on_axle(station: Wheel, share: str) -> Row:
     share
         Name of the parameter of its place: 0 in the middle, 1 at the wheel.
     """
-    own, other = (COORDINATES[WHEELS_AT][WHEELS.index(one)] for one in (station, _beside(station)))
+    own = STATIONS[station].coordinate
+    pair = next(pair for layout in LAYOUTS.values() for pair in layout.pairs if station in pair)
+    other = next(STATIONS[one].coordinate for one in pair if one != station)
     return Row({own: 0.5, other: 0.5}, {share: {own: 0.5, other: -0.5}})
-
-
-def _beside(station: Wheel) -> Wheel:
-    """Return the other wheel of the axle."""
-    left, right = AXLES["fr".index(station[0])]
-    return right if station == left else left
 
 
 def behind_mount(station: Wheel) -> Row:
     """Travel of the damper at one wheel that a rubber mount connects to the body."""
-    return Row({f"x_d{_LETTERS[WHEELS.index(station)]}": 1.0})
+    return Row({f"x_d{STATIONS[station].suffix}": 1.0})
 
 
 def behind_branch(station: Wheel) -> Row:
     """Travel of the damper in the :term:`Zener branch` at one wheel."""
-    return Row({f"x_z{_LETTERS[WHEELS.index(station)]}": 1.0})
+    return Row({f"x_z{STATIONS[station].suffix}": 1.0})
 
 
 def travel(station: Wheel, half_distance: str, share: str | None = None, wheelbase: float = 0.0) -> Row:

@@ -13,7 +13,7 @@ from sprung.vehicle import kinematics
 from sprung.vehicle.checked_record import checked_record
 from sprung.vehicle.elements import Element
 from sprung.vehicle.heights import LEVEL, Heights
-from sprung.vehicle.kinematics import Wheel
+from sprung.vehicle.layout import FULL, STATIONS, Layout, Wheel
 from sprung.vehicle.nuisances import LOAD_MASS
 
 _NOTHING = 1e-3
@@ -68,7 +68,7 @@ class Item:
 
     @model_validator(mode="after")
     def _somewhere(self) -> Item:
-        if (self.position is None) != (self.on in kinematics.WHEELS):
+        if (self.position is None) != (self.on in STATIONS):
             raise ValueError('an item needs either a position on the body or the wheel it sits on (on = "fl")')
         return self
 
@@ -91,9 +91,7 @@ class Item:
         """
         mass = self.mass if mass is None else mass
         if self.position is None:
-            yield from (
-                Element("mass", mass, kinematics.wheel(wheel)) for wheel in kinematics.WHEELS if wheel == self.on
-            )
+            yield from (Element("mass", mass, kinematics.wheel(wheel)) for wheel in STATIONS if wheel == self.on)
         else:
             x, y, z = self.position
             if seat is None:
@@ -142,6 +140,8 @@ class Added:
     """kg on each front wheel: the paper's simulation adds about 10 % to every mass (its lost eq. (20))."""
     m_ur: NotNegative = 0.0
     """kg on each rear wheel."""
+    m_u: NotNegative = 0.0
+    """kg on each wheel of a vehicle with one axle."""
 
     @model_validator(mode="before")
     @classmethod
@@ -165,10 +165,9 @@ class Added:
         yield Element("mass", self.mass if mass is None else mass, kinematics.bounce())
         yield Element("mass", self.I_yy, kinematics.pitch())
         yield Element("mass", self.I_xx, kinematics.roll())
-        yield Element("mass", self.m_uf, kinematics.wheel("fl"))
-        yield Element("mass", self.m_uf, kinematics.wheel("fr"))
-        yield Element("mass", self.m_ur, kinematics.wheel("rl"))
-        yield Element("mass", self.m_ur, kinematics.wheel("rr"))
+        at_wheel = {"f": self.m_uf, "r": self.m_ur, "": self.m_u}
+        for wheel, station in STATIONS.items():
+            yield Element("mass", at_wheel[station.axle], kinematics.wheel(wheel))
 
 
 @checked_record
@@ -202,26 +201,34 @@ class Load:
         """Whether an item lies on a seat."""
         return any(item.is_soft for item in self.items)
 
-    @property
-    def mass(self) -> float:
-        """Total mass, kg."""
-        if self.added is not None:
-            return self.added.mass + 2 * (self.added.m_uf + self.added.m_ur)
-        return sum(item.mass for item in self.items)
+    def total_mass(self, layout: Layout = FULL) -> float:
+        """Return the mass on a vehicle of a layout, kg."""
+        if self.added is None:
+            return sum(item.mass for item in self.items)
+        at_wheel = {"f": self.added.m_uf, "r": self.added.m_ur, "": self.added.m_u}
+        return self.added.mass + sum(at_wheel[STATIONS[wheel].axle] for wheel in layout.wheels)
 
-    def mass_at_wheels(self, wheelbase: float) -> tuple[float, float]:
-        """Return what each front and each rear wheel carries of what is on the body, kg; totals are shared equally.
+    def mass_at_wheels(self, wheelbase: float, layout: Layout = FULL) -> dict[str, float]:
+        """Return what each wheel of an axle carries of what is on the body, kg; totals are shared equally.
 
         Parameters
         ----------
         wheelbase
             m.
+        layout
+            Of the vehicle.
+
+        Returns
+        -------
+        dict
+            By the index of the axle.
         """
-        if self.added is not None:
-            return self.added.mass / 4, self.added.mass / 4
-        rear = sum(-item.mass * item.position[0] / wheelbase for item in self.items if item.position is not None)
-        body = sum(item.mass for item in self.items if item.position is not None)
-        return (body - rear) / 2, rear / 2
+        placed = [(item.mass, item.position[0]) for item in self.items if item.position is not None]
+        body = sum(mass for mass, _ in placed) if self.added is None else self.added.mass
+        if len(layout.axles) == 1 or self.added is not None:
+            return dict.fromkeys(layout.axles, body / len(layout.wheels))
+        rear = sum(-mass * x / wheelbase for mass, x in placed)
+        return {"f": (body - rear) / len(layout.wheels_of("f")), "r": rear / len(layout.wheels_of("r"))}
 
     @property
     def uncertain_masses(self) -> dict[str, KnownValue]:

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
-from sprung.vehicle.elements import Element, LinearLaw
-from sprung.vehicle.kinematics import UNCONSTRAINED, Row, coordinates, heave, massive_coordinates
+from sprung.vehicle.elements import Element
+from sprung.vehicle.kinematics import UNCONSTRAINED, Row, coordinates, heave, massive_coordinates, unconstrained
+from sprung.vehicle.layout import LinearLaw
 
 Array = NDArray[np.float64]
 
@@ -224,7 +225,7 @@ class LinearModel:
         kappa, size = np.array(coefficients, dtype=float).reshape(-1, 2).T
         laws = np.array([LINEAR_LAWS.index(one.law) for one in elements], dtype=np.int64)
         used = {coordinate for one in elements for coordinate in one.row.constant}
-        further = UNCONSTRAINED if used.intersection(UNCONSTRAINED) else ()
+        further = unconstrained(names) if used.intersection(UNCONSTRAINED) else ()
         rows = Rows.of([one.row for one in elements], names, further).affine
         n, base = rows.shape[1], 1 + len(names)
         # Every pair of an element's factors, the constant among them, is a part of κ g gᵀ.

@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.elements import Element, NonlinearElement
+from sprung.vehicle.elements import Element
 from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import state_variables
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices, Rows, highest_derivatives, state_matrix
+from sprung.vehicle.nonlinear_elements import NonlinearElement
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]

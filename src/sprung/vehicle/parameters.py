@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import NamedTuple
 
-from sprung.vehicle.elements import Tracks, half_distances, inboard_shares
+from sprung.vehicle.layout import AXLES, FULL, Layout, Tracks, half_distances, inboard_shares, parameter_name
 
 
 class Parameter(NamedTuple):
@@ -27,95 +27,46 @@ class Parameter(NamedTuple):
     """Whether the effect of its term vanishes where it is infinite: the rate of a spring in series, or a modal mass."""
 
 
-PARAMETERS: Mapping[str, Parameter] = {
+_TABLE: Mapping[str, Parameter] = {
     "m_s": Parameter("kg", "sprung mass", True),
     "I_yy": Parameter("kg m^2", "pitch inertia of the sprung mass", True),
     "I_xx": Parameter("kg m^2", "roll inertia of the sprung mass", True),
-    "m_uf": Parameter("kg", "unsprung mass, each front wheel", True),
-    "m_ur": Parameter("kg", "unsprung mass, each rear wheel", True),
-    "k_sf": Parameter("N/m", "spring rate, each front wheel", True),
-    "k_sr": Parameter("N/m", "spring rate, each rear wheel", True),
-    "k_tf": Parameter("N/m", "tyre rate, each front wheel", True),
-    "k_tr": Parameter("N/m", "tyre rate, each rear wheel", True),
-    "c_sf": Parameter("N s/m", "damper rate, each front wheel", True),
-    "c_sr": Parameter("N s/m", "damper rate, each rear wheel", True),
+    "m_u*": Parameter("kg", "unsprung mass, each {} wheel", True),
+    "k_s*": Parameter("N/m", "spring rate, each {} wheel", True),
+    "k_t*": Parameter("N/m", "tyre rate, each {} wheel", True),
+    "c_s*": Parameter("N s/m", "damper rate, each {} wheel", True),
     "a": Parameter("m", "centre of gravity of the sprung mass to front axle", False),
     "b": Parameter("m", "centre of gravity of the sprung mass to rear axle", False),
-    "t_f": Parameter("m", "half-distance of springs and dampers, front", False),
-    "t_r": Parameter("m", "half-distance of springs and dampers, rear", False),
-    "t_f1": Parameter("m", "half-distance of the front dampers", False),
-    "t_r1": Parameter("m", "half-distance of the rear dampers", False),
-    "t_f2": Parameter("m", "half-distance of the front springs", False),
-    "t_r2": Parameter("m", "half-distance of the rear springs", False),
-    "c_tf": Parameter("N s/m", "tyre damping, each front wheel", True, False),
-    "c_tr": Parameter("N s/m", "tyre damping, each rear wheel", True, False),
-    "k_af": Parameter("N/m", "front anti-roll bar, per metre of left-right difference in travel", True, False),
-    "k_ar": Parameter("N/m", "rear anti-roll bar, per metre of left-right difference in travel", True, False),
+    "t*": Parameter("m", "half-distance of springs and dampers, {}", False),
+    "t*1": Parameter("m", "half-distance of the {} dampers", False),
+    "t*2": Parameter("m", "half-distance of the {} springs", False),
+    "c_t*": Parameter("N s/m", "tyre damping, each {} wheel", True, False),
+    "k_a*": Parameter("N/m", "{} anti-roll bar, per metre of left-right difference in travel", True, False),
     "w_h": Parameter(
-        "N m",
-        "weight of the body times the height of its centre of gravity above lateral support",
-        True,
-        False,
-        True,
+        "N m", "weight of the body times the height of its centre of gravity above lateral support", True, False, True
     ),
     "y_s": Parameter("m", "centre of gravity of the sprung mass, left of the centreline", False, False, True),
-    "d_ksf": Parameter("N/m", "left front spring rate above the mean of both", True, False, True),
-    "d_ksr": Parameter("N/m", "left rear spring rate above the mean of both", True, False, True),
-    "d_ktf": Parameter("N/m", "left front tyre rate above the mean of both", True, False, True),
-    "d_ktr": Parameter("N/m", "left rear tyre rate above the mean of both", True, False, True),
-    "d_csf": Parameter("N s/m", "left front damper rate above the mean of both", True, False, True),
-    "d_csr": Parameter("N s/m", "left rear damper rate above the mean of both", True, False, True),
-    "n_f": Parameter(
-        "1", "place of springs and dampers on a rigid front axle, part of its wheels' half-distance", False
-    ),
-    "n_r": Parameter(
-        "1", "place of springs and dampers on a rigid rear axle, part of its wheels' half-distance", False
-    ),
-    "n_f1": Parameter("1", "place of the dampers on a rigid front axle, part of its wheels' half-distance", False),
-    "n_r1": Parameter("1", "place of the dampers on a rigid rear axle, part of its wheels' half-distance", False),
-    "n_f2": Parameter("1", "place of the springs on a rigid front axle, part of its wheels' half-distance", False),
-    "n_r2": Parameter("1", "place of the springs on a rigid rear axle, part of its wheels' half-distance", False),
-    "m_xf": Parameter(
-        "kg",
-        "what rolls with a rigid front axle beside its unsprung masses, as a mass at each wheel",
-        True,
-        False,
-        True,
-    ),
-    "m_xr": Parameter(
-        "kg",
-        "what rolls with a rigid rear axle beside its unsprung masses, as a mass at each wheel",
-        True,
-        False,
-        True,
+    "d_ks*": Parameter("N/m", "left {} spring rate above the mean of both", True, False, True),
+    "d_kt*": Parameter("N/m", "left {} tyre rate above the mean of both", True, False, True),
+    "d_cs*": Parameter("N s/m", "left {} damper rate above the mean of both", True, False, True),
+    "n*": Parameter("1", "place of springs and dampers on a rigid {} axle, part of its wheels' half-distance", False),
+    "n*1": Parameter("1", "place of the dampers on a rigid {} axle, part of its wheels' half-distance", False),
+    "n*2": Parameter("1", "place of the springs on a rigid {} axle, part of its wheels' half-distance", False),
+    "m_x*": Parameter(
+        "kg", "what rolls with a rigid {} axle beside its unsprung masses, as a mass at each wheel", True, False, True
     ),
     "m_e": Parameter("kg", "engine that moves on its mounts, a part of the sprung mass", True, False),
     "k_e": Parameter("N/m", "engine mounts, all together", True),
     "c_e": Parameter("N s/m", "damping of the engine mounts, all together", True, False),
     "x_e": Parameter("m", "engine, forward of the front axle", False, False, True),
-    "k_df": Parameter(
-        "N/m",
-        "rate of the rubber mount in series with the damper, each front wheel",
-        True,
-        vanishes_at_infinity=True,
+    "k_d*": Parameter(
+        "N/m", "rate of the rubber mount in series with the damper, each {} wheel", True, vanishes_at_infinity=True
     ),
-    "k_dr": Parameter(
-        "N/m",
-        "rate of the rubber mount in series with the damper, each rear wheel",
-        True,
-        vanishes_at_infinity=True,
-    ),
-    "c_df": Parameter("N s/m", "damping of the rubber mount of the damper, each front wheel", True, False),
-    "c_dr": Parameter("N s/m", "damping of the rubber mount of the damper, each rear wheel", True, False),
-    "k_zf": Parameter("N/m", "spring rate that relaxes, beside the spring of each front wheel", True, False),
-    "k_zr": Parameter("N/m", "spring rate that relaxes, beside the spring of each rear wheel", True, False),
-    "c_zf": Parameter("N s/m", "damping in series with the relaxing spring rate, each front wheel", True),
-    "c_zr": Parameter("N s/m", "damping in series with the relaxing spring rate, each rear wheel", True),
+    "c_d*": Parameter("N s/m", "damping of the rubber mount of the damper, each {} wheel", True, False),
+    "k_z*": Parameter("N/m", "spring rate that relaxes, beside the spring of each {} wheel", True, False),
+    "c_z*": Parameter("N s/m", "damping in series with the relaxing spring rate, each {} wheel", True),
     "I_w": Parameter(
-        "kg m^2",
-        "modal inertia of the body's twist, for the angle between the axles",
-        True,
-        vanishes_at_infinity=True,
+        "kg m^2", "modal inertia of the body's twist, for the angle between the axles", True, vanishes_at_infinity=True
     ),
     "k_w": Parameter("N m", "stiffness of the body's twist, for the angle between the axles", True),
     "c_w": Parameter("N m s", "damping of the body's twist, for the angle between the axles", True),
@@ -147,105 +98,123 @@ PARAMETERS: Mapping[str, Parameter] = {
         "1/s^2", "rate of the seats under a load, over the mass on them", False, vanishes_at_infinity=True
     ),
     "c_l": Parameter("1/s", "damping of the seats under a load, over the mass on them", False, False),
-    "F_f": Parameter("N", "dry friction, each front wheel", True, False),
-    "F_r": Parameter("N", "dry friction, each rear wheel", True, False),
-    "s_f": Parameter("N/m", "stiffness of the front friction before it slides, each wheel", True),
-    "s_r": Parameter("N/m", "stiffness of the rear friction before it slides, each wheel", True),
-    "u_f": Parameter("1", "growth of the front dry friction with the load, over the weight carried", False, False),
-    "u_r": Parameter("1", "growth of the rear dry friction with the load, over the weight carried", False, False),
-    "r_f": Parameter("1", "rebound damping over compression damping, front", False),
-    "r_r": Parameter("1", "rebound damping over compression damping, rear", False),
-    "v_kf": Parameter("m/s", "velocity at which the curve of the front dampers has its knee", False),
-    "v_kr": Parameter("m/s", "velocity at which the curve of the rear dampers has its knee", False),
-    "q_f": Parameter("1", "damping beyond the knee over that before it, front", False),
-    "q_r": Parameter("1", "damping beyond the knee over that before it, rear", False),
-    "w_kf": Parameter("m/s", "half the width over which the knee of the front dampers is rounded", False, False),
-    "w_kr": Parameter("m/s", "half the width over which the knee of the rear dampers is rounded", False, False),
-    "v_2f": Parameter("m/s", "velocity at which the curve of the front dampers has its second knee", False),
-    "v_2r": Parameter("m/s", "velocity at which the curve of the rear dampers has its second knee", False),
-    "q_2f": Parameter("1", "damping beyond the second knee over that before it, front", False),
-    "q_2r": Parameter("1", "damping beyond the second knee over that before it, rear", False),
-    "v_3f": Parameter("m/s", "velocity at which the curve of the front dampers has its third knee", False),
-    "v_3r": Parameter("m/s", "velocity at which the curve of the rear dampers has its third knee", False),
-    "q_3f": Parameter("1", "damping beyond the third knee over that before it, front", False),
-    "q_3r": Parameter("1", "damping beyond the third knee over that before it, rear", False),
-    "p_f": Parameter(
-        "1/m", "growth of the front spring rate with compression, as a part of it per metre", False, False, True
+    "F*": Parameter("N", "dry friction, each {} wheel", True, False),
+    "s*": Parameter("N/m", "stiffness of the {} friction before it slides, each wheel", True),
+    "u*": Parameter("1", "growth of the {} dry friction with the load, over the weight carried", False, False),
+    "r*": Parameter("1", "rebound damping over compression damping, {}", False),
+    "v_k*": Parameter("m/s", "velocity at which the curve of the {} dampers has its knee", False),
+    "q*": Parameter("1", "damping beyond the knee over that before it, {}", False),
+    "w_k*": Parameter("m/s", "half the width over which the knee of the {} dampers is rounded", False, False),
+    "v_2*": Parameter("m/s", "velocity at which the curve of the {} dampers has its second knee", False),
+    "q_2*": Parameter("1", "damping beyond the second knee over that before it, {}", False),
+    "v_3*": Parameter("m/s", "velocity at which the curve of the {} dampers has its third knee", False),
+    "q_3*": Parameter("1", "damping beyond the third knee over that before it, {}", False),
+    "p*": Parameter(
+        "1/m", "growth of the {} spring rate with compression, as a part of it per metre", False, False, True
     ),
-    "p_r": Parameter(
-        "1/m", "growth of the rear spring rate with compression, as a part of it per metre", False, False, True
+    "e*": Parameter("1/m", "one over the effective height of the air column in a {} spring", False, False),
+    "e_l*": Parameter("1/m", "the same of {} springs that a valve levels under every load", False, False),
+    "g*": Parameter("N/(m kg)", "growth of the rate of a levelled {} spring per mass that it carries", False, False),
+    "h_t*": Parameter(
+        "1/m", "growth of the {} tyre rate with deflection, as a part of k_t per metre", False, False, True
     ),
-    "e_f": Parameter("1/m", "one over the effective height of the air column in a front spring", False, False),
-    "e_r": Parameter("1/m", "one over the effective height of the air column in a rear spring", False, False),
-    "e_lf": Parameter("1/m", "the same of front springs that a valve levels under every load", False, False),
-    "e_lr": Parameter("1/m", "the same of rear springs that a valve levels under every load", False, False),
-    "g_f": Parameter(
-        "N/(m kg)", "growth of the rate of a levelled front spring per mass that it carries", False, False
-    ),
-    "g_r": Parameter("N/(m kg)", "growth of the rate of a levelled rear spring per mass that it carries", False, False),
-    "h_tf": Parameter(
-        "1/m", "growth of the front tyre rate with deflection, as a part of k_tf per metre", False, False, True
-    ),
-    "h_tr": Parameter(
-        "1/m", "growth of the rear tyre rate with deflection, as a part of k_tr per metre", False, False, True
-    ),
-    "k_bf": Parameter("N/m", "stiffness of the front bump stops, each wheel", True, False),
-    "k_br": Parameter("N/m", "stiffness of the rear bump stops, each wheel", True, False),
-    "x_bf": Parameter("m", "compression from rest at which the front bump stops are met", False),
-    "x_br": Parameter("m", "compression from rest at which the rear bump stops are met", False),
+    "k_b*": Parameter("N/m", "stiffness of the {} bump stops, each wheel", True, False),
+    "x_b*": Parameter("m", "compression from rest at which the {} bump stops are met", False),
+}
+"""Every parameter, in the order in which tables show them; a star stands for the index of the axle, {} for its name."""
+
+_AXLE_NAMES = {"f": "front", "r": "rear", "": ""}
+
+
+def _expand(pattern: str) -> dict[str, str]:
+    """Return the names of a parameter by axle, from one with a star for the index of the axle; one for all without a star."""
+    symbol, star, number = pattern.partition("*")
+    return {axle: parameter_name(symbol, axle, number) for axle in AXLES} if star else {"": symbol}
+
+
+def _meaning(template: str, axle: str) -> str:
+    words = template.format(_AXLE_NAMES[axle]).split()
+    return " ".join(words).removesuffix(",")
+
+
+PARAMETERS: Mapping[str, Parameter] = {
+    name: about._replace(meaning=_meaning(about.meaning, axle))
+    for pattern, about in _TABLE.items()
+    for axle, name in _expand(pattern).items()
 }
 """Every parameter that the models know, in the order in which tables show them."""
 
-EXTRA_PARAMETERS: Mapping[str, tuple[str, ...]] = {
-    "anti-roll": ("k_af", "k_ar"),
-    "tyre-damping": ("c_tf", "c_tr"),
+_TERMS: Mapping[str, tuple[str, ...]] = {
+    "anti-roll": ("k_a*",),
+    "tyre-damping": ("c_t*",),
     "gravity": ("w_h",),
     "engine": ("m_e", "k_e", "c_e", "x_e"),
-    "damper-mount": ("k_df", "k_dr"),
-    "mount-damping": ("c_df", "c_dr"),
-    "zener": ("k_zf", "k_zr", "c_zf", "c_zr"),
+    "damper-mount": ("k_d*",),
+    "mount-damping": ("c_d*",),
+    "zener": ("k_z*", "c_z*"),
     "twist": ("I_w", "k_w", "c_w", "a_w"),
     "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
     "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
     "seat-load": ("w_l", "c_l"),
-    "friction": ("F_f", "F_r", "s_f", "s_r"),
-    "load-friction": ("u_f", "u_r"),
-    "rebound": ("r_f", "r_r"),
-    "damper-curve": ("v_kf", "v_kr", "q_f", "q_r"),
-    "rounded-knee": ("w_kf", "w_kr"),
-    "second-knee": ("v_2f", "v_2r", "q_2f", "q_2r"),
-    "third-knee": ("v_3f", "v_3r", "q_3f", "q_3r"),
-    "progressive": ("p_f", "p_r"),
-    "air": ("e_f", "e_r"),
-    "levelled-air": ("e_lf", "e_lr", "g_f", "g_r"),
-    "tyre-curve": ("h_tf", "h_tr"),
-    "bump-stop": ("k_bf", "k_br", "x_bf", "x_br"),
-    "asymmetry": ("y_s", "d_ksf", "d_ksr", "d_ktf", "d_ktr", "d_csf", "d_csr"),
-    "rigid-axle": ("n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2", "m_xf", "m_xr"),
+    "friction": ("F*", "s*"),
+    "load-friction": ("u*",),
+    "rebound": ("r*",),
+    "damper-curve": ("v_k*", "q*"),
+    "rounded-knee": ("w_k*",),
+    "second-knee": ("v_2*", "q_2*"),
+    "third-knee": ("v_3*", "q_3*"),
+    "progressive": ("p*",),
+    "air": ("e*",),
+    "levelled-air": ("e_l*", "g*"),
+    "tyre-curve": ("h_t*",),
+    "bump-stop": ("k_b*", "x_b*"),
+    "asymmetry": ("y_s", "d_ks*", "d_kt*", "d_cs*"),
+    "rigid-axle": ("n*", "n*1", "n*2", "m_x*"),
 }
-"""The parameters that each extra may add; see `parameters_of_term`."""
+"""Patterns of the parameters that each extra may add; see `parameters_of_term`."""
 
-_INDIFFERENT = frozenset({"s_f", "s_r", "v_kf", "v_kr", "x_bf", "x_br", "k_e", "c_e", "x_e", "c_zf", "c_zr"}) | {
-    "v_2f", "v_2r", "v_3f", "v_3r",
-    "k_w", "c_w", "a_w", "k_v", "c_v", "b_v", "p_v", "k_o", "c_o", "x_o", "y_o", "c_l"
-}  # fmt: skip
-"""Parameters of extras without effect where the others of the extra are neutral."""
+_NEEDS: Mapping[str, Callable[[Layout], bool]] = {
+    **dict.fromkeys(("anti-roll", "asymmetry", "rigid-axle", "y_o", "I_xx", "t*", "t*1", "t*2"), lambda one: one.rolls),
+    **dict.fromkeys(("bending", "x_e", "x_o", "I_yy", "a", "b"), lambda one: one.pitches),
+    "gravity": lambda one: one.rolls or one.pitches,
+    "twist": lambda one: one.rolls and one.pitches,
+}
+"""Which layouts have an extra, or a parameter by its pattern; all have the others."""
 
-_FACTORS = frozenset(
-    {"r_f", "r_r", "q_f", "q_r", "q_2f", "q_2r", "q_3f", "q_3r", "n_f", "n_r", "n_f1", "n_r1", "n_f2", "n_r2"}
+_WITHOUT_EFFECT: Mapping[str, float] = {
+    **dict.fromkeys(("s*", "k_e", "k_w"), 1e6),
+    **dict.fromkeys(("v_k*", "v_2*", "v_3*", "x_b*"), 1.0),
+    **dict.fromkeys(("c_e", "x_e", "a_w", "b_v", "p_v", "c_o", "x_o", "y_o", "c_l"), 0.0),
+    **dict.fromkeys(("c_z*", "c_w"), 1e3),
+    "k_v": 1e7,
+    "c_v": 1e4,
+    "k_o": 1e5,
+}
+"""Parameters of extras without effect where the others of the extra are neutral, and their values in a vehicle without it."""
+
+_FACTORS = frozenset({"r*", "q*", "q_2*", "q_3*", "n*", "n*1", "n*2"})
+
+
+def _names_of(patterns: Mapping[str, float]) -> dict[str, float]:
+    return {name: value for pattern, value in patterns.items() for name in _expand(pattern).values()}
+
+
+NEUTRAL: Mapping[str, float] = _names_of(
+    {
+        pattern: math.inf if _TABLE[pattern].vanishes_at_infinity else float(pattern in _FACTORS)
+        for patterns in _TERMS.values()
+        for pattern in patterns
+        if pattern not in _WITHOUT_EFFECT
+    }
 )
-
-NEUTRAL: Mapping[str, float] = {
-    name: math.inf if PARAMETERS[name].vanishes_at_infinity else float(name in _FACTORS)
-    for names in EXTRA_PARAMETERS.values()
-    for name in names
-    if name not in _INDIFFERENT
-}
 """Values with which an extra has no effect; the others of its parameters then have none either."""
+
+ABSENT: Mapping[str, float] = {**NEUTRAL, **_names_of(_WITHOUT_EFFECT)}
+"""Values of the parameters of every extra in a vehicle without it."""
 
 
 @cache
-def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> tuple[str, ...]:
+def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = (), layout: Layout = FULL) -> tuple[str, ...]:
     """Return the names of the parameters of a model, in the order of `PARAMETERS`.
 
     Parameters
@@ -253,20 +222,40 @@ def parameter_names(tracks: Tracks = "shared", extras: tuple[str, ...] = ()) -> 
     tracks
         Whether springs and dampers of an axle share their half-distance.
     extras
-        Any of `EXTRA_PARAMETERS`.
+        Any of `EXTRAS`.
+    layout
+        Of the vehicle.
 
     Returns
     -------
     tuple of str
     """
-    places = {*half_distances(tracks).values()}
-    absent = {name for kind in ("shared", "separate") for name in half_distances(kind).values()} - places
-    for extra, names in EXTRA_PARAMETERS.items():
-        absent.update(set(names) - set(parameters_of_term(extra, tracks) if extra in extras else ()))
-    return tuple(name for name in PARAMETERS if name not in absent)
+    of_terms = {name for extra in extras for name in parameters_of_term(extra, tracks, layout)}
+    basic = [pattern for pattern in _TABLE if not any(pattern in patterns for patterns in _TERMS.values())]
+    elsewhere = _places_of_other(tracks)
+    own = of_terms.union(*(_own_names(pattern, layout) for pattern in basic)) - elsewhere
+    return tuple(name for name in PARAMETERS if name in own)
 
 
-def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
+def _fits(name: str, layout: Layout) -> bool:
+    """Return whether a layout has an extra, or a parameter by its pattern."""
+    return name not in _NEEDS or _NEEDS[name](layout)
+
+
+def _own_names(pattern: str, layout: Layout) -> set[str]:
+    """Return the names of a parameter in a layout, from its pattern; none where the layout has no such parameter."""
+    if not _fits(pattern, layout):
+        return set()
+    return {name for axle, name in _expand(pattern).items() if "*" not in pattern or axle in layout.axles}
+
+
+def _places_of_other(tracks: Tracks) -> set[str]:
+    other: Tracks = "shared" if tracks == "separate" else "separate"
+    return {*half_distances(other).values(), *inboard_shares(other).values()}
+
+
+@cache
+def parameters_of_term(extra: str, tracks: Tracks, layout: Layout = FULL) -> tuple[str, ...]:
     """Return the names of the parameters that an extra adds to a model.
 
     Parameters
@@ -275,14 +264,33 @@ def parameters_of_term(extra: str, tracks: Tracks) -> tuple[str, ...]:
         One of `EXTRAS`.
     tracks
         Whether springs and dampers of an axle share their places.
+    layout
+        Of the vehicle.
+
+    Returns
+    -------
+    tuple of str
+        None where such a vehicle cannot have it.
+    """
+    if not _fits(extra, layout):
+        return ()
+    own = set[str]().union(*(_own_names(pattern, layout) for pattern in _TERMS[extra])) - _places_of_other(tracks)
+    return tuple(name for pattern in _TERMS[extra] for name in _expand(pattern).values() if name in own)
+
+
+def terms_of(layout: Layout) -> tuple[str, ...]:
+    """Return the extras that a vehicle of a layout can have.
+
+    Parameters
+    ----------
+    layout
+        Of the vehicle.
 
     Returns
     -------
     tuple of str
     """
-    other: Tracks = "shared" if tracks == "separate" else "separate"
-    elsewhere = set(inboard_shares(other).values())
-    return tuple(name for name in EXTRA_PARAMETERS[extra] if name not in elsewhere)
+    return tuple(extra for extra in _TERMS if parameters_of_term(extra, "shared", layout))
 
 
 @cache

@@ -17,6 +17,9 @@ from sprung.vehicle.kinematics import Row
 from sprung.vehicle.load import Finite, Positive
 from sprung.vehicle.nuisances import SensorQuantity, sensor_unknown
 
+SensorPlace = Literal["body", "fl", "fr", "rl", "rr", "front", "rear", "left", "right", "wheel"]
+"""The body, or a wheel station."""
+
 LARGEST_PLACE = 1.0
 """Largest standard uncertainty of a position, m."""
 
@@ -36,7 +39,7 @@ class Sensor:
 
     channel: Annotated[str, Field(min_length=1)]
     """Column or channel name in the recordings."""
-    on: Literal["body", "fl", "fr", "rl", "rr"] | None
+    on: SensorPlace | None
     """The body, or a wheel station."""
     position: tuple[Finite, Finite, Finite] | None = None
     """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.kinematics import WHEELS_AT
+from sprung.vehicle.layout import STATIONS, layout_of
 from sprung.vehicle.model import LinearModel
 
 Array = NDArray[np.float64]
@@ -38,11 +38,14 @@ def with_tyre_rates_at_rest(model: LinearModel, values: Sequence[float] | Array)
     """
     at_rest = np.array(values, dtype=np.float64)
     names = model.names
-    if "h_tf" not in names:
+    layout = layout_of(names)
+    if f"h_t{layout.axles[0]}" not in names:
         return at_rest
     matrices = model.matrices(at_rest)
-    deflections = matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)[WHEELS_AT]
-    for axle, own in (("f", deflections[:2]), ("r", deflections[2:])):
+    deflections = matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)[layout.wheels_at]
+    axles = [STATIONS[wheel].axle for wheel in layout.wheels]
+    for axle in layout.axles:
+        own = deflections[[one == axle for one in axles]]
         rate, growth = names.index(f"k_t{axle}"), names.index(f"h_t{axle}")
         at_rest[rate] *= np.sqrt(max(1 + 2 * values[growth] * float(own.mean()), _LEAST))
     return at_rest
@@ -62,7 +65,7 @@ def differentiate_tyre_rates_at_rest(model: LinearModel, values: Array) -> Array
         Of each parameter in SI by each, shape (parameter, parameter).
     """
     steps = _NUDGE * np.maximum(np.abs(values), _NUDGE)
-    if "h_tf" not in model.names:
+    if not {"h_tf", "h_t"} & {*model.names}:
         return np.eye(len(values))
     columns = [
         (with_tyre_rates_at_rest(model, values + step) - with_tyre_rates_at_rest(model, values - step))

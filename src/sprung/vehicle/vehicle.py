@@ -4,29 +4,46 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from typing import Any
 
 from sprung.display import shown
 from sprung.errors import Problems, did_you_mean
-from sprung.vehicle.elements import Tracks, seven_degrees_of_freedom, stiffened_air_springs
+from sprung.vehicle.elements import linear_elements, stiffened_air_springs
 from sprung.vehicle.heights import Heights
+from sprung.vehicle.layout import LAYOUTS, Layout, Tracks, VehicleModel
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices
-from sprung.vehicle.parameters import EXTRA_PARAMETERS, NEUTRAL, PARAMETERS, parameter_names, parameters_of_term
+from sprung.vehicle.parameter_values import (
+    APART,
+    all_names,
+    check_values,
+    complete_parameters,
+    effective_terms,
+    model_of,
+    own_parameters,
+)
+from sprung.vehicle.parameters import ABSENT, PARAMETERS
 from sprung.vehicle.tyre_rates import with_tyre_rates_at_rest
 
 
 @shown
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, init=False)
 class Vehicle:
-    """A two-axle road vehicle, by its parameters in SI units; named as in the paper.
+    """A road vehicle or a part of one, by its parameters in SI units; named as in the paper.
 
     Give t_f and t_r where springs and dampers of an axle share their half-distance from the centreline, or t_f1, t_r1
-    (dampers) and t_f2, t_r2 (springs). Rates, and unsprung masses, are those of one wheel.
+    (dampers) and t_f2, t_r2 (springs). Rates, and unsprung masses, are those of one wheel station. A parameter that is not
+    given has the value without effect; those of the paper's vehicle must be given.
+
+    A part of a vehicle (``model``) has fewer parameters, and where it has one axle they lose the index of the axle: a quarter
+    car has m_s, m_u, k_s, k_t and c_s; a roll plane I_xx and t, or t_1 and t_2, besides; a pitch plane has those of front and
+    rear with I_yy, a and b.
 
     Attributes
     ----------
+    parameters
+        Every parameter that it has, by name, in the order of tables; each is an attribute as well:
     m_s, I_yy, I_xx
         Sprung mass, kg, its pitch and roll inertia, kg m².
     m_uf, m_ur
@@ -96,6 +113,8 @@ class Vehicle:
     w_l, c_l
         Rate, 1/s², and damping, 1/s, of the seats under items of loads, over the mass on them: the squared natural frequency,
         and twice that frequency times the damping ratio. An infinite rate is that of a floor.
+    model
+        ``full``, ``pitch-plane``, ``roll-plane`` or ``quarter``.
     cg_height, wheel_height, roll_axis_height
         Of the sprung mass's centre of gravity, the wheel centres and the axis of roll, m; see `Heights`.
     name
@@ -104,7 +123,7 @@ class Vehicle:
     Raises
     ------
     InputError
-        If a parameter is missing, not finite or not positive; all faults at once.
+        If a parameter is unknown or missing, not finite or not positive; all faults at once.
 
     Examples
     --------
@@ -115,170 +134,67 @@ class Vehicle:
     78000.0
     """
 
-    m_s: float
-    I_yy: float
-    I_xx: float
-    m_uf: float
-    m_ur: float
-    k_sf: float
-    k_sr: float
-    k_tf: float
-    k_tr: float
-    c_sf: float
-    c_sr: float
-    a: float
-    b: float
-    t_f: float | None = None
-    t_r: float | None = None
-    t_f1: float | None = None
-    t_r1: float | None = None
-    t_f2: float | None = None
-    t_r2: float | None = None
-    c_tf: float = 0.0
-    c_tr: float = 0.0
-    k_af: float = 0.0
-    k_ar: float = 0.0
-    w_h: float = 0.0
-    F_f: float = 0.0
-    F_r: float = 0.0
-    s_f: float = 1e6
-    s_r: float = 1e6
-    u_f: float = 0.0
-    u_r: float = 0.0
-    r_f: float = 1.0
-    r_r: float = 1.0
-    v_kf: float = 1.0
-    v_kr: float = 1.0
-    q_f: float = 1.0
-    q_r: float = 1.0
-    w_kf: float = 0.0
-    w_kr: float = 0.0
-    v_2f: float = 1.0
-    v_2r: float = 1.0
-    q_2f: float = 1.0
-    q_2r: float = 1.0
-    v_3f: float = 1.0
-    v_3r: float = 1.0
-    q_3f: float = 1.0
-    q_3r: float = 1.0
-    p_f: float = 0.0
-    p_r: float = 0.0
-    e_f: float = 0.0
-    e_r: float = 0.0
-    e_lf: float = 0.0
-    e_lr: float = 0.0
-    g_f: float = 0.0
-    g_r: float = 0.0
-    h_tf: float = 0.0
-    h_tr: float = 0.0
-    k_bf: float = 0.0
-    k_br: float = 0.0
-    x_bf: float = 1.0
-    x_br: float = 1.0
-    y_s: float = 0.0
-    d_ksf: float = 0.0
-    d_ksr: float = 0.0
-    d_ktf: float = 0.0
-    d_ktr: float = 0.0
-    d_csf: float = 0.0
-    d_csr: float = 0.0
-    n_f: float | None = None
-    n_r: float | None = None
-    n_f1: float | None = None
-    n_r1: float | None = None
-    n_f2: float | None = None
-    n_r2: float | None = None
-    m_xf: float = 0.0
-    m_xr: float = 0.0
-    m_e: float = 0.0
-    k_e: float = 1e6
-    c_e: float = 0.0
-    x_e: float = 0.0
-    k_df: float = math.inf
-    k_dr: float = math.inf
-    c_df: float = 0.0
-    c_dr: float = 0.0
-    k_zf: float = 0.0
-    k_zr: float = 0.0
-    c_zf: float = 1e3
-    c_zr: float = 1e3
-    I_w: float = math.inf
-    k_w: float = 1e6
-    c_w: float = 1e3
-    a_w: float = 0.0
-    m_v: float = math.inf
-    k_v: float = 1e7
-    c_v: float = 1e4
-    b_v: float = 0.0
-    p_v: float = 0.0
-    m_o: float = 0.0
-    k_o: float = 1e5
-    c_o: float = 0.0
-    x_o: float = 0.0
-    y_o: float = 0.0
-    w_l: float = math.inf
-    c_l: float = 0.0
-    cg_height: float | None = None
-    wheel_height: float | None = None
-    roll_axis_height: float | None = None
-    name: str = "vehicle"
+    parameters: dict[str, float]
+    model: VehicleModel
+    cg_height: float | None
+    wheel_height: float | None
+    roll_axis_height: float | None
+    name: str
 
-    def __post_init__(self) -> None:
-        problems = Problems()
-        for axle in "fr":
-            self._resolve_places("t", axle, None, problems)
-            self._resolve_places("n", axle, 1.0, problems)
-        own = parameter_names("separate", self.extras)
-        has_mounts = "damper-mount" in self.extras
-        for name in parameter_names("separate", tuple(EXTRA_PARAMETERS)):
-            value, parameter = getattr(self, name), PARAMETERS[name]
-            positive = parameter.positive and (has_mounts or name not in ("c_sf", "c_sr"))
-            possible = value is None or (
-                (math.isfinite(value) or (value == NEUTRAL.get(name) and name not in own))
-                and (value > 0 or parameter.signed or (value == 0 and not positive))
-            )
-            if not possible:
-                kind = "positive" if positive else "finite" if parameter.signed else "finite, not negative"
-                problems.add(
-                    f"vehicle {self.name}: {name}", repr(value), f"a {kind} number, {parameter.unit}", "Correct it."
-                )
-        for name in ("cg_height", "wheel_height"):
-            value = getattr(self, name)
-            if value is not None and not (math.isfinite(value) and value > 0):
-                problems.add(f"vehicle {self.name}: {name}", repr(value), "a positive number, m", "Correct it.")
-        if not problems and self.m_e * (1 / self.m_s + (self.a + self.x_e) ** 2 / self.I_yy) >= 1:
-            problems.add(
-                f"vehicle {self.name}: m_e",
-                f"an engine of {self.m_e:g} kg, {self.a + self.x_e:g} m ahead of the centre of gravity",
-                "one that leaves the body some mass and pitch inertia, of which it is a part",
-                "Correct m_e and x_e, or m_s and I_yy, which include the engine.",
-            )
+    def __init__(
+        self,
+        parameters: Mapping[str, float] | None = None,
+        *,
+        model: VehicleModel = "full",
+        cg_height: float | None = None,
+        wheel_height: float | None = None,
+        roll_axis_height: float | None = None,
+        name: str = "vehicle",
+        **named: float | None,
+    ) -> None:
+        given = {key: value for key, value in {**(parameters or {}), **named}.items() if value is not None}
+        where, problems = f"vehicle {name}", Problems()
+        if model not in LAYOUTS:
+            problems.add(where, f"model '{model}'", f"any of {', '.join(LAYOUTS)}", did_you_mean(model, LAYOUTS))
+            problems.raise_if_any()
+        values = complete_parameters(given, LAYOUTS[model], where, problems)
         problems.raise_if_any()
+        own = own_parameters(values, LAYOUTS[model])
+        check_values(values, own, where, problems)
+        heights = {"cg_height": cg_height, "wheel_height": wheel_height, "roll_axis_height": roll_axis_height}
+        for key, height in heights.items():
+            if key != "roll_axis_height" and height is not None and not (math.isfinite(height) and height > 0):
+                problems.add(f"{where}: {key}", repr(height), "a positive number, m", "Correct it.")
+        problems.raise_if_any()
+        for key, value in {"parameters": own, "model": model, "name": name, **heights}.items():
+            object.__setattr__(self, key, value)
 
-    def _resolve_places(self, letter: str, axle: str, default: float | None, problems: Problems) -> None:
-        shared, damper, spring = (getattr(self, f"{letter}_{axle}{suffix}") for suffix in ("", "1", "2"))
-        if shared is None and damper is None and spring is None:
-            shared = default
-        if shared is not None:
-            damper = shared if damper is None else damper
-            spring = shared if spring is None else spring
-        if damper is None or spring is None or (shared is not None and not damper == spring == shared):
-            problems.add(
-                f"vehicle {self.name}: {letter}_{axle}",
-                f"{letter}_{axle}={shared}, {letter}_{axle}1={damper}, {letter}_{axle}2={spring}",
-                f"either {letter}_{axle}, or {letter}_{axle}1 (dampers) and {letter}_{axle}2 (springs)",
-                "Give one of the two.",
-            )
-            return
-        object.__setattr__(self, f"{letter}_{axle}1", damper)
-        object.__setattr__(self, f"{letter}_{axle}2", spring)
-        object.__setattr__(self, f"{letter}_{axle}", damper if damper == spring else None)
+    def __getattr__(self, name: str) -> Any:
+        """Return a parameter; of an extra that the vehicle has not, the value without effect."""
+        own = self.__dict__.get("parameters", {})
+        if name in own:
+            return own[name]
+        if name not in all_names(self.__dict__.get("model", "full")):
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'")
+        if name in APART and own.keys() & {*APART[name]}:
+            damper, spring = (own[one] for one in APART[name])
+            return damper if damper == spring else None
+        shared = next((one for one, apart in APART.items() if name in apart), name)
+        return own.get(shared, ABSENT.get(name))
+
+    def __dir__(self) -> list[str]:
+        """Return the names of all attributes, parameters included."""
+        return [*super().__dir__(), *all_names(self.model)]
+
+    def __hash__(self) -> int:
+        """Return the hash of everything that two equal vehicles share."""
+        return hash((self.model, self.name, self.heights, *self.parameters.items()))
 
     @classmethod
     def from_parameters(
         cls, parameters: Mapping[str, float], *, name: str = "vehicle", **heights: float | None
     ) -> Vehicle:
-        """Return the vehicle with the parameters of a mapping, as a vehicle file holds them.
+        """Return the vehicle with the parameters of a mapping; their names tell which part of a vehicle it is.
 
         Parameters
         ----------
@@ -294,18 +210,7 @@ class Vehicle:
         InputError
             If a name is unknown, a needed one missing or a value impossible; all faults at once.
         """
-        problems = Problems()
-        where = f"vehicle {name}"
-        for unknown in parameters.keys() - PARAMETERS.keys():
-            problems.add(where, f"'{unknown}'", "the name of a parameter", did_you_mean(unknown, PARAMETERS))
-        needed = set(parameter_names()) - {"t_f", "t_r"}
-        for missing in [f.name for f in fields(cls) if f.name in needed and f.name not in parameters]:
-            if PARAMETERS[missing].positive:
-                unit, meaning, *_ = PARAMETERS[missing]
-                problems.add(where, f"no '{missing}'", f"the {meaning} in {unit}", f"Add {missing} = ... to it.")
-        problems.raise_if_any()
-        keywords: dict[str, Any] = {**parameters, **heights}
-        return cls(**keywords, name=name)
+        return cls(parameters, name=name, model=model_of(parameters), **heights)
 
     @classmethod
     def nearest(cls, values: Mapping[str, float], *, name: str = "vehicle", **heights: float | None) -> Vehicle:
@@ -321,52 +226,66 @@ class Vehicle:
             for key, value in values.items()
             if key in PARAMETERS
         }
-        return cls.from_parameters(possible, name=name, **heights)
+        return cls(possible, name=name, model=model_of(possible), **heights)
+
+    def with_values(self, **changes: Any) -> Vehicle:
+        """Return the vehicle with other values of some parameters, of its heights or its name.
+
+        Parameters
+        ----------
+        changes
+            By name, SI; None takes a parameter away. A half-distance of dampers or springs changes that of the other not.
+
+        Returns
+        -------
+        Vehicle
+        """
+        own = dict(self.parameters)
+        for shared, apart in APART.items():
+            if shared in own and changes.keys() & {*apart}:
+                own |= dict.fromkeys(apart, own.pop(shared))
+            elif shared in changes:
+                own = {name: value for name, value in own.items() if name not in apart}
+        return replace(self, **{"parameters": own, **changes})
+
+    @property
+    def layout(self) -> Layout:
+        """Its coordinates and wheel stations."""
+        return LAYOUTS[self.model]
 
     @property
     def tracks(self) -> Tracks:
-        """Whether springs and dampers share their half-distance, and their place on the axle, on both axles."""
-        return "separate" if None in (self.t_f, self.t_r, self.n_f, self.n_r) else "shared"
+        """Whether springs and dampers share their half-distance, and their place on the axle, on all axles."""
+        return "separate" if any(one in self.parameters for apart in APART.values() for one in apart) else "shared"
 
     @property
     def wheelbase(self) -> float:
-        """Front axle to rear axle, m."""
-        return self.a + self.b
+        """Front axle to rear axle, m; 0 where front and rear are not told apart."""
+        return self.a + self.b if self.layout.pitches else 0.0
 
     @property
     def total_mass(self) -> float:
         """Mass of the whole empty vehicle, kg."""
-        return self.m_s + 2 * (self.m_uf + self.m_ur)
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """Values of the parameters by name: shared half-distances where they are shared, extras where not zero."""
-        return {name: getattr(self, name) for name in parameter_names(self.tracks, self.extras)}
+        layout = self.layout
+        return float(self.m_s + sum(getattr(self, f"m_u{axle}") * len(layout.wheels_of(axle)) for axle in layout.axles))
 
     def __shown__(self) -> dict[str, float | str]:
         """Return what a console and a notebook show: parameters and heights, without the places that follow from others."""
         heights = {key: value for key, value in self.heights.by_key.items() if value is not None}
-        return {"name": self.name, **self.parameters, **heights}
+        model = {} if self.model == "full" else {"model": self.model}
+        return {"name": self.name, **model, **self.parameters, **heights}
 
     @property
     def extras(self) -> tuple[str, ...]:
         """Names of what it has beyond the paper's vehicle."""
-        return tuple(
-            extra
-            for extra in EXTRA_PARAMETERS
-            if any(
-                getattr(self, name) != NEUTRAL[name]
-                for name in parameters_of_term(extra, self.tracks)
-                if name in NEUTRAL
-            )
-        )
+        return effective_terms(self.parameters, self.tracks, self.layout)
 
     @property
     def heights(self) -> Heights:
         """Heights, as far as they are known."""
         return Heights(self.cg_height, self.wheel_height, self.roll_axis_height)
 
-    def model(self, load: Load = EMPTY) -> LinearModel:
+    def linear_model(self, load: Load = EMPTY) -> LinearModel:
         """Return the equations of motion of this vehicle with a load, as functions of its parameters.
 
         Parameters
@@ -374,8 +293,9 @@ class Vehicle:
         load
             What is on it.
         """
-        elements = seven_degrees_of_freedom(self.tracks, self.extras, self.heights, self.wheelbase)
-        elements += stiffened_air_springs(load.mass_at_wheels(self.wheelbase), self.tracks, self.extras, self.wheelbase)
+        elements = linear_elements(self.tracks, self.extras, self.heights, self.wheelbase, self.layout)
+        at_wheels = load.mass_at_wheels(self.wheelbase, self.layout)
+        elements += stiffened_air_springs(at_wheels, self.tracks, self.extras, self.wheelbase, self.layout)
         elements += load.elements(self.heights, tuple(self.parameters))
         return LinearModel.of(elements, tuple(self.parameters))
 
@@ -390,7 +310,7 @@ class Vehicle:
         Returns
         -------
         Matrices
-            M, C and K, each of shape (7, 7), SI: eq. (2) of the paper.
+            M, C and K, each of shape (7, 7), SI: eq. (2) of the paper; of a part of a vehicle in its coordinates.
         """
-        model = self.model(load)
+        model = self.linear_model(load)
         return model.matrices(with_tyre_rates_at_rest(model, list(self.parameters.values())))

@@ -2,32 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.optimize import linear_sum_assignment
 
-from sprung.vehicle import COORDINATES, Matrices, Rows, Sensor
+from sprung.vehicle import COORDINATES, LAYOUTS, Layout, Matrices, Rows, Sensor, VehicleModel
 from sprung.vibration.modes import Mode, eigenmodes, group_real_pairs, modal_assurance_criterion
 
 Real = NDArray[np.float64]
 
-_BODY = ("body bounce", "body pitch", "body roll")
+_BODY = {"z_s": "body bounce", "theta": "body pitch", "phi": "body roll"}
 
 # Patterns of the wheels A front left, B front right, C rear left, D rear right. Left and right move alike in the first two
 # sets, oppositely in the other two; in each of these pairs either the axles move on their own, or all four wheels together.
-_HOP = {
+_Patterns = Mapping[tuple[str, ...], Real]
+
+_HOP: _Patterns = {
     ("front axle hop", "rear axle hop"): np.array([[1, 1, 0, 0], [0, 0, 1, 1]]) / np.sqrt(2),
     ("wheel bounce", "wheel pitch"): np.array([[1, 1, 1, 1], [-1, -1, 1, 1]]) / 2,
 }
-_TRAMP = {
+_TRAMP: _Patterns = {
     ("front axle tramp", "rear axle tramp"): np.array([[1, -1, 0, 0], [0, 0, 1, -1]]) / np.sqrt(2),
     ("wheel roll", "wheel warp"): np.array([[1, -1, 1, -1], [1, -1, -1, 1]]) / 2,
 }
+_WHEEL_PATTERNS: Mapping[VehicleModel, Sequence[_Patterns]] = {
+    "full": (_HOP, _TRAMP),
+    "pitch-plane": (
+        {
+            ("front axle hop", "rear axle hop"): np.eye(2),
+            ("wheel bounce", "wheel pitch"): np.array([[1, 1], [-1, 1]]) / np.sqrt(2),
+        },
+    ),
+    "roll-plane": ({("axle hop", "axle tramp"): np.array([[1, 1], [1, -1]]) / np.sqrt(2)},),
+    "quarter": ({("wheel hop",): np.eye(1)},),
+}
+"""Patterns of the wheels of a part of a vehicle: sets of which one each is taken."""
 
 _ALONE = {
     "z_e": "engine bounce",
@@ -39,15 +53,26 @@ _ALONE = {
 }
 """By coordinate: the name of the mode in which it moves by itself."""
 
-_TEMPLATES = block_diag(np.eye(3), np.vstack([*_HOP.values(), *_TRAMP.values()]).T)
-"""Shapes of the modes of body and wheels, in the order of `MODE_NAMES`, shape (7, mode)."""
+_TELLING: Mapping[VehicleModel, tuple[str, ...]] = {
+    "full": ("a",),
+    "pitch-plane": ("a", "m_uf"),
+    "roll-plane": ("m_u", "I_xx"),
+    "quarter": ("m_u",),
+}
+"""Parameters that tell a part of a vehicle, the place of the centre of gravity among them."""
 
-MODE_NAMES = (*_BODY, *(name for pairs in (_HOP, _TRAMP) for pair in pairs for name in pair), *_ALONE.values())
-"""Every name that a mode may get. Of the eight names of wheel modes one vehicle has four: for hop and for tramp either those of
-the axles or those of all four wheels."""
+MODE_NAMES = (
+    *_BODY.values(),
+    *dict.fromkeys(
+        name for sets in _WHEEL_PATTERNS.values() for patterns in sets for names in patterns for name in names
+    ),
+    *_ALONE.values(),
+)
+"""Every name that a mode may get. Of the first eight names of wheel modes a whole vehicle has four: for hop and for tramp
+either those of the axles or those of all four wheels."""
 
 _PAPER_NAMES = {
-    **{name: name for name in (*_BODY, "wheel bounce", "wheel pitch", "wheel roll")},
+    **{name: name for name in (*_BODY.values(), "wheel bounce", "wheel pitch", "wheel roll")},
     "rear axle hop": "wheel bounce",
     "rear axle tramp": "wheel pitch",
     "front axle hop": "wheel roll",
@@ -110,7 +135,7 @@ def name_modes(
     half_wheelbase, half_track
         Levers that make pitch and roll angles comparable with displacements, m.
     coordinates
-        Names of the coordinates, the paper's seven first.
+        Names of the coordinates, those of body and wheels first.
 
     Returns
     -------
@@ -120,38 +145,48 @@ def name_modes(
     groups = group_real_pairs(modes)
     if not groups:
         return ()
-    # The body counts at its four corners, and as much what is a large part of it, as an engine; what has no mass does not.
+    layout = next(one for one in LAYOUTS.values() if one.coordinates == tuple(coordinates[: len(one.coordinates)]))
+    n, body, patterns = len(layout.coordinates), [_BODY[one] for one in layout.body], _WHEEL_PATTERNS[layout.model]
+    # The body counts at its corners, and as much what is a large part of it, as an engine; what has no mass does not.
     further = [name for name in coordinates if name in _ALONE]
-    chosen = [*range(len(COORDINATES)), *(list(coordinates).index(name) for name in further)]
+    chosen = [*range(n), *(list(coordinates).index(name) for name in further)]
     # Twist and bending count by how far the corners, or the middle, of the body move.
-    sizes_of = {"q_w": 2 * half_wheelbase * half_track, "q_v": half_wheelbase**2}
-    scale = np.array([2, 2 * half_wheelbase, 2 * half_track, 1, 1, 1, 1, *(sizes_of.get(one, 2.0) for one in further)])
+    corners = float(np.sqrt(len(layout.wheels)))
+    sizes_of = {
+        "theta": half_wheelbase,
+        "phi": half_track,
+        "q_w": half_wheelbase * half_track,
+        "q_v": half_wheelbase**2 / 2,
+    }
+    of_body = [corners * sizes_of.get(one, 1.0) for one in (*layout.body, *further)]
+    scale = np.array([*of_body[: len(body)], *[1.0] * len(layout.wheels), *of_body[len(body) :]])
     together = scale[:, None] * np.stack([mode.shape[chosen] for group in groups for mode in group], axis=1)
+    templates = block_diag(np.eye(len(body)), np.vstack([shapes for one in patterns for shapes in one.values()]).T)
     # An engine goes along with the body in the body's modes: it counts in a mode of its own alone.
     of_shapes = np.hstack(
-        [modal_assurance_criterion(together[:7], _TEMPLATES), modal_assurance_criterion(together, _alone(scale))]
+        [
+            modal_assurance_criterion(together[:n], templates),
+            modal_assurance_criterion(together, np.eye(len(scale))[:, n:]),
+        ]
     )
-    known = (*MODE_NAMES[: _TEMPLATES.shape[1]], *(_ALONE[name] for name in further))
+    of_wheels = [name for one in patterns for names in one for name in names]
+    known = (*body, *of_wheels, *(_ALONE[name] for name in further))
     sizes = np.array([len(group) for group in groups])
     of_groups = np.add.reduceat(of_shapes, np.cumsum(sizes) - sizes, axis=0) / sizes[:, None]
     best, name_of = -np.inf, dict[int, str]()
-    for hop, tramp in product(_HOP, _TRAMP):
-        names = (*_BODY, *hop, *tramp, *(_ALONE[name] for name in further))
+    for together_named in product(*patterns):
+        names = (*body, *chain(*together_named), *(_ALONE[name] for name in further))
         alike = of_groups[:, [known.index(name) for name in names]]
         rows, columns = linear_sum_assignment(alike, maximize=True)
         total = float(alike[rows, columns].sum())
         if total > best + _TIE:
             best = total
             like = alike.copy()
-            like[:, :2] = alike[:, :2].sum(axis=1, keepdims=True)
+            if layout.pitches:
+                like[:, :2] = alike[:, :2].sum(axis=1, keepdims=True)
             found = zip(rows.tolist(), columns.tolist(), strict=True)
             name_of = {row: names[column] for row, column in found if like[row, column] >= LEAST_SIMILARITY}
     return tuple(replace(mode, name=name_of.get(i)) for i, group in enumerate(groups) for mode in group)
-
-
-def _alone(scale: Real) -> Real:
-    """Return the shapes in which nothing but one of the coordinates after the seventh moves, shape (coordinate, shape)."""
-    return np.eye(len(scale))[:, 7:]
 
 
 def compute_modes(matrices: Matrices, coordinates: Sequence[str] = COORDINATES) -> tuple[Mode, ...]:
@@ -162,7 +197,7 @@ def compute_modes(matrices: Matrices, coordinates: Sequence[str] = COORDINATES) 
     matrices
         M, C and K.
     coordinates
-        Names of their coordinates, the paper's seven first.
+        Names of their coordinates, those of body and wheels first.
 
     Returns
     -------
@@ -176,13 +211,13 @@ def compute_modes(matrices: Matrices, coordinates: Sequence[str] = COORDINATES) 
     >>> [f"{mode.name} {mode.frequency:.3f}" for mode in compute_modes(SCHOOL_BUS.matrices())][:3]
     ['body roll 1.071', 'body bounce 2.015', 'body pitch 2.812']
     """
-    sprung, pitch, roll = np.diag(matrices.M)[:3]
-    levers = float(np.sqrt(pitch / sprung)), float(np.sqrt(roll / sprung))
-    return name_modes(eigenmodes(matrices), *levers, coordinates)
+    masses = dict(zip(coordinates, np.diag(matrices.M).tolist(), strict=True))
+    pitch, roll = (float(np.sqrt(masses.get(angle, 0.0) / masses["z_s"])) for angle in ("theta", "phi"))
+    return name_modes(eigenmodes(matrices), pitch, roll, coordinates)
 
 
 def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
-    """Return modes with shapes in the seven coordinates from shapes at the sensors, by least squares.
+    """Return modes with shapes in the coordinates of body and wheels from shapes at the sensors, by least squares.
 
     Parameters
     ----------
@@ -202,7 +237,8 @@ def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: f
     places = _body_places(sensors)
     if a is None:
         a = -float(places[:, 0].min() + places[:, 0].max()) / 2 if len(places) else 0.0
-    rows = Rows.of([sensor.row for sensor in sensors], ("a",)).at([a])
+    names = _TELLING[_layout_at(sensors).model]
+    rows = Rows.of([sensor.row for sensor in sensors], names).at([a if name == "a" else 0.0 for name in names])
     inverse = np.linalg.pinv(rows)
     return tuple(replace(mode, shape=inverse @ mode.shape, name=None, uncertainty=None) for mode in modes)
 
@@ -222,14 +258,21 @@ def name_modes_at_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: f
     Returns
     -------
     tuple of Mode
-        Shapes in the seven coordinates, named, in the order of undamped natural frequency.
+        Shapes in the coordinates of body and wheels, named, in the order of undamped natural frequency.
     """
     spread = np.ptp(_body_places(sensors), axis=0) / 2 if len(_body_places(sensors)) else np.zeros(2)
     return name_modes(
         expand_to_coordinates(modes, sensors, a),
         float(spread[0]) or _HALF_WHEELBASE,
         float(spread[1]) or _HALF_TRACK,
+        _layout_at(sensors).coordinates,
     )
+
+
+def _layout_at(sensors: Sequence[Sensor]) -> Layout:
+    """Return the layout whose wheel stations sensors are on; that of a whole vehicle where none is on a wheel."""
+    stations = {sensor.on for sensor in sensors} - {"body", None}
+    return next(layout for layout in LAYOUTS.values() if stations <= {*layout.wheels})
 
 
 def _body_places(sensors: Sequence[Sensor]) -> Real:

@@ -52,7 +52,8 @@ def _contradicted(name: str, stated: KnownValue, candidate: CandidateFit) -> Fau
     loads = [
         load.name
         for load in candidate.campaign.loads
-        if load.mass and abs(stated.value - load.mass - estimate) < _LOAD_INCLUDED * estimate
+        if (mass := load.total_mass(candidate.campaign.layout))
+        and abs(stated.value - mass - estimate) < _LOAD_INCLUDED * estimate
     ]
     if name.endswith("_mass") and loads:
         what += f", and the difference is the mass of load '{loads[0]}', which it must not include"

@@ -11,6 +11,7 @@ from sprung.errors import Fault
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, stated_place
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import Correction, describe_sensor
+from sprung.vehicle import Row, Rows
 
 _MIRRORED = 0.1
 """Share of its distance from the centreline by which a place may miss the mirrored one."""
@@ -23,7 +24,8 @@ def position(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     code = "wrong-wheel" if sensor.position is None else "position"
     origin = replace(sensor, on="body", position=(0.0, 0.0, stated[2]))
     heave = prediction.row(origin) @ prediction.motion
-    rotation = np.stack([-prediction.motion[1], prediction.motion[2]])
+    turning = Rows.of([Row({"theta": -1.0}), Row({"phi": 1.0})], prediction.candidate.fit.names)
+    rotation = turning.at(prediction.candidate.fit.values) @ prediction.motion
     place = np.linalg.lstsq(rotation.T, prediction.record - heave, rcond=None)[0]
 
     def fault(numbers: Numbers, _: Numbers) -> Fault:

@@ -9,12 +9,11 @@ from sprung.errors import Fault
 from sprung.faults.channel.hypothesis import ChannelHypothesis, stated_place
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import Correction, describe_sensor
-from sprung.vehicle import WHEELS
 
 
 def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Put the sensor on each other wheel."""
-    for station in WHEELS:
+    for station in prediction.candidate.campaign.layout.wheels:
         if station == prediction.sensor.on:
             continue
         sensor = replace(prediction.sensor, on=station, position=None)

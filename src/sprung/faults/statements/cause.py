@@ -15,10 +15,10 @@ Place = tuple[float, float, float]
 _PAIRED = 0.5
 """m by which the place of a sensor may miss that opposite to another one."""
 
-SIDES: Mapping[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl"}
+SIDES: Mapping[Wheel, Wheel] = {"fl": "fr", "fr": "fl", "rl": "rr", "rr": "rl", "left": "right", "right": "left"}
 """Left and right exchanged."""
 
-ENDS: Mapping[Wheel, Wheel] = {"fl": "rl", "fr": "rr", "rl": "fl", "rr": "fr"}
+ENDS: Mapping[Wheel, Wheel] = {"fl": "rl", "fr": "rr", "rl": "fl", "rr": "fr", "front": "rear", "rear": "front"}
 """Front and rear exchanged."""
 
 CommonCause = tuple[Fault, Campaign]
@@ -58,7 +58,8 @@ def _nearest(place: Place, places: Sequence[Place]) -> Place:
 def with_stations(campaign: Campaign, other: Mapping[Wheel, Wheel]) -> tuple[Campaign, tuple[str, ...]]:
     """Put the wheels' sensors on other wheels; give the campaign and the channels."""
     sensors = tuple(
-        one if one.on is None or one.on == "body" else replace(one, on=other[one.on]) for one in campaign.sensors
+        one if one.on is None or one.on == "body" else replace(one, on=other.get(one.on, one.on))
+        for one in campaign.sensors
     )
     return replace(campaign, sensors=sensors), tuple(one.channel for one in campaign.sensors if one.on != "body")
 

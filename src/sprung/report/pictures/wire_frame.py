@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.report.drawing.picture import Real
 from sprung.results import Result
+from sprung.vehicle import FULL, STATIONS, Layout, half_distances, layout_of
 from sprung.vibration import largest_entry
 
 _DECK, _ROOF, _HUB = 0.3, 0.62, 0.13
@@ -17,6 +18,9 @@ _DECK, _ROOF, _HUB = 0.3, 0.62, 0.13
 
 _OVERHANG, _INSET = 0.2, 0.12
 """Body beyond the axles, as a part of the wheelbase, and inset of the roof, as a part of the track."""
+
+_WHEELBASE = 2.7
+"""m, where it is not known."""
 
 _TRACK = 0.27
 """Half the track as a part of the wheelbase, where it is not known."""
@@ -108,7 +112,7 @@ def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
     WireCar
     """
     values = {name: estimate.value for name, estimate in result.parameters.items() if estimate.value is not None}
-    wheelbase = result.setup.known["wheelbase"].value if "wheelbase" in result.setup.known else 1.0
+    wheelbase = result.setup.known["wheelbase"].value if "wheelbase" in result.setup.known else _WHEELBASE
     a, b = values.get("a"), values.get("b")
     a, b = (a, b) if a and b else (wheelbase / 2, wheelbase / 2)
     length = a + b
@@ -125,6 +129,7 @@ def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
     rows[:12, 0], rows[:12, 1], rows[:12, 2] = 1, -flat[:12, 0], flat[:12, 1]
     rows[HUBS, range(3, 7)] = 1
     rows[16:, 7] = 1
+    rows = rows @ _of_whole(layout_of(values))
     across, up = flat[:, 0] + _AWAY[0] * flat[:, 1], heights + _AWAY[1] * flat[:, 1]
     radius = _HUB * length
     scale = (width - 12) / (np.ptp(across) + 1e-9)
@@ -134,9 +139,21 @@ def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
     return WireFrame(places, rows * scale, scale * radius, width, float(scale * (top - bottom)))
 
 
+def _of_whole(layout: Layout) -> Real:
+    """Return the coordinates of a whole vehicle, and of its engine, by those of the part of it that moves so."""
+    of_part = (*layout.coordinates, "z_e")
+    coordinates = [coordinate if coordinate in layout.body else "" for coordinate in FULL.body]
+    for wheel in FULL.wheels:
+        _, _, side, end = STATIONS[wheel]
+        alike = (one for one in layout.wheels if STATIONS[one].side in (0.0, side) and STATIONS[one].end in (0.0, end))
+        coordinates.append(STATIONS[next(alike)].coordinate)
+    return np.array([[float(own == one) for one in of_part] for own in (*coordinates, "z_e")])
+
+
 def _half_track(result: Result, values: Mapping[str, float], wheelbase: float) -> float:
     """Return half the track: the largest half-distance of springs or dampers, or else of the body's sensors."""
-    places = [value for name, value in values.items() if name.startswith(("t_f", "t_r"))]
+    names = {name for tracks in ("shared", "separate") for name in half_distances(tracks).values()}
+    places = [value for name, value in values.items() if name in names]
     if not places:
         places = [abs(sensor.position[1]) for sensor in result.setup.sensors if sensor.position is not None]
     return max(places, default=0.0) or _TRACK * wheelbase

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sprung.campaign import Campaign
 from sprung.results import Result
 from sprung.uncertainty import round_by_uncertainty
-from sprung.vehicle import EMPTY, Load, Sensor
+from sprung.vehicle import EMPTY, Load, Sensor, SensorPlace, half_distances
 
 _FINEST = 0.01
 """Smallest standard uncertainty for rounding, m: lengths are rounded to 1 mm at most."""
@@ -97,6 +97,16 @@ class Geometry:
     blank: bool = False
 
 
+_DRAWN_AT: Mapping[SensorPlace | None, SensorPlace] = {
+    "left": "fl",
+    "right": "fr",
+    "front": "fl",
+    "rear": "rl",
+    "wheel": "fl",
+}
+"""Where on a whole vehicle the wheel stations of a part of it are drawn."""
+
+
 def geometry_of(source: Campaign | Result) -> Geometry:
     """Return the dimensions in a campaign or a result.
 
@@ -158,9 +168,9 @@ def _geometry(
         wheelbase = a + b
     a = wheelbase - b if a.value is None else a
     b = wheelbase - a if b.value is None else b
-    apart = separate or any(name in lengths for name in ("t_f1", "t_f2", "t_r1", "t_r2"))
-    springs = (length("t_f2", "t_f"), length("t_r2", "t_r"))
-    dampers = (length("t_f1", "t_f"), length("t_r1", "t_r"))
+    apart = separate or any(name in lengths for name in half_distances("separate").values())
+    springs = (length("t_f2", "t_f", "t_2", "t"), length("t_r2", "t_r", "t_2", "t"))
+    dampers = (length("t_f1", "t_f", "t_1", "t"), length("t_r1", "t_r", "t_1", "t"))
     return Geometry(
         name=name,
         wheelbase=wheelbase,
@@ -172,7 +182,7 @@ def _geometry(
         cg_height=Length(heights.get("cg_height")),
         wheel_height=Length(heights.get("wheel_height")),
         roll_axis_height=Length(heights.get("roll_axis_height")),
-        sensors=sensors,
+        sensors=tuple(replace(sensor, on=_DRAWN_AT.get(sensor.on, sensor.on)) for sensor in sensors),
         loads=tuple(load for load in loads if load.name != EMPTY.name),
         identified=identified,
     )

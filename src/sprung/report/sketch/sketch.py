@@ -86,4 +86,6 @@ def _without_position(geometry: Geometry) -> Iterator[str]:
         yield f"wheel station{'s' * (len(wheels) > 1)} of {', '.join(wheels)}"
     for load in geometry.loads:
         if not load.items:
-            yield f"position of load {load.name}" + (f" ({load.mass:g} kg in total)" if load.added is not None else "")
+            yield f"position of load {load.name}" + (
+                f" ({load.total_mass():g} kg in total)" if load.added is not None else ""
+            )

@@ -23,6 +23,7 @@ from sprung.results import (
 )
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
+from sprung.vehicle import Layout, layout_of
 
 _CLOSE = 0.9
 """Correlation above which a pair of parameters is listed."""
@@ -126,19 +127,18 @@ def known(result: Result) -> Context:
     return {
         "known": table,
         "heights": heights,
-        "loads": list(_loads(result.setup)),
+        "loads": list(_loads(result.setup, layout_of(result.parameters))),
         "sensors": _sensors(result.setup),
         "of_sensors": sensors_table(result.sensors) if result.sensors else None,
     }
 
 
-def _loads(setup: Setup) -> Iterator[str]:
+def _loads(setup: Setup, layout: Layout) -> Iterator[str]:
     for load in setup.loads:
+        mass = load.total_mass(layout)
         if load.added is not None:
             added = load.added
-            yield (
-                f"{load.name}: {load.mass:g} kg in all, as totals (I_yy {added.I_yy:g} kg m², I_xx {added.I_xx:g} kg m²)"
-            )
+            yield (f"{load.name}: {mass:g} kg in all, as totals (I_yy {added.I_yy:g} kg m², I_xx {added.I_xx:g} kg m²)")
         elif load.items:
             places = "; ".join(
                 f"{item.mass:g} kg "
@@ -146,7 +146,7 @@ def _loads(setup: Setup) -> Iterator[str]:
                 + (" on a seat" if item.is_soft else "")
                 for item in load.items
             )
-            yield f"{load.name}: {load.mass:g} kg in all: {places}"
+            yield f"{load.name}: {mass:g} kg in all: {places}"
 
 
 def _place(position: tuple[float, float, float]) -> str:
