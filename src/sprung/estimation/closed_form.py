@@ -26,8 +26,8 @@ Real = NDArray[np.float64]
 _UNBOUNDED = 100.0
 """Powers of e by which no motion grows within a record."""
 
-_DEFECTIVE = 300.0
-"""Condition number of a pole from which two modes have all but met in one shape."""
+_MEETING = 0.05
+"""Separation below which two modes have all but met in one shape."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +102,7 @@ class ClosedFormObjective:
         if float(modes.poles.real.max()) * self.span > _UNBOUNDED:
             return ClosedFormAt(self, values, weights, modes, ())
         # Delays turn shapes: they need modal coordinates, and bear with what rounding leaves near a critical damping.
-        if not (self._has_clocks or self.sensors.has_delays) and modes.condition > _DEFECTIVE:
+        if not (self._has_clocks or self.sensors.has_delays) and modes.separation < _MEETING:
             from sprung.estimation.matrix_exponential import MatrixExponentialAt  # noqa: PLC0415 (hardly ever needed)
 
             return MatrixExponentialAt(self, self.models, self.sensors, values, weights)

@@ -66,13 +66,19 @@ class ModalSolution:
         return self.velocities * self.poles[..., None, :]
 
     @property
-    def condition(self) -> float:
-        """Largest condition number |w||v|/|w·v| of a pole: infinite where two modes meet in one shape."""
-        # Displacements and velocities are made comparable by a usual frequency.
-        balance = np.ones(self.right.shape[-1])
-        balance[: self.coordinates] = float(np.median(np.abs(self.poles)))
-        right = _sizes(self.right * balance[:, None], axis=-2)
-        return float((right * _sizes(self.left / balance, axis=-1)).max())
+    def separation(self) -> float:
+        """How far apart the two modes are that are most alike, in poles and in shapes, dimensionless; 0 where they meet in one.
+
+        The larger of |λ₁ - λ₂|/|λ₁| and the sine of the angle between the displacements, their coordinates made comparable.
+        """
+        frequency = np.maximum(np.abs(self.poles), np.finfo(float).tiny)
+        apart = np.abs(self.poles[..., :, None] - self.poles[..., None, :]) / frequency[..., :, None]
+        shapes = self.displacements / _sizes(self.displacements, axis=-2)[..., None, :]
+        shapes = shapes / np.maximum(_sizes(shapes, axis=-1), np.finfo(float).tiny)[..., :, None]
+        shapes = shapes / _sizes(shapes, axis=-2)[..., None, :]
+        alike = np.abs(np.swapaxes(shapes.conj(), -1, -2) @ shapes)
+        angle = np.sqrt(np.maximum(1 - alike**2, 0.0))
+        return float((np.maximum(apart, angle) + 2 * np.eye(apart.shape[-1])).min())
 
 
 def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolution:
