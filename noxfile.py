@@ -113,6 +113,7 @@ def studies(session: nox.Session) -> None:
     session.install(".[all,peers]", "matplotlib")
     for study in (
         "at_the_bound",
+        "parts_of_a_vehicle",
         "coloured",
         "no_guess",
         "faults",

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 import sprung
 from sprung.planning import CramerRaoBound, MeasurementSetup, PlannedDrop, PlannedTest
 from sprung.uncertainty import NORMAL_95, KnownValue
-from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity, parameter_of
+from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity, parameter_name, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -32,6 +32,8 @@ LOAD = 0.1
 
 WEIGHING = 0.001
 """Standard uncertainty of everything weighed, as a part of the vehicle's mass."""
+
+_COUNTS = {1: "one", 2: "two", 3: "three", 5: "five", 6: "six", 10: "ten"}
 
 AXLES = ("front_axle_mass", "rear_axle_mass")
 
@@ -48,8 +50,13 @@ def white(record: Real, level: float, random: np.random.Generator) -> Real:
 
 
 def ballast(vehicle: Vehicle) -> Load:
-    """Put a tenth of the vehicle's mass on it: more of it ahead and left, the rest behind and right."""
-    mass, wheelbase, side = LOAD * vehicle.total_mass, vehicle.wheelbase, 0.4 * float(vehicle.t_f1 or 0)
+    """Put a tenth of the vehicle's mass on it: more of it ahead and left, the rest behind and right, as far as it has sides."""
+    mass, wheelbase = LOAD * vehicle.total_mass, vehicle.wheelbase
+    side = (
+        0.4 * float(getattr(vehicle, parameter_name("t", vehicle.layout.axles[0], "1")))
+        if vehicle.layout.rolls
+        else 0.0
+    )
     items = (
         Item(mass=0.6 * mass, position=(-0.4 * wheelbase, side, 0.5)),
         Item(mass=0.4 * mass, position=(-0.75 * wheelbase, -side, 0.5)),
@@ -70,7 +77,7 @@ class Case:
     Attributes
     ----------
     vehicle
-        What is dropped, five ways: on all wheels, front, rear, left and right ones.
+        What is dropped: on all wheels, front, rear, left and right ones, as far as it has them.
     loaded
         Whether it is dropped the same ways again with a load.
     weighed
@@ -91,7 +98,10 @@ class Case:
     def test(self) -> str:
         """The test in words."""
         scales = {(): "nothing weighed", ("total_mass",): "total mass weighed", AXLES: "axles weighed"}
-        return f"{f'ten drops{WITH_LOAD}' if self.loaded else 'five drops'}, {scales[self.weighed]}"
+        layout = self.vehicle.layout
+        ways = 1 + 2 * layout.pitches + 2 * layout.rolls
+        drops = f"{_COUNTS[2 * ways]} drops{WITH_LOAD}" if self.loaded else f"{_COUNTS[ways]} drop{'s' * (ways > 1)}"
+        return f"{drops}, {scales[self.weighed]}"
 
     @property
     def label(self) -> str:
@@ -213,7 +223,8 @@ class Trial(NamedTuple):
 
 def _measurement_setup(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> MeasurementSetup:
     sensors = _without_noise(vehicle, False).sensors
-    everything = {"wheelbase": KnownValue(vehicle.wheelbase), **known}
+    tape = {"wheelbase": KnownValue(vehicle.wheelbase)} if vehicle.layout.pitches else {}
+    everything = {**tape, **known}
     return MeasurementSetup(
         vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION
     )

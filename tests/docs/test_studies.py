@@ -102,6 +102,16 @@ def test_at_the_bound(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+def test_parts_of_a_vehicle(tmp_path: Path) -> None:
+    page, numbers = study("parts_of_a_vehicle.py", tmp_path, "--campaigns", "1")
+    assert "nan" not in page
+    assert {case["vehicle"] for case in numbers["cases"]} == {"Quarter car", "Roll plane", "Pitch plane"}
+    for case in numbers["cases"]:
+        check_errors(case, 1)
+        assert case["wrong_models"] == case["incomplete"] == 0
+
+
+@pytest.mark.long
 def test_coloured(tmp_path: Path) -> None:
     page, numbers = study("coloured.py", tmp_path, "--campaigns", "1", "--tests", "1")
     assert "row has 1 campaigns" in page
