@@ -9,7 +9,7 @@ import numpy as np
 
 from sprung.errors import Problems, did_you_mean
 from sprung.results import Result
-from sprung.vehicle import PARAMETERS, Vehicle
+from sprung.vehicle import PARAMETERS, Vehicle, all_names
 
 
 def start_values(start: Result | Vehicle | Mapping[str, float] | None) -> dict[str, float]:

@@ -241,10 +241,11 @@ def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[s
     """Return the known values that are valid, the wheelbase included."""
     known: dict[str, KnownValue] = {}
     model = parsed.file.vehicle.model
+    of_model = [name for name in KNOWABLE if name not in PARAMETERS or name in all_names(model)]
     for name, measured in parsed.file.known.items():
         where = parsed.where("known", name)
         if name not in KNOWABLE:
-            do = "Write it under [vehicle]." if name == "wheelbase" else did_you_mean(name, KNOWABLE)
+            do = "Write it under [vehicle]." if name == "wheelbase" else did_you_mean(name, of_model)
             problems.add(where, f"the unknown quantity '{name}'", "the name of a parameter, or of a weighed mass", do)
             continue
         if name in PARAMETERS and name not in all_names(model):
