@@ -121,10 +121,8 @@ def test_a_mistyped_name_is_told() -> None:
     [("k_fs", "k_sf"), ("m_su", "m_s"), ("k_rt", "k_tr"), ("weelbase", "wheelbase"), ("M_S", "m_s")],
 )
 def test_exchanged_letters_are_one_typing_error(written: str, meant: str) -> None:
-    assert (
-        did_you_mean(written, (*(name for name in PARAMETERS if name in all_names("full")), "wheelbase"))
-        == f"Did you mean '{meant}'?"
-    )
+    names = [name for name in PARAMETERS if name in all_names("full")]
+    assert did_you_mean(written, (*names, "wheelbase")) == f"Did you mean '{meant}'?"
 
 
 def test_covariance_and_criteria_survive_saving(result: Result, campaign: sprung.Campaign, tmp_path: Path) -> None:
