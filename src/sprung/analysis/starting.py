@@ -45,7 +45,9 @@ def start_values(start: Result | Vehicle | Mapping[str, float] | None) -> dict[s
         if isinstance(value, bool) or not isinstance(value, int | float | np.number):
             problems.add(f"start[{name!r}]", repr(value), "a number, SI", "Correct it.")
         elif name not in PARAMETERS:
-            problems.add(f"start[{name!r}]", f"'{name}'", "the name of a parameter", did_you_mean(name, all_names("full")))
+            problems.add(
+                f"start[{name!r}]", f"'{name}'", "the name of a parameter", did_you_mean(name, all_names("full"))
+            )
         elif not math.isfinite(value) or (PARAMETERS[name].positive and value <= 0):
             problems.add(f"start[{name!r}]", f"{value:g}", f"a possible value, {PARAMETERS[name].unit}", "Correct it.")
     problems.raise_if_any()

@@ -38,6 +38,7 @@ from sprung.vehicle import (
     is_nuisance,
     layout_of,
     parameter_name,
+    parameter_of,
     separate_track_names,
     uncertainties_of,
 )
@@ -52,6 +53,9 @@ STARTS = 3
 
 _WHITE = 0.15
 """Correlation of neighbouring residuals up to which nothing but noise is left; a motion makes it nearly one."""
+
+_IS_SCALE = 0.999
+"""Cosine of the angle to the direction of the absolute scale from which a direction is that."""
 
 _STEPS_ASIDE = 2
 """At the most, from where the records count by their samples to where they count by their overdispersion: it is not far."""
@@ -100,8 +104,8 @@ def fit_linear(
         Usual values of parameters, as weak priors beside a `start`.
     starts
         How many are refined at the most: the direct one, by modulating functions, and those of the grid that explain the
-        records best as they are. The best end wins. Where the direct one ends at an optimum whose residuals are white noise, no
-        other is refined: a wrong optimum leaves a motion, and a motion is not white.
+        records best as they are. The best end wins. Where the direct one ends at an optimum that determines the vehicle and
+        whose residuals are white noise, no other is refined: a wrong optimum leaves a motion, and a motion is not white.
     enough
         Expected gain in log-likelihood at which to stop.
     most
@@ -141,7 +145,7 @@ def fit_linear(
         u = problem.priors.project(coordinates.from_parameters(direct | nuisance))
         ends.append(problem.maximise(u, None, enough, NEARER, most))
         fit = _best(problem, ends, enough)
-        if len(ends) == starts or (fit.converged and _leaves_white_noise(fit)):
+        if len(ends) == starts or (fit.converged and _leaves_white_noise(fit) and _is_determined(fit)):
             return fit
     if guess:
         vehicles.insert(0, _completed(guess, {**vehicles[0], **(direct or {})}))
@@ -191,6 +195,19 @@ def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: 
     best = ends[int(np.argmin(costs))]
     agreeing = sum(cost - min(costs) < max(1e-3, 4 * enough) for cost in costs)
     return FitResult(problem, best.point, best.steps, best.converged, len(ends), agreeing)
+
+
+def _is_determined(fit: FitResult) -> bool:
+    """Whether records and statements determine everything but the scale: at a wrong optimum a part of a vehicle vanishes."""
+    information, _, null_space = fit.problem.system(fit.iterate)
+    eigenvalues, vectors = np.linalg.eigh(information)
+    missing = null_space @ vectors[:, eigenvalues < least_information(eigenvalues)]
+    # Every mass and rate times a number is one vehicle where nothing was weighed.
+    scales = np.array([float(parameter_of(name).scales) for name in fit.names])
+    of_scale = scales * fit.values / fit.problem.priors.coordinates.derivatives(fit.iterate.u)
+    of_scale /= np.linalg.norm(of_scale)
+    is_scale = float(np.linalg.norm(missing.T @ of_scale)) > _IS_SCALE
+    return int(missing.shape[1]) <= int(is_scale)
 
 
 def _leaves_white_noise(fit: FitResult) -> bool:

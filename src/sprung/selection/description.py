@@ -65,7 +65,8 @@ class TermDescription:
             found = [_estimate(fit, quantity, axle, unit) for quantity, unit in self.quantities]
             if self._is_there(found[0]):
                 text = self.again if parts else self.text
-                parts.append(" ".join(text.format(*map(_in_words, found), axle=_AXLES[axle]).split()))
+                said = " ".join(text.format(*map(_in_words, found), axle=_AXLES[axle]).split())
+                parts.append(said if axle else said.replace("a anti", "an anti"))
         return " and ".join(parts)
 
     def _is_there(self, found: Estimate) -> bool:

@@ -200,14 +200,17 @@ def _tabulated(test: PlannedTest, wanted: float, terms: bool, progress: Progress
 def _terms_of(setup: MeasurementSetup, drops: Sequence[PlannedDrop]) -> tuple[TermDetectability, ...]:
     """Return what drops would show of every term that most vehicles have and that the planned model has not."""
     own, samples = setup.vehicle.parameters, setup.duration * setup.rate * len(drops) * len(setup.sensors)
-    structure = choose_structure(Campaign(name=setup.vehicle.name, sensors=setup.sensors, drops=()))
+    model, layout = setup.vehicle.model, setup.vehicle.layout
+    structure = choose_structure(
+        Campaign(name=setup.vehicle.name, sensors=setup.sensors, drops=(), vehicle_model=model)
+    )
     candidates = []
     for name, term in TERMS.items():
-        if term.usual is None or term.refines or name in setup.extras:
+        if term.usual is None or term.refines or name in setup.extras or not term.parameters(setup.tracks, layout):
             continue
         values = {} if term.undefined is None else dict(term.undefined(own, structure))
         values |= term.usual(own, structure)
-        values = {one: values[one] for one in term.parameters(setup.tracks) if one in values}
+        values = {one: values[one] for one in term.parameters(setup.tracks, layout) if one in values}
         required = required_gain(len(values), len(TERMS), samples)
         candidates.append(TermCandidate(name, values, term.size({**own, **values}), required))
     return detect_terms(setup, drops, candidates)
