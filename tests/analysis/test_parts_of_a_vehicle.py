@@ -108,7 +108,7 @@ def test_a_plan_knows_the_terms_of_the_part(vehicle: Vehicle) -> None:
 
 
 def test_an_optimum_where_a_part_of_the_vehicle_vanishes_is_not_the_end() -> None:
-    """From the direct start the centre of gravity goes above the front axle, which leaves nearly white noise: a sensor was blamed."""
+    """From the direct start the centre of gravity goes above the front axle, which leaves nearly white noise."""
     result = sprung.identify(Case(PITCH_CAR, False, ("total_mass",), 0.1).campaign(112), fall=False)
     assert not result.faults
     assert result.verdict.state == "accept"
