@@ -24,6 +24,9 @@ _SLOWEST = 0.9  # ratio of successive gains that is assumed where only one is kn
 _STALLED = (
     0.01  # expected gain, a tenth of a standard error, above which a point from which no step gains is not an optimum
 )
+_HELD_BACK = 3
+"""Times that coordinates are held back, of which others may go too far then, before the whole step is shortened."""
+
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 Point = TypeVar("Point")
@@ -49,15 +52,26 @@ class NormalEquations(NamedTuple):
     scaling: Array
     directions: Array
 
-    def step(self, damping: float = 0.0) -> tuple[Array, float]:
+    def step(self, damping: float = 0.0, longest: float = np.inf) -> tuple[Array, float]:
         """Return a damped step in the coordinates, the Newton step without damping, and its expected gain.
 
-        The gain is that of twice the log-likelihood.
+        The gain is that of twice the log-likelihood. A coordinate that would go further than the `longest` is held back as by
+        information of its own, so that one of which hardly anything is known does not shorten the step of all others.
         """
         if not self.gradient.size:
             return np.zeros(len(self.directions)), 0.0
-        along = np.linalg.solve(self.information + damping * self.scaling, self.gradient)
-        return self.directions @ along, float((along.conj() @ self.gradient).real)
+        matrix = self.information + damping * self.scaling
+        along = np.linalg.solve(matrix, self.gradient)
+        for _ in range(_HELD_BACK):
+            far = np.abs(self.directions @ along)
+            if not (far > longest).any():
+                break
+            # With the information μ beside the 1/v that there is, a step shrinks by 1 + μ v.
+            own = self.directions[far > longest]
+            v = np.einsum("ij,ji->i", own, np.linalg.solve(matrix, own.T)).real
+            matrix = matrix + own.T @ ((far[far > longest] / longest - 1) / v * own.T).T
+            along = np.linalg.solve(matrix, self.gradient)
+        return _limited(self.directions @ along, longest), float((along.conj() @ self.gradient).real)
 
 
 class Maximisable(Protocol[Point]):
@@ -157,15 +171,15 @@ def _gaining_step(
     """
     first = True
     while damping < _MOST_DAMPING:
-        step, expected = equations.step(damping)
+        step, expected = equations.step(damping, longest)
         if not first and expected < tolerance:
             return None
-        tried, gain = problem.trial(point, _limited(step, longest))
+        tried, gain = problem.trial(point, step)
         if gain >= 0:
             return tried, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
         if first and np.isfinite(gain):
-            back, _ = problem.normal_equations(tried).step(damping)
-            second_point, further = problem.trial(tried, _limited(back, longest))
+            back, _ = problem.normal_equations(tried).step(damping, longest)
+            second_point, further = problem.trial(tried, back)
             if gain + further > 0:
                 return second_point, damping, max(expected, gain + further)
             first = False

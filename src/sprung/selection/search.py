@@ -339,7 +339,8 @@ class ModelSearch:
         )
         much = before > self._sensor_noise
         # Of a motion without bounds the part is no number.
-        return bool(much.any()) and not float(np.mean(after[much] / before[much])) <= part
+        weights = 1 / self._sensor_noise[much]
+        return bool(much.any()) and not float(after[much] @ weights) <= part * float(before[much] @ weights)
 
     @property
     def reason(self) -> str:
