@@ -14,6 +14,7 @@ from sprung.selection import (
     ModelSearch,
     SelectionStep,
     fit_forced_terms,
+    leave_out_refused,
     leave_out_unneeded,
     select_flexible_body,
     try_term,
@@ -50,7 +51,8 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     if search.fit is not before.fit or not has_flexible_body(run):
         search = select_linear(search, refused=before.refused)
     if search.structure.names != before.structure.names:
-        search = from_contact(search)
+        # The fit has moved since a term was accepted: it may speak against it now.
+        search = leave_out_refused(from_contact(search))
     return _with_search(run, before, search, "select_linear_terms")
 
 
