@@ -7,7 +7,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.estimation import escape_local_optimum, uncertainty_of, weigh_statements
 from sprung.progress import Progress, Step
-from sprung.selection import leave_out_refused
+from sprung.selection import leave_out_refused, leave_out_undetermined
 
 
 def estimate_uncertainty(run: Analysis, progress: Progress) -> Analysis:
@@ -21,6 +21,11 @@ def estimate_uncertainty(run: Analysis, progress: Progress) -> Analysis:
         search = search if fit is search.fit else leave_out_refused(replace(search, fit=fit))
     search = replace(search, fit=weigh_statements(search.fit))
     statistics = uncertainty_of(search.fit)
+    if not search.structure.is_time_stepped:
+        determined = leave_out_undetermined(search, statistics)
+        if determined is not search:
+            search = replace(determined, fit=weigh_statements(determined.fit))
+            statistics = uncertainty_of(search.fit)
     refused = search.steps[len(run.model.steps) :]
     run = replace(run, search=search, statistics=statistics, fits=run.fits + len(refused))
     for step in refused:

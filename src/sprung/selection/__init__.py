@@ -1,6 +1,11 @@
 """Selection of the model: the table of model terms, the error budget and the stepwise search."""
 
-from sprung.selection.backward_elimination import leave_out_refused, leave_out_unneeded, needed_terms
+from sprung.selection.backward_elimination import (
+    leave_out_refused,
+    leave_out_undetermined,
+    leave_out_unneeded,
+    needed_terms,
+)
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
@@ -42,6 +47,7 @@ __all__ = [
     "fit_structure",
     "fit_term",
     "leave_out_refused",
+    "leave_out_undetermined",
     "leave_out_unneeded",
     "needed_terms",
     "required_gain",

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
+from sprung.estimation import FitStatistics
 from sprung.selection.search import ModelSearch
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
+from sprung.vehicle import PARAMETERS
 
 
 def needed_terms(search: ModelSearch) -> dict[str, float]:
@@ -41,6 +45,40 @@ def leave_out_refused(search: ModelSearch) -> ModelSearch:
     for term in search.selected:
         # What refines a term goes with it.
         if term in search.selected and (against := search.veto(term)):
+            search = search.recorded({term: search.wald_gain(term)}, True, False, against)
+            search = search.refit(search.without(term))
+    return search
+
+
+def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> ModelSearch:
+    """Return the search without terms of which a parameter is as uncertain as itself, all disagreement of the records counted.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+    statistics
+        Its uncertainty.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    structure = search.structure
+    # Where nothing was weighed the scale is unknown, which speaks against no term.
+    scaling = statistics.scaling / np.linalg.norm(statistics.scaling)
+    within = np.eye(len(scaling)) - np.outer(scaling, scaling)
+    variances = np.diag(within @ statistics.relative_covariance @ within)
+    spreads = np.sqrt(np.maximum(variances, 0.0)) * np.abs(statistics.slopes)
+    uncertain = {
+        name
+        for name, std, value in zip(statistics.names, spreads.tolist(), statistics.values.tolist(), strict=True)
+        if name in PARAMETERS and PARAMETERS[name].positive and std > abs(value)
+    }
+    for term in search.selected:
+        missing = [name for name in TERMS[term].parameters(structure.tracks, structure.layout) if name in uncertain]
+        if missing and term in search.selected:
+            against = f"the recordings do not determine {', '.join(missing)}"
             search = search.recorded({term: search.wald_gain(term)}, True, False, against)
             search = search.refit(search.without(term))
     return search
