@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
+from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue, scaling_direction
 from sprung.estimation.problem import (
     CLOSE_BY,
     CONVERGED,
@@ -38,7 +38,6 @@ from sprung.vehicle import (
     is_nuisance,
     layout_of,
     parameter_name,
-    parameter_of,
     separate_track_names,
     uncertainties_of,
 )
@@ -203,8 +202,8 @@ def _is_determined(fit: FitResult) -> bool:
     eigenvalues, vectors = np.linalg.eigh(information)
     missing = null_space @ vectors[:, eigenvalues < least_information(eigenvalues)]
     # Every mass and rate times a number is one vehicle where nothing was weighed.
-    scales = np.array([float(parameter_of(name).scales) for name in fit.names])
-    of_scale = scales * fit.values / fit.problem.priors.coordinates.derivatives(fit.iterate.u)
+    slopes = fit.problem.priors.coordinates.derivatives(fit.iterate.u)
+    of_scale = scaling_direction(fit.names, fit.values, slopes)
     of_scale /= np.linalg.norm(of_scale)
     is_scale = float(np.linalg.norm(missing.T @ of_scale)) > _IS_SCALE
     return int(missing.shape[1]) <= int(is_scale)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -117,6 +117,20 @@ class UsualValue(NamedTuple):
 
     value: float
     spread: float
+
+
+def scaling_direction(names: Sequence[str], values: Real, slopes: Real) -> Real:
+    """Return the direction of the coordinates in which every mass and rate grows alike, which no acceleration shows.
+
+    Parameters
+    ----------
+    names, values
+        Of the parameters; values in SI, shape (parameter,).
+    slopes
+        Derivative of each value by its coordinate, shape (parameter,).
+    """
+    scales = np.array([parameter_of(name).scales for name in names])
+    return np.where(scales, values / slopes, 0.0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
+from sprung.estimation.priors import scaling_direction
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay, Moments, pool_moments
@@ -145,8 +146,7 @@ class FitStatistics:
     @property
     def scaling(self) -> Real:
         """The direction of the coordinates in which every mass and rate grows alike, which no acceleration shows."""
-        scales = np.array([parameter_of(name).scales for name in self.names])
-        return np.where(scales, self.values / self.slopes, 0.0)
+        return scaling_direction(self.names, self.values, self.slopes)
 
     def size(self, name: str) -> float:
         """Size of a parameter: its value, or, where that may be zero, what would matter beside others."""

@@ -88,7 +88,7 @@ class Stretch:
         """Time of the first sample after the stamp, s."""
         return self.x0 if self.times is None else float(self.times[0])
 
-    def begin(self, zero: Stretch) -> float:
+    def starts_at(self, zero: Stretch) -> float:
         """Return the time of the first sample after the stamp of another stretch, s."""
         if max(self.first, zero.first) >= _SINCE_1904:
             return self.first - zero.first
@@ -127,7 +127,7 @@ def clock_of(stretches: Sequence[Stretch], zero: Stretch, file: str, channel: st
     begins = [0.0]
     for one, other in pairwise(stretches):
         begins.append(begins[-1] + _from_one_to_the_next(one, other, file))
-    start, count = stretches[0].begin(zero), sum(one.count for one in stretches)
+    start, count = stretches[0].starts_at(zero), sum(one.count for one in stretches)
     times = [one.times for one in stretches if one.times is not None]
     if len(times) < len(stretches):
         step = stretches[0].step
@@ -145,7 +145,7 @@ def clock_of(stretches: Sequence[Stretch], zero: Stretch, file: str, channel: st
 
 def _from_one_to_the_next(one: Stretch, other: Stretch, file: str) -> float:
     """Return the time between the first samples of two stretches, by their stamps, or by their numbers alone."""
-    between = (other.begin(one) - one.begin(one), other.first - one.first)
+    between = (other.starts_at(one) - one.starts_at(one), other.first - one.first)
     for found in between:
         if abs(found - one.length) <= one.slack:
             return found

@@ -97,13 +97,13 @@ class _Scanner:
     def _cells(self, line: str) -> list[str]:
         return [cell.strip() for cell in line.split(self.delimiter, COLUMNS)]
 
-    def _begin(self, number: int, header: Callable[[int, str], None]) -> None:
+    def _enter_header(self, number: int, header: Callable[[int, str], None]) -> None:
         self.fields, self.header, self.follow = {}, number, header
 
     def _file_header(self, number: int, line: str) -> None:
         if line.startswith(_END_OF_HEADER):
             self._check_marks()
-            self._begin(number + 1, self._segment_header)
+            self._enter_header(number + 1, self._segment_header)
             return
         for tag in (_FIRST, "Separator"):  # of both, the separator stands behind the tag
             if line.startswith(tag) and len(line) > len(tag):
@@ -124,7 +124,7 @@ class _Scanner:
 
     def _segment_header(self, number: int, line: str) -> None:
         if line.startswith(_FIRST):  # somebody appended to the file in another session
-            self._begin(number, self._file_header)
+            self._enter_header(number, self._file_header)
         elif line.startswith(_START_SPECIAL):
             self.follow, self._after = self._special, self._segment_header
         elif line.startswith(_END_OF_HEADER):
@@ -155,7 +155,7 @@ class _Scanner:
     def _samples(self, number: int, line: str) -> None:
         ranges = self.segments[-1].ranges
         if line[:1].isalpha() and self._cells(line)[0].lower() not in EMPTY:
-            self._begin(number, self._segment_header)
+            self._enter_header(number, self._segment_header)
             self._segment_header(number, line)
         elif line.startswith(_START_SPECIAL):
             self.follow, self._after = self._special, self._samples

@@ -39,12 +39,15 @@ def _places(names_of: Callable[[Tracks], Mapping[tuple[str, LinearLaw], str]]) -
 APART: Mapping[str, tuple[str, str]] = {**_places(half_distances), **_places(inboard_shares)}
 """By the name of the place that dampers and springs of an axle share: those of dampers and of springs where they do not."""
 
+_PLACES = frozenset({*APART, *(one for apart in APART.values() for one in apart)})
+"""Names of all places, shared and apart."""
+
 
 def model_of(names: Collection[str]) -> VehicleModel:
     """Return the part of a vehicle that has parameters of these names and needs no others; the whole one if none does."""
-    given, places = {*names}, {*APART, *(one for apart in APART.values() for one in apart)}
+    given = {*names}
     for layout in reversed(list(LAYOUTS.values())):
-        if {*parameter_names("shared", (), layout)} - places <= given <= all_names(layout.model):
+        if {*parameter_names("shared", (), layout)} - _PLACES <= given <= all_names(layout.model):
             return layout.model
     return "full"
 
@@ -68,14 +71,14 @@ def complete_parameters(given: Mapping[str, float], layout: Layout, where: str, 
     dict
         By name, SI; NaN for what is missing.
     """
-    possible, places = all_names(layout.model), {*APART, *(one for apart in APART.values() for one in apart)}
+    possible = all_names(layout.model)
     for unknown in sorted(given.keys() - possible):
         problems.add(where, f"'{unknown}'", "the name of a parameter", did_you_mean(unknown, sorted(possible)))
     for name in parameter_names("shared", (), layout):
-        if name not in given and name not in places:
+        if name not in given and name not in _PLACES:
             unit, meaning, *_ = PARAMETERS[name]
             problems.add(where, f"no '{name}'", f"the {meaning} in {unit}", f"Add {name} = ... to it.")
-    values = {name: given.get(name, ABSENT.get(name, math.nan)) for name in possible - places}
+    values = {name: given.get(name, ABSENT.get(name, math.nan)) for name in possible - _PLACES}
     for shared, apart in ((one, APART[one]) for one in APART if one in possible):
         both = given.get(shared)
         own = [given.get(one, both) for one in apart]
