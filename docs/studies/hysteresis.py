@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import WHEELS, Rows, Vehicle
+from sprung.vehicle import WHEELS, Vehicle, sensor_rows
 
 Real = NDArray[np.float64]
 Law = Literal["dahl", "bouc-wen"]
@@ -65,7 +65,7 @@ def measured(
     shape = sprung.simulate(plain, rate=rate, noise=0.0, seed=0, **given)
     accelerations = _followed(vehicle, shape, law, rate, duration)
     names = tuple(plain.parameters)
-    S = Rows.of([sensor.row for sensor in shape.sensors], names).at(list(plain.parameters.values()))
+    S = sensor_rows(shape.sensors, names).at(list(plain.parameters.values()))
     random, rest = np.random.default_rng(seed), int(BEFORE * rate)
     recordings = []
     for recording, acceleration in zip(shape.recordings, accelerations, strict=True):

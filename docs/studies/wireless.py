@@ -13,7 +13,7 @@ import sprung
 from sprung.campaign import Campaign, Recording, merge_loggers
 from sprung.simulation import default_sensors, drop_from_blocks
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Load, Rows, Vehicle, parse_record
+from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, parse_record, sensor_rows
 
 Real = NDArray[np.float64]
 
@@ -89,8 +89,7 @@ def wireless(
     )
     random = np.random.default_rng(seed)
     parameters = vehicle.parameters
-    rows = [sensor.row for sensor in together.sensors]
-    S = Rows.of(rows, tuple(parameters)).at(np.array(list(parameters.values())))
+    S = sensor_rows(together.sensors, tuple(parameters)).at(np.array(list(parameters.values())))
     fast = 1 + drift * random.uniform(-1, 1, len(S))
     drops, ahead = [], []
     for drop in together.drops:

@@ -194,9 +194,7 @@ def moved(campaign: Campaign, place: Callable[[float, float], tuple[float, float
 
 
 def on_other_wheels(campaign: Campaign) -> Campaign:
-    sensors = [
-        one if one.on is None or one.on == "body" else replace(one, on=OTHER_SIDE[one.on]) for one in campaign.sensors
-    ]
+    sensors = [one if one.wheel is None else replace(one, on=OTHER_SIDE[one.wheel]) for one in campaign.sensors]
     return replace(campaign, sensors=tuple(sensors))
 
 

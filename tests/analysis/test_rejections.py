@@ -12,7 +12,7 @@ from scipy.linalg import expm
 
 import sprung
 from sprung.simulation import drop_from_blocks
-from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle
+from sprung.vehicle import TABLE_1_CAR, Rows, Vehicle, sensor_rows
 from sprung.vehicle.kinematics import body_point
 
 Array = NDArray[np.float64]
@@ -33,7 +33,7 @@ def with_a_loose_mass(mass: float, frequency: float, damping: float, play: float
     clean = sprung.simulate(TABLE_1_CAR, loads=[LOAD], drops=DROPS, noise=0.0, seed=1, rate=RATE)
     names, values = tuple(TABLE_1_CAR.parameters), np.array(list(TABLE_1_CAR.parameters.values()))
     at = Rows.of([body_point(0.1, 0.0)], names).at(values)[0]
-    sensors = Rows.of([sensor.row for sensor in clean.sensors], names).at(values)
+    sensors = sensor_rows(clean.sensors, names).at(values)
     felt, rate = np.append(at, -1.0), 2 * np.pi * frequency
     random, recordings = np.random.default_rng(1), []
     for drop, recording in zip(clean.drops, clean.recordings, strict=True):

@@ -17,10 +17,10 @@ from sprung.vehicle import (
     SCHOOL_BUS,
     TABLE_1_CAR,
     NonlinearModel,
-    Rows,
     free_decay,
     linear_elements,
     nonlinear_elements,
+    sensor_rows,
 )
 from sprung.vibration import compute_modes
 
@@ -87,7 +87,7 @@ DROPS = [{"wheels": wheels, "load": "empty", "height": 0.06} for wheels in (["fl
 def motions_of(bus: sprung.Vehicle) -> list[BodyMotion]:
     """Drops by equations and a solver that are not the package's own, from a quarter of a second after the release."""
     made = measured(bus, seed=1, noise=0.0, rate=250.0, drops=DROPS)
-    rows = Rows.of([sensor.row for sensor in made.sensors], ("a",)).at([bus.a])[:4, :3]
+    rows = sensor_rows(made.sensors, ("a",)).at([bus.a])[:4, :3]
     motions = []
     for recording in made.recordings:
         values = np.linalg.pinv(rows) @ (recording.values[:4] - recording.values[:4].mean(axis=1, keepdims=True))

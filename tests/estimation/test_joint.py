@@ -145,7 +145,7 @@ def mirrored(campaign: Campaign) -> Campaign:
 
     def sensor(one: Sensor) -> Sensor:
         position = None if one.position is None else (one.position[0], -one.position[1], one.position[2])
-        return replace(one, on=one.on if one.on is None or one.on == "body" else other[one.on], position=position)
+        return replace(one, on=one.on if one.wheel is None else other[one.wheel], position=position)
 
     drops = tuple(replace(d, wheels=tuple(other[w] for w in d.wheels)) for d in campaign.drops)
     loads = tuple(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sprung.errors import InputError
 from sprung.modal import APPROXIMATE, METHODS, eigensystem_realisation, identify_modes
 from sprung.simulation import default_sensors
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Rows, Vehicle, free_decay
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle, free_decay, sensor_rows
 from sprung.vibration import compute_modes, modal_assurance_criterion, name_modes_at_sensors
 from strategies import vehicles
 
@@ -24,7 +24,7 @@ SIDES = np.array([[1, 1, 1, 1], [1, 1, 0, 0], [0, 0, 1, 1], [1, 0, 1, 0], [0, 1,
 def records(vehicle: Vehicle, noise: float, offset: float, seed: int, seconds: float = 3.0) -> list[Array]:
     """Eight accelerometers in five decays of a vehicle that comes down with 0.5 m/s at the wheels dropped."""
     rng = np.random.default_rng(seed)
-    rows = Rows.of([sensor.row for sensor in default_sensors(vehicle)], ("a",)).at([vehicle.a])
+    rows = sensor_rows(default_sensors(vehicle), ("a",)).at([vehicle.a])
     found = []
     for dropped in SIDES:
         front, rear, left, right = dropped[:2].mean(), dropped[2:].mean(), dropped[::2].mean(), dropped[1::2].mean()

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.simulation import drop_from_blocks, static_wheel_loads
-from sprung.vehicle import TABLE_1_CAR, Item, Load, Rows, Sensor, Vehicle, coordinates
+from sprung.vehicle import TABLE_1_CAR, Item, Load, Sensor, Vehicle, coordinates, sensor_rows
 from sprung.vibration import compute_modes
 
 Array = NDArray[np.float64]
@@ -42,7 +42,7 @@ def test_the_shapes_are_those_of_a_body_that_turns_and_bends_along_its_length() 
     names, L = tuple(car.parameters), car.wheelbase
     places = [(0.3, 0.5), (0.0, 0.7), (-L / 2, 0.6), (-L, -0.4), (-3.1, 0.2)]
     sensors = [Sensor(channel=str(i), on="body", position=(x, y, 0.5)) for i, (x, y) in enumerate(places)]
-    rows = Rows.of([sensor.row for sensor in sensors], names).at(list(car.parameters.values()))
+    rows = sensor_rows(sensors, names).at(list(car.parameters.values()))
     order = coordinates(names)
     x, y = np.array(places).T
     assert_allclose(rows[:, order.index("q_w")], y * (x + L / 2), atol=1e-12)

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import eigh
 
 from sprung.simulation import default_sensors
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Matrices, Rows, Vehicle
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Matrices, Vehicle, sensor_rows
 from sprung.vibration import (
     MODE_NAMES,
     Mode,
@@ -148,7 +148,7 @@ def test_similarity_ignores_size_and_phase_and_lies_between_0_and_1(
 @pytest.mark.parametrize("vehicle", [SCHOOL_BUS, TABLE_1_CAR], ids=lambda vehicle: vehicle.name)
 def test_shapes_at_eight_sensors_give_back_coordinates_and_names(vehicle: Vehicle) -> None:
     sensors = default_sensors(vehicle)
-    rows = Rows.of([sensor.row for sensor in sensors], ("a",)).at([vehicle.a])
+    rows = sensor_rows(sensors, ("a",)).at([vehicle.a])
     truth = compute_modes(vehicle.matrices())
     seen = [Mode(mode.pole, rows @ mode.shape) for mode in truth]
     for mode, back in zip(truth, expand_to_coordinates(seen, sensors, vehicle.a), strict=True):

@@ -21,7 +21,7 @@ from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
 from sprung.estimation import FitResult
 from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
-from sprung.vehicle import Heights, Load, Rows, Sensor, Vehicle, with_separate_tracks
+from sprung.vehicle import Heights, Load, Readout, Sensor, Vehicle, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -178,8 +178,7 @@ def _flights(
     def flight(values: Mapping[str, float]) -> Real:
         vehicle = Vehicle.nearest(values, name="falling", **heights.by_key)
         fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
-        rows = Rows.of([sensor.row for sensor in sensors], names).at(np.array(list(values.values())))
-        return np.asarray(rows @ fall.motion(_FINE, samples).acceleration, dtype=np.float64)
+        return Readout.of(sensors, names).read(list(values.values()), fall.motion(_FINE, samples))
 
     steps = {name: _NUDGE * (abs(value) or 1.0) for name, value in parameters.items()}
     here = flight(parameters)

@@ -13,7 +13,7 @@ from sprung.campaign.plausibility_checks import SMALLEST, check_relations, check
 from sprung.campaign.schema import KNOWABLE, CampaignFile, VehicleFileSchema
 from sprung.errors import Problems, did_you_mean
 from sprung.uncertainty import KnownValue
-from sprung.units import acceleration_factor
+from sprung.units import quantity_name
 from sprung.vehicle import EXTRAS, LAYOUTS, PARAMETERS, STATIONS, WHEELS, Sensor, all_names, terms_of
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def _check_names(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
 
 def find_wrong_unit(sensor: Sensor) -> str | None:
-    """Return what is wrong with a sensor's unit; None where it is one of acceleration.
+    """Return what is wrong with a sensor's unit; None where it is one of what it measures.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def find_wrong_unit(sensor: Sensor) -> str | None:
         The sensor.
     """
     try:
-        acceleration_factor("m/s^2" if sensor.unit is None else sensor.unit)
+        sensor.si_factor  # noqa: B018 (asked whether there is one)
     except ValueError as error:
         return str(error)
     return None
@@ -128,8 +128,8 @@ def _check_units(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     for index, sensor in zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True):
         reason = find_wrong_unit(sensor)
         if reason is not None:
-            do = reason.rpartition("acceleration. ")[2]
-            problems.add(parsed.where("sensor", index, "unit"), f"'{sensor.unit}'", "a unit of acceleration", do)
+            do, expected = reason.partition(". ")[2], f"a unit of {quantity_name(sensor.quantity)}"
+            problems.add(parsed.where("sensor", index, "unit"), f"'{sensor.unit}'", expected, do)
 
 
 def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
@@ -144,8 +144,10 @@ def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> 
     """
     if not parsed.complete("sensor") or _left_to_defaults(parsed, "sensor") or ("vehicle", "model") in parsed.lost:
         return
-    if any(sensor.on == "body" and sensor.position is None for sensor in parsed.file.sensor):
+    if any(sensor.needs_position and sensor.position is None for sensor in parsed.file.sensor):
         return  # said already
+    if any(sensor.relative_to is not None or sensor.quantity == "angular-rate" for sensor in parsed.file.sensor):
+        return  # they tell of the body, too, without a place
     placed = [
         sensor.position[:2] for sensor in parsed.file.sensor if sensor.on == "body" and sensor.position is not None
     ]
@@ -218,8 +220,9 @@ def _check_stations(parsed: ParsedFile[CampaignFile], problems: Problems) -> Non
         return
     layout = LAYOUTS[parsed.file.vehicle.model]
     named: list[tuple[Place, tuple[str | None, ...]]] = [
-        (("sensor", index, "on"), (sensor.on,) if sensor.on in STATIONS else ())
+        (("sensor", index, key), () if wheel is None else (wheel,))
         for index, sensor in zip(parsed.numbered("sensor"), parsed.file.sensor, strict=True)
+        for key, wheel in (("on", sensor.wheel or sensor.pad), ("relative_to", sensor.relative_to))
     ]
     named += [
         (("drop", index, "wheels"), drop.wheels if drop.wheels != WHEELS else ())

@@ -77,7 +77,11 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
         yield MissingEntry(_item(place), problem)
     file = parsed.file
     for index, sensor in zip(parsed.numbered("sensor"), file.sensor, strict=True):
-        if sensor.on == "body" and sensor.position is None and ("sensor", index, "position") not in parsed.placeholders:
+        if (
+            sensor.needs_position
+            and sensor.position is None
+            and ("sensor", index, "position") not in parsed.placeholders
+        ):
             do = "A body sensor needs its position = [x, y, z]."
             where = parsed.where("sensor", index)
             yield MissingEntry(

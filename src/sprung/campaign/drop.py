@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field, fields, replace
 from pathlib import PurePath
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, InstanceOf, model_validator
 
@@ -52,7 +52,7 @@ def drop_kind(wheels: Sequence[Wheel]) -> str:
 
 @checked_record
 class Drop:
-    """One release off the blocks, as a campaign file describes it."""
+    """One drop, or another excitation of the vehicle, as a campaign file describes it."""
 
     # Where it is not known yet, the load is empty text and there are no wheels.
 
@@ -68,6 +68,10 @@ class Drop:
     """Name of the load on the vehicle."""
     wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
     """Which wheels were dropped, of a part of a vehicle all unless given; the others stood on the ground."""
+    excitation: Literal["drop", "push", "pass", "pads"] = "drop"
+    """Released from blocks; pushed or pulled and let go; driven over an unknown bump onto flat road; or driven by pads."""
+    speed: Positive | None = None
+    """Speed of a pass over a bump, m/s, where it is known."""
     height: Positive | None = None
     """Height of the blocks, m."""
     start: Finite | None = None
@@ -83,6 +87,10 @@ class Drop:
             raise ValueError(f"the end, {self.end:g} s, must come after the start, {self.start:g} s")
         if self.file is not None and self.files:
             raise ValueError("name either the file or, where several loggers recorded it, the files")
+        if self.speed is not None and self.excitation != "pass":
+            raise ValueError(f'a speed is that of a pass, not of a {self.excitation}; write excitation = "pass"')
+        if self.height is not None and self.excitation != "drop":
+            raise ValueError(f"the height of blocks is for a drop, not for a {self.excitation}; leave it out")
         if len(set(self.files)) != len(self.files):
             raise ValueError("name each file once")
         if self.name is not None and (not self.name.isprintable() or {"/", "\\"} & set(self.name)):

@@ -62,6 +62,9 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
     "Sensor": {
         "channel": Key("body_fl"),
         "on": Key("body"),
+        "quantity": Key("displacement"),
+        "axis": Key("roll"),
+        "relative_to": Key("fl"),
         "position": Key([0.12, 0.69, 0.55], "m"),
         "unit": Key("g"),
         "direction": Key("down"),
@@ -100,6 +103,8 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "window": Key([12.0, 18.5], "s"),
         "load": Key("empty"),
         "wheels": Key(["fl", "fr"]),
+        "excitation": Key("pass"),
+        "speed": Key(5.0, "m/s"),
         "height": Key(0.05, "m"),
         "start": Key(1.32, "s"),
         "end": Key(4.0, "s"),

@@ -1,7 +1,8 @@
-"""From the columns of a file to a recording: one clock, the campaign's channels, m/s², positive up."""
+"""From the columns of a file to a recording: one clock, the campaign's channels, SI, positive up."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,17 +12,32 @@ from sprung.campaign.recording import Recording
 from sprung.campaign.time_base import RegularTimeBase, regularise_time_base
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
 from sprung.formats import MIN_RATE, SampleTable
-from sprung.units import acceleration_factor, split_unit
+from sprung.units import SI_UNITS, Quantity, quantity_name, si_factor, si_symbol, split_unit
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from sprung.vehicle import Sensor
 
-MAX_READING = 1e6
-"""m/s²: no accelerometer reads more; loggers write such numbers where they have none."""
+MAX_READING: Mapping[Quantity, float] = {
+    "acceleration": 1e6,
+    "velocity": 1e4,
+    "displacement": 1e3,
+    "angular-rate": 1e4,
+    "force": 1e8,
+}
+"""SI: no sensor reads more; loggers write such numbers where they have none."""
+
+_USUAL: Mapping[Quantity, str] = {
+    "acceleration": "g",
+    "velocity": "mm/s",
+    "displacement": "mm",
+    "angular-rate": "deg/s",
+    "force": "N",
+}
+"""Units that loggers usually write."""
 
 _LATEST, _SHORTEST = 1e12, 1e-9
 """s: no clock shows more, and no sample follows another sooner."""
@@ -67,7 +83,7 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
     Raises
     ------
     InputError
-        If the clock does not run forward or is too slow, a needed cell holds text or a unit is none of acceleration;
+        If the clock does not run forward or is too slow, a needed cell holds text or a unit is none of what is measured;
         all problems at once.
     """
     problems = Problems()
@@ -156,7 +172,7 @@ def _common_range(table: SampleTable, needed: Sequence[int]) -> SampleTable:
 def _channel(
     table: SampleTable, raw: Mapping[int, NDArray[np.float64]], sensor: Sensor, sensors: Sequence[Sensor], file: str
 ) -> tuple[NDArray[np.float64], str, float] | Fault:
-    """Return samples in m/s² (NaN where missing), what was done to them and their unit; or why the channel is left out."""
+    """Return samples, SI (NaN where missing), what was done to them and their unit; or why the channel is left out."""
     where, columns = f"{file}: {sensor.channel}", find_column(table, sensor.channel)
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
@@ -167,21 +183,24 @@ def _channel(
         found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."
         raise InputError([Problem(where, found, "one column per channel", do)])
     column = columns[0]
-    samples, unit = raw[column], sensor.unit or table.units[column] or "m/s^2"
+    samples, stated, of = raw[column], sensor.unit or table.units[column], quantity_name(sensor.quantity)
+    unit = stated or SI_UNITS[sensor.quantity]
     if not np.isfinite(samples).all() and (problem := table.find_non_number(column)) is not None:
         raise InputError([problem])
     if not np.isfinite(samples).any():
         do = "Check the sensor's cable and the logger, or export the recording again."
         return Fault("missing", where, "every sample is missing; the channel is left out of this drop", do)
+    do = f'Give the sensor a unit in the campaign file, such as unit = "{_USUAL[sensor.quantity]}", if that is what it is.'
+    if not stated and sensor.quantity != "acceleration":
+        raise InputError([Problem(where, "no unit, in the campaign file or in the recording", f"a unit of {of}", do)])
     try:
-        factor = acceleration_factor(unit)
+        factor = si_factor(unit, sensor.quantity)
     except ValueError:
-        do = 'Give the sensor a unit in the campaign file, such as unit = "g", if that is what the numbers are.'
-        raise InputError([Problem(where, f"the unit '{unit}'", "a unit of acceleration", do)]) from None
-    no_number = ~(np.abs(samples) <= MAX_READING / factor)
+        raise InputError([Problem(where, f"the unit '{unit}'", f"a unit of {of}", do)]) from None
+    no_number = ~(np.abs(samples) <= MAX_READING[sensor.quantity] / factor)
     if no_number.all():
         first = f"the first {samples[0]:.4g} {unit}"
-        what = f"every sample exceeds the range of any accelerometer, {first}; the channel is left out of this drop"
+        what = f"every sample exceeds the range of any sensor of {of}, {first}; the channel is left out of this drop"
         return Fault("missing", where, what, "Check the sensor's cable and its unit.")
     source = (
         ""
@@ -190,7 +209,7 @@ def _channel(
         if table.units[column]
         else ", as neither the file nor the campaign names a unit"
     )
-    step = f"read in {unit}{source}" + (f", times {factor:g} to m/s²" if factor != 1 else "")
+    step = f"read in {unit}{source}" + (f", times {factor:g} to {si_symbol(sensor.quantity)}" if factor != 1 else "")
     sign = -1.0 if sensor.direction == "down" else 1.0
     step += ", turned from down to up" if sign < 0 else ""
     return sign * factor * np.where(no_number, np.nan, samples), step, factor

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 
 from sprung.campaign.reading import CAMPAIGN_FILE
 from sprung.campaign.schema_file import SCHEMA, SCHEMA_FILE, SCHEMA_LINE, schema_text
-from sprung.units import acceleration_factor, split_unit
+from sprung.units import SI_UNITS, si_factor, split_unit
 from sprung.vehicle import EMPTY, Load, Sensor
 
 if TYPE_CHECKING:
@@ -201,6 +201,7 @@ def _table(recording: Recording, sensors: Sequence[Sensor]) -> bytes:
 
 
 def _si_per_reading(sensor: Sensor) -> float:
-    """Return the factor from the sensor's unit and direction to m/s², positive up."""
-    factor = acceleration_factor(sensor.unit or split_unit(sensor.channel)[1] or "m/s^2")
+    """Return the factor from the sensor's unit and direction to SI, positive up."""
+    unit = sensor.unit or split_unit(sensor.channel)[1] or SI_UNITS[sensor.quantity]
+    factor = si_factor(unit, sensor.quantity)
     return -factor if sensor.direction == "down" else factor

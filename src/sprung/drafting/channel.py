@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.units import STANDARD_GRAVITY, acceleration_factor
+from sprung.units import STANDARD_GRAVITY, si_factor
 
 Real = NDArray[np.float64]
 
@@ -68,7 +68,7 @@ class Channel:
     @property
     def factor(self) -> float:
         """Factor from a reading to m/s², positive up."""
-        return acceleration_factor(self.unit or self.assumed) * (-1.0 if self.direction == "down" else 1.0)
+        return si_factor(self.unit or self.assumed) * (-1.0 if self.direction == "down" else 1.0)
 
 
 def classify_channel(name: str, stated_unit: str | None, samples: Real) -> Channel | str:
@@ -112,7 +112,7 @@ def _reason_against(stated_unit: str | None, samples: Real) -> str | None:
     if np.nanmax(samples) == np.nanmin(samples):
         return f"it reads {float(np.nanmax(samples)):.6g} throughout"
     try:
-        acceleration_factor(stated_unit or "m/s^2")
+        si_factor(stated_unit or "m/s^2")
     except ValueError:
         return f"its unit {stated_unit} is no unit of acceleration"
     return None
@@ -120,7 +120,7 @@ def _reason_against(stated_unit: str | None, samples: Real) -> str | None:
 
 def _classify_with_stated_unit(name: str, stated_unit: str, level: float, unit_of_gravity: str | None) -> Channel:
     """Classify a channel whose file states a unit; gravity at rest overrides it."""
-    felt = abs(level) * acceleration_factor(stated_unit) / STANDARD_GRAVITY
+    felt = abs(level) * si_factor(stated_unit) / STANDARD_GRAVITY
     if abs(felt - 1) < _NOTHING:
         return _dc_coupled(name, stated_unit, stated_unit, level, "gravity")
     if unit_of_gravity is not None:
@@ -150,7 +150,7 @@ def _ac_coupled(name: str, stated_unit: str | None, level: float) -> Channel:
 
 def _unit_of_gravity(level: float) -> str | None:
     """Return the unit in which a reading is gravity; None where it is in none."""
-    off = {unit: abs(level * acceleration_factor(unit) / STANDARD_GRAVITY - 1) for unit in _UNITS}
+    off = {unit: abs(level * si_factor(unit) / STANDARD_GRAVITY - 1) for unit in _UNITS}
     nearest = min(off, key=lambda unit: off[unit])
     return nearest if off[nearest] < _GRAVITY else None
 

@@ -22,7 +22,7 @@ from sprung.drafting.detection import Detection, detect_drops
 from sprung.drafting.records import DraftFile
 from sprung.errors import InputError, Problem
 from sprung.formats import MIN_RATE, read_table
-from sprung.units import acceleration_factor
+from sprung.units import si_factor
 
 if TYPE_CHECKING:
     from sprung.formats import SampleTable
@@ -123,7 +123,7 @@ def _detect(
     size = largest_reading(table, seen)
     for unit in _UNITS:
         choice = replace(seen, channels=tuple(replace(channel, assumed=unit) for channel in seen.channels))
-        if not _LEAST < size * acceleration_factor(unit) < _MOST:
+        if not _LEAST < size * si_factor(unit) < _MOST:
             continue
         found = _drops_of(table, choice, progress)
         results.append((bool(is_on_wheel(found.drops).any()), len(found.drops), choice, found))

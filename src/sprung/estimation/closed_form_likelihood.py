@@ -248,8 +248,9 @@ class ClosedFormAt:
 
     @property
     def sensor_rows(self) -> Real:
-        """Rows of the sensors, shape (channel, coordinate)."""
-        return np.asarray(self.objective.sensors.at(self.values))
+        """Rows by which the sensors read accelerations, shape (channel, coordinate)."""
+        sensors = self.objective.sensors
+        return sensors.of_accelerations(sensors.at(self.values))
 
     def differentiate_response(self, forces: Complex) -> Complex:
         """Return the derivatives of the readings by changes of the equations of motion.

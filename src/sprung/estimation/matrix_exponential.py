@@ -83,8 +83,9 @@ class MatrixExponentialAt:
 
     def _solve(self, decay: FreeDecay, weights: Real) -> tuple[Real, Real, Real, Real]:
         highest, _ = self.models[decay.load].accelerations(self.values)
-        A = state_matrix(highest, self.models[decay.load].massive)
-        readings = (self.sensors.at(self.values) @ highest)[None]
+        massive = self.models[decay.load].massive
+        A = state_matrix(highest, massive)
+        readings = (self.sensors.at(self.values) @ self.sensors.observed_of_states(highest, massive))[None]
         propagator = expm(A / decay.rate)
         while len(readings) < decay.samples:
             readings = np.concatenate([readings, readings @ propagator])
@@ -116,6 +117,7 @@ class MatrixExponentialAt:
         highest, by_parameter = self.models[decay.load].accelerations(self.values)
         massive, S = self.models[decay.load].massive, self.sensors.at(self.values)
         A, (n, size) = state_matrix(highest, massive), highest.shape
+        observed, directly = self.sensors.observed_of_states(highest, massive), self.sensors.of_accelerations(S)
         changes = []
         # Ẏ' = A Y' + dA Y, both propagated together.
         # The unknowns of the sensors, which are the last, do not change the motion.
@@ -127,7 +129,7 @@ class MatrixExponentialAt:
             both = np.block([[A, np.zeros_like(A)], [dA, A]])
             start = np.append(state, np.zeros(size))
             motion = affine_response(both, np.zeros(2 * size), start, 1 / decay.rate, decay.samples)
-            changes.append((dS @ highest + S @ change) @ motion[:size] + S @ highest @ motion[size:])
+            changes.append((dS @ observed + directly @ change) @ motion[:size] + S @ observed @ motion[size:])
         return np.vstack([_weighted(np.array(changes), weights).T, np.zeros((size, len(changes)))])
 
     @property

@@ -65,6 +65,10 @@ class ModalSolution:
         """Accelerations of the coordinates in each mode, shape (..., coordinate, mode)."""
         return self.velocities * self.poles[..., None, :]
 
+    def observed(self, sensors: Readout) -> Complex:
+        """Return what sensors read rows of, in each mode, shape (..., column, mode)."""
+        return sensors.observed(self.displacements, self.velocities, self.accelerations)
+
     @property
     def separation(self) -> float:
         """How far apart the two modes are that are most alike, in poles and in shapes, dimensionless; 0 where they meet in one.
@@ -102,8 +106,8 @@ def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolu
     poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
     S = sensors.at(values)
     S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
-    modes = ModalSolution(poles, right, right, S.shape[-1])
-    shapes = S @ modes.accelerations
+    modes = ModalSolution(poles, right, right, len(model.heave))
+    shapes = S @ modes.observed(sensors)
     return replace(modes, shapes=shapes * turns_of_delays(sensors, values, poles) if sensors.has_delays else shapes)
 
 
@@ -163,10 +167,10 @@ def differentiate_modes(
     by_coordinate = (*lead, derivatives.shape[-3], len(model.names), modes.poles.shape[-1])
     forces = (derivatives.reshape(*lead, -1, derivatives.shape[-1]) @ motions).reshape(by_coordinate)
     poles, of_model = differentiate_response(model, sensors, values, modes, forces, span)
-    m, (channels, parameters, n) = modes.poles.shape[-1], (slopes := sensors.slopes(values)).shape
+    m, (channels, parameters, columns) = modes.poles.shape[-1], (slopes := sensors.slopes(values)).shape
     readings = np.zeros((*lead, channels, parameters, 2 * m), dtype=np.complex128)
     readings[..., : len(model.names), :] = of_model
-    of_sensors = (slopes.reshape(-1, n) @ modes.accelerations).reshape(*lead, channels, parameters, m)
+    of_sensors = (slopes.reshape(-1, columns) @ modes.observed(sensors)).reshape(*lead, channels, parameters, m)
     if sensors.has_delays:
         of_sensors *= turns_of_delays(sensors, values, modes.poles)[..., None, :]
         for channel, position in sensors.delay_positions:
@@ -194,7 +198,7 @@ def differentiate_response(
     """
     *lead, n, changes, m = forces.shape
     channels = len(sensors.positions)
-    S = np.broadcast_to(sensors.at(values), (*lead, channels, n))
+    S = np.broadcast_to(sensors.of_accelerations(sensors.at(values)), (*lead, channels, n))
     left = modes.left[..., highest_derivatives(n, model.massive)]
     both = np.concatenate([left, S], axis=-2) @ -np.linalg.inv(model.matrices(values).leading)
     changed = (both @ forces.reshape(*lead, n, -1)).reshape(*lead, m + channels, changes, m)

@@ -11,6 +11,7 @@ start that is nearly there.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 from sprung.estimation.monomials import expand, parameters_of
 from sprung.estimation.records import RecordBatch
 from sprung.estimation.starts import VehicleSize
-from sprung.vehicle import LINEAR_LAWS, LinearModel, Rows, Sensor, parameter_of
+from sprung.vehicle import LINEAR_LAWS, LinearModel, Row, Rows, Sensor, parameter_of
 from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
@@ -64,12 +65,15 @@ def modulating_function_estimate(
         Parameters, SI, by name; None where the sensors do not observe every coordinate, or no vehicle explains the records.
     """
     wheelbase, layout, names = size.wheelbase, size.layout, models[0].names
-    own_rows = [sensor.row for sensor in sensors]
+    own_rows = _rows_of_one_order(sensors, names)
     moved = models
     if layout.pitches:
         moved = [model.referred_to_front_axle(wheelbase) for model in models]
         own_rows = [row.referred_to_front_axle(wheelbase) for row in own_rows]
-    rows = Rows.of(own_rows, names).affine[:, :, 0]
+    affine = Rows.of(own_rows, names).affine
+    # What depends on a parameter says nothing before that is known.
+    settled = np.logical_not(affine[:, :, 1:].any(axis=(1, 2)))
+    rows = settled[:, None] * affine[:, :, 0]
     sprung = 1 + names.index("m_s")
     keys = list(dict.fromkeys(_key(key) for model in moved for key in model.products.tolist()))
     if layout.pitches:
@@ -99,6 +103,17 @@ def modulating_function_estimate(
         np.isfinite(value) and (value > 0 or not parameter_of(name).positive) for name, value in values.items()
     )
     return values if usable else None
+
+
+def _rows_of_one_order(sensors: Sequence[Sensor], names: Sequence[str]) -> list[Row]:
+    """Return the rows of all sensors that read the same derivative of a displacement as most do, those of others empty.
+
+    The equations of motion hold for displacements, velocities and accelerations alike.
+    """
+    read = [sensor.rows(names) for sensor in sensors]
+    orders = Counter(order for rows in read for order in rows)
+    most = max(orders, key=lambda order: orders[order])
+    return [rows.get(most, Row({})) for rows in read]
 
 
 def _key(key: Sequence[int]) -> Key:

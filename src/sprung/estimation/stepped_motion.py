@@ -69,24 +69,29 @@ class SteppedMotion:
         return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
 
     @cached_property
-    def _accelerations(self) -> Real:
-        """Accelerations of the coordinates at every sample, shape (time, drop, coordinate)."""
-        by_kind = [model.accelerations(self.values)[0] for model in self.objective.models_by_kind]
+    def _observed(self) -> Real:
+        """What the sensors read rows of, at every sample, shape (time, drop, column)."""
+        sensors = self.objective.sensors
+        by_kind = [
+            sensors.observed_of_states(model.accelerations(self.values)[0], model.linear.massive)
+            for model in self.objective.models_by_kind
+        ]
         rows = np.stack(by_kind)[self.objective.kind]
-        accelerations: Real = np.einsum("dij,kdj->kdi", rows, self._inputs, optimize=True)
-        return accelerations
+        observed: Real = np.einsum("dij,kdj->kdi", rows, self._inputs, optimize=True)
+        return observed
 
-    @property
-    def _gravity(self) -> float:
-        """What the sensors measure less of where they turn, m/s²."""
-        return STANDARD_GRAVITY if self.objective.sensors_tilt else 0.0
+    @cached_property
+    def _gravity(self) -> Real | None:
+        """What each sensor measures less of where it turns, m/s², shape (channel, 1); None where that is not modelled."""
+        felt = STANDARD_GRAVITY * self.objective.sensors.reads_accelerations.astype(np.float64)
+        return felt[:, None] if self.objective.sensors_tilt else None
 
     @cached_property
     def _readings(self) -> Real:
         """What the sensors read, shape (drop, channel, time)."""
         sensors, angles = self.objective.sensors, self._inputs[:, :, self.objective.angles]
-        readings: Real = sensors.at(self.values) @ self._accelerations.transpose(1, 2, 0)
-        if self._gravity:
+        readings: Real = sensors.at(self.values) @ self._observed.transpose(1, 2, 0)
+        if self._gravity is not None:
             readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
         if sensors.has_delays:
             # To the second order: a delay is a small part of a period.
@@ -134,11 +139,15 @@ class SteppedMotion:
         S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
         channels, shared = len(S), objective.sensors.shared
         by_kind = [model.accelerations(self.values) for model in objective.models_by_kind]
-        outputs = np.stack([S @ rows[:, :-1] for rows, _ in by_kind])
-        direct = [np.swapaxes(by_S, 0, 1) @ rows for rows, _ in by_kind]
+        observed = [
+            objective.sensors.observed_of_states(rows, model.linear.massive)
+            for model, (rows, _) in zip(objective.models_by_kind, by_kind, strict=True)
+        ]
+        outputs = np.stack([S @ rows[:, :-1] for rows in observed])
+        direct = [np.swapaxes(by_S, 0, 1) @ rows for rows in observed]
         for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
-            by_row[:shared] += S @ slopes
-        if self._gravity:
+            by_row[:shared] += objective.sensors.of_accelerations(S) @ slopes
+        if self._gravity is not None:
             # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
             units = np.eye(outputs.shape[2])[objective.angles]
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
@@ -154,7 +163,7 @@ class SteppedMotion:
         products = []
         for drop, (moved, samples) in enumerate(zip(moved_drops, objective.samples, strict=True)):
             inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
-            if self._gravity:
+            if self._gravity is not None:
                 readings -= self._gravity * (inputs[:, None, self.objective.angles] @ moved[:samples, channels:])
             # The unknowns of the sensors come between the parameters of the model and the initial states.
             readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)

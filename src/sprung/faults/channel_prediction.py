@@ -16,7 +16,7 @@ from sprung.faults.candidate_fit import DRIFT_SPAN, CandidateFit
 from sprung.faults.low_pass import LowPass
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Rows, Sensor, coordinates
+from sprung.vehicle import Sensor, coordinates, sensor_rows
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -73,7 +73,7 @@ class ChannelPrediction:
 
     @cached_property
     def motion(self) -> Real:
-        """Accelerations of the coordinates, shape (coordinate, sample)."""
+        """What the sensor reads rows of: the coordinates or their derivatives, SI, shape (coordinate, sample)."""
         return self.delayed_motion(0.0)[0]
 
     @cached_property
@@ -87,7 +87,8 @@ class ChannelPrediction:
 
     @cached_property
     def _waves(self) -> list[tuple[Complex, Complex, Complex]]:
-        """For each decay its poles, the accelerations of the coordinates in each mode, and e^{λt}."""
+        """For each decay its poles, what the sensor reads rows of in each mode, and e^{λt}."""
+        order = max(self.sensor.rows(self.candidate.fit.names))
         solved = {
             load: np.linalg.eig(self.candidate.models[load].matrices(self.candidate.fit.values).state)
             for load in {decay.load for decay in self.decays}
@@ -96,7 +97,7 @@ class ChannelPrediction:
         waves = []
         for decay, state in zip(self.decays, self.states, strict=True):
             poles, right = solved[decay.load]
-            amplitudes = right[:n] * (poles**2 * np.linalg.solve(right, state.astype(np.complex128)))
+            amplitudes = right[:n] * (poles**order * np.linalg.solve(right, state.astype(np.complex128)))
             waves.append((poles, amplitudes, np.exp(poles[:, None] * (np.arange(decay.samples) / decay.rate))))
         return waves
 
@@ -113,6 +114,8 @@ class ChannelPrediction:
 
     def gravity_allows(self, gain: float) -> bool:
         """Whether the reading at rest agrees with a gain: a sensor that shows gravity shows it with the same gain."""
+        if not self.sensor.reads_gravity:
+            return True
         levels = [decay.rest.level[self.channel] for decay in self.decays]
         level = float(np.median(levels)) / STANDARD_GRAVITY
         if not np.isfinite(level) or abs(level) < _OFFSET * abs(gain):  # AC-coupled, zeroed at rest, or no rest
@@ -120,17 +123,17 @@ class ChannelPrediction:
         return abs(gain - level) < _OFFSET * max(abs(gain), 1.0)
 
     def delayed_motion(self, delay: float) -> tuple[Real, Real]:
-        """Return the accelerations that a channel with a delay, s, shows, and their rates; shape (coordinate, sample) each."""
+        """Return the motion that a channel with a delay, s, shows, and its rate; shape (coordinate, sample) each."""
         parts = []
         for poles, amplitudes, waves in self._waves:
             turned = amplitudes * np.exp(-poles * delay)
             parts.append(_centred((np.concatenate([turned, turned * poles]) @ waves).real))
-        accelerations, rates = np.split(np.hstack(parts), 2)
-        return accelerations, rates
+        motion, rates = np.split(np.hstack(parts), 2)
+        return motion, rates
 
     def row(self, sensor: Sensor) -> Real:
         """Return the row of the coordinates that a sensor measures, shape (coordinate,)."""
-        of_sensor: Real = Rows.of([sensor.row], self.candidate.fit.names).at(self.candidate.fit.values)[0]
+        of_sensor: Real = sensor_rows([sensor], self.candidate.fit.names).at(self.candidate.fit.values)[0]
         return of_sensor
 
     def residual_of(self, predicted: Real) -> Real:

@@ -19,7 +19,6 @@ from sprung.vehicle import (
     Heights,
     LinearModel,
     Load,
-    Rows,
     Sensor,
     SensorQuantity,
     is_of_sensor,
@@ -159,6 +158,7 @@ def _changes(
 ) -> Iterator[tuple[_Labels, Complex]]:
     """Yield what each change is, and its derivatives of the readings, (load, channel, 1, 2 mode)."""
     modes, m = at.modes, at.modes.poles.shape[-1]
+    observed = modes.observed(at.objective.sensors)
     for channel, sensor in enumerate(sensors):
 
         def of_channel(shapes: Complex, channel: int = channel) -> Complex:
@@ -169,8 +169,8 @@ def _changes(
         yield ("gain", sensor.channel, 0, 0), of_channel(modes.shapes[:, channel])
         yield ("late", sensor.channel, 0, 0), of_channel(-modes.poles * modes.shapes[:, channel])
         if sensor.position is not None:
-            for axis, row in enumerate(_along(sensor, fit.names)):
-                yield ("position", sensor.channel, axis, 0), of_channel(row @ modes.accelerations)
+            for axis, row in enumerate(at.objective.sensors.place_slopes[:, channel]):
+                yield ("position", sensor.channel, axis, 0), of_channel(row @ observed)
     places: list[_Labels] = [
         ("load-position", name, axis, item)
         for name in at.loads
@@ -185,15 +185,6 @@ def _changes(
             forces[number, :, change] = _moved(loads[name], item, axis, heights, fit) @ modes.accelerations[number]
         readings = at.differentiate_response(forces)
         yield from ((labels, readings[:, :, [change]]) for change, labels in enumerate(places))
-
-
-def _along(sensor: Sensor, names: Sequence[str]) -> tuple[Real, Real]:
-    """Return the change of a body sensor's row per metre forward and left; each of shape (coordinate,)."""
-    assert sensor.position is not None  # noqa: S101 (asked by the caller; for the type checker)
-    x, y, z = sensor.position
-    places = [(x, y, z), (x + 1, y, z), (x, y + 1, z)]
-    rows = Rows.of([replace(sensor, position=one).row for one in places], names).affine[:, :, 0]
-    return rows[1] - rows[0], rows[2] - rows[0]
 
 
 def _moved(load: Load, item: int, axis: int, heights: Heights, fit: FitResult) -> Real:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from sprung.formats.stated_rates import TIME_UNITS
 from sprung.formats.text_clock import CLOCK, is_time_name
-from sprung.units import acceleration_factor
+from sprung.units import is_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -259,18 +259,13 @@ def _names(line: str, delimiter: str, width: int) -> tuple[str, ...]:
 
 
 def _are_units(cells: tuple[str, ...]) -> bool:
-    """Return whether a row holds units: one of time or acceleration, or text in brackets, and no name of time."""
+    """Return whether a row holds units: one of time or of what sensors measure, or text in brackets, and no name of time."""
     return not any(is_time_name(cell) for cell in cells) and any(_is_unit(cell) for cell in cells)
 
 
 def _is_unit(cell: str) -> bool:
-    if cell.lower() in TIME_UNITS or (cell[:1] in ("[", "(") and cell[-1:] in ("]", ")")):
-        return True
-    try:
-        acceleration_factor(cell)
-    except ValueError:
-        return False
-    return True
+    bracketed = cell[:1] in ("[", "(") and cell[-1:] in ("]", ")")
+    return cell.lower() in TIME_UNITS or bracketed or is_unit(cell)
 
 
 def _decimal(text: str, start: int, delimiter: str) -> str:

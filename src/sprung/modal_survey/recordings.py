@@ -17,7 +17,7 @@ from sprung.formats import SampleTable, read_table
 from sprung.modal_survey.load_modes import LoadModes
 from sprung.modal_survey.modal_analysis import modal_analysis
 from sprung.progress import Progress, counted, silent
-from sprung.units import STANDARD_GRAVITY, acceleration_factor
+from sprung.units import STANDARD_GRAVITY, si_factor
 
 Real = NDArray[np.float64]
 
@@ -227,7 +227,7 @@ def _rate(file: Path, table: SampleTable, problems: Problems) -> float:
 def _factor(unit: str | None) -> float:
     """Return the factor of an acceleration to m/s²; 1 for any other quantity."""
     try:
-        return 1.0 if unit is None else acceleration_factor(unit)
+        return 1.0 if unit is None else si_factor(unit)
     except ValueError:
         return 1.0
 

@@ -15,7 +15,7 @@ from sprung.paper.added_mass import added_mass
 from sprung.preprocess import prepare
 from sprung.simulation import drop_from_blocks, half_sine_bumps, simulate
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, WHEELS, Load, Rows, Tracks, Vehicle, Wheel
+from sprung.vehicle import EMPTY, WHEELS, Load, Tracks, Vehicle, Wheel, sensor_rows
 
 Real = NDArray[np.float64]
 
@@ -128,7 +128,7 @@ def state_matrices(campaign: Campaign, a: float) -> dict[str, Real]:
     dict
         By load, A of eq. (12), shape (14, 14).
     """
-    coordinates = np.linalg.pinv(Rows.of([sensor.row for sensor in campaign.sensors], ("a",)).at([a]))
+    coordinates = np.linalg.pinv(sensor_rows(campaign.sensors, ("a",)).at([a]))
     decays = prepare(campaign).decays
     return {
         load.name: state_variable_method(

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.planning.setup import MeasurementSetup, PlannedDrop
 from sprung.simulation import BlockSupport, drop_from_blocks, simulate_nonlinear_drops
-from sprung.vehicle import NEUTRAL, PARAMETERS, Motion, Rows, Vehicle, nonlinear_elements
+from sprung.vehicle import NEUTRAL, PARAMETERS, Motion, Readout, Vehicle, nonlinear_elements
 
 Real = NDArray[np.float64]
 
@@ -159,11 +159,10 @@ def _part_of(name: str, usual: float, part: float) -> float:
 def _readings(
     setup: MeasurementSetup, vehicle: Vehicle, drops: Sequence[PlannedDrop], windows: Sequence[tuple[int, int]]
 ) -> list[Real]:
-    """Return the accelerations at the sensors in a window of each drop, m/s², shape (channel, time)."""
-    names = tuple(vehicle.parameters)
-    rows = Rows.of([sensor.row for sensor in setup.sensors], names).at(list(vehicle.parameters.values()))
+    """Return what the sensors read in a window of each drop, SI, shape (channel, time)."""
+    readout, values = Readout.of(setup.sensors, tuple(vehicle.parameters)), list(vehicle.parameters.values())
     return [
-        rows @ motion.acceleration[:, first : first + samples]
+        readout.read(values, Motion(*(part[:, first : first + samples] for part in motion)))
         for motion, (first, samples) in zip(_motions(setup, vehicle, drops), windows, strict=True)
     ]
 

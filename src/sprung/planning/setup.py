@@ -26,7 +26,6 @@ from sprung.vehicle import (
     LinearModel,
     Load,
     Readout,
-    Rows,
     Sensor,
     Tracks,
     Vehicle,
@@ -251,17 +250,17 @@ class MeasurementSetup:
             found = f"{max(samples / rate, 0.0):.2f} s of free vibration within {self.duration:.1f} s of the release"
             where = f"drop of {self.vehicle.name}, load '{drop.load.name}'"
             raise InputError([Problem(where, found, f"{_SHORTEST} s", "Lower the blocks, or record for longer.")])
-        names = tuple(self.vehicle.parameters)
-        rows = Rows.of([sensor.row for sensor in self.sensors], names).at(list(self.vehicle.parameters.values()))
+        parameters, channels = self.vehicle.parameters, len(self.sensors)
+        readout = Readout.of(self.sensors, tuple(parameters))
         return FreeDecay(
             name=load,
             file=load,
             load=load,
-            values=rows @ fall.motion(1 / rate, samples, first / rate).acceleration,
-            earlier=np.zeros((len(rows), 0)),
+            values=readout.read(list(parameters.values()), fall.motion(1 / rate, samples, first / rate)),
+            earlier=np.zeros((channels, 0)),
             rate=rate,
             start=first / rate,
-            rest=unknown_release(len(rows)),
+            rest=unknown_release(channels),
         )
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Recording
 from sprung.errors import Fault
 from sprung.preprocess.release import resolution
-from sprung.units import acceleration_factor
+from sprung.units import si_symbol
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -50,14 +50,13 @@ def check_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recordi
         With a fault for each channel that exceeds its range.
     """
     stated = recording.full_scale or tuple(
-        None if sensor.range is None else sensor.range * acceleration_factor(sensor.unit or "m/s^2")
-        for sensor in sensors
+        None if sensor.range is None else sensor.range * sensor.si_factor for sensor in sensors
     )
     if not any(stated):
         return replace(recording, full_scale=stated)
     kept, faults = list(stated), []
     for channel, peak in enumerate(np.abs(recording.values).max(axis=1, initial=0.0).tolist()):
-        scale = stated[channel]
+        scale, unit = stated[channel], si_symbol(sensors[channel].quantity)
         if scale is None or not peak > _BEYOND * scale:
             continue
         kept[channel] = None
@@ -65,7 +64,7 @@ def check_full_scale(recording: Recording, sensors: Sequence[Sensor]) -> Recordi
             Fault(
                 "unit",
                 f"{recording.name}: {recording.channels[channel]}",
-                f"readings reach {peak:.4g} m/s², beyond the range of {scale:.4g} m/s²; the range was not used",
+                f"readings reach {peak:.4g} {unit}, beyond the range of {scale:.4g} {unit}; the range was not used",
                 "Correct the range or the unit of the sensor in the campaign file.",
             )
         )

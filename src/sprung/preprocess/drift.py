@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Recording
 from sprung.errors import Fault
 from sprung.preprocess.release import Release
-from sprung.units import STANDARD_GRAVITY
+from sprung.units import STANDARD_GRAVITY, si_symbol
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -81,9 +81,11 @@ def remove_drift(recording: Recording, release: Release | None, sensors: Sequenc
     quantisation = release.step / np.sqrt(6)
     inflation = _variance_inflation_of_means(noise)
     error = np.sqrt(inflation * (level_error**2 + last_level_error**2) * std**2 + motion**2 + quantisation**2)
-    direct = np.array([sensor.high_pass is None for sensor in sensors])
+    # Of a displacement or a force the level depends on where the vehicle stands.
+    direct = np.array([one.high_pass is None and one.quantity not in ("displacement", "force") for one in sensors])
     # A tilted sensor shows a part of gravity, which is another one where the vehicle has come to rest at another angle.
-    turned = _SURE * np.radians([sensor.tilt_std for sensor in sensors]) * _TURN * STANDARD_GRAVITY
+    tilts = [sensor.tilt_std if sensor.reads_gravity else 0.0 for sensor in sensors]
+    turned = _SURE * np.radians(tilts) * _TURN * STANDARD_GRAVITY
     drifts = direct & (
         np.abs(drift) > np.maximum.reduce([_SURE * error, _MATTERS * std, turned, np.full_like(std, _LEAST)])
     )
@@ -99,7 +101,8 @@ def remove_drift(recording: Recording, release: Release | None, sensors: Sequenc
         Fault(
             "drift",
             f"{recording.name}: {recording.channels[channel]}",
-            f"baseline drift of {drift[channel]:+.2g} m/s² from before the release to the end, "
+            f"baseline drift of {drift[channel]:+.2g} {si_symbol(sensors[channel].quantity)} "
+            "from before the release to the end, "
             + (
                 "removed as a straight line" if linear[channel] else "which is not a straight line; nothing was changed"
             ),

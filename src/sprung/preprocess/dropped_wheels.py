@@ -14,6 +14,9 @@ from sprung.preprocess.release import Release
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import STATIONS, Sensor, Wheel
 
+_LAST, _LOWEST_BLOCKS = 0.3, 0.01
+"""s at the end of a recording over which a wheel's height is averaged, and m by which it is lower at least where it fell."""
+
 Dropped = Mapping[Wheel, bool]
 """For each wheel of which the release shows it: whether it lost its block."""
 
@@ -40,9 +43,12 @@ def detect_dropped_wheels(recording: Recording, release: Release | None, sensors
     Besides moving as wheels do that fall, a wheel that fell was driven down with more than 1 g, by gravity and by its spring,
     and one that stood was not.
     """
-    wheels = np.array([sensor.on != "body" for sensor in sensors]) & recording.usable
-    if release is None or not wheels.any():
+    of_wheels = np.array([sensor.wheel is not None or sensor.on is None for sensor in sensors]) & recording.usable
+    wheels = of_wheels & np.array([sensor.reads_gravity for sensor in sensors])
+    if release is None or not of_wheels.any():
         return {}
+    if not wheels.any():
+        return _lowered_wheels(recording, release, sensors)
     level, first = release.level, release.sample
     moved = recording.values[:, first : first + int(IMPACT * recording.rate)] - level[:, None]
     onset, depth, speed, *_ = measure_fall(moved, recording.rate, 0, level)
@@ -52,13 +58,25 @@ def detect_dropped_wheels(recording: Recording, release: Release | None, sensors
     dropped: dict[Wheel, bool] = {}
     unclear: set[Wheel] = set()
     for channel in np.flatnonzero(wheels).tolist():
-        station = sensors[channel].on
-        if station is None or station == "body":  # a wheel, but not known which
+        station = sensors[channel].wheel
+        if station is None:  # a wheel, but not known which
             continue
         falls = channel in channels
         if falls != (depth[channel] > STANDARD_GRAVITY) or dropped.setdefault(station, falls) != falls:
             unclear.add(station)
     return {station: dropped[station] for station in STATIONS if station in dropped and station not in unclear}
+
+
+def _lowered_wheels(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> dict[Wheel, bool]:
+    """Return which wheels stand lower in the end than before the release, as far as displacements of wheels show it."""
+    rest = max(recording.values.shape[1] - max(int(_LAST * recording.rate), 1), release.sample)
+    lowered = {
+        sensor.wheel: float(release.level[channel] - recording.values[channel, rest:].mean())
+        for channel, sensor in enumerate(sensors)
+        if sensor.wheel is not None and sensor.quantity == "displacement" and recording.usable[channel]
+    }
+    most = max(lowered.values(), default=0.0)
+    return {wheel: fell > most / 2 for wheel, fell in lowered.items()} if most > _LOWEST_BLOCKS else {}
 
 
 def find_contradicted_drops(drops: Sequence[Drop], dropped: Sequence[Dropped]) -> tuple[int, ...]:

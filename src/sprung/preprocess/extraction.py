@@ -167,9 +167,13 @@ def _find_start(
         recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
     )
     if landing is None:
-        placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.on == "body")
+        placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.needs_position)
         landing = Landing(possible, typical, _ALLOWED_FOR if placed else _NOT_PLACED)
-    watched = {sensor.on for sensor, used in zip(campaign.sensors, recording.usable, strict=True) if used}
+    watched = {
+        sensor.wheel
+        for sensor, used in zip(campaign.sensors, recording.usable, strict=True)
+        if used and sensor.reads_gravity
+    }
     if not watched.issuperset(drop.wheels):  # a wheel without a usable sensor fell too
         why = _ALLOWED_FOR if typical > landing.certain else landing.why
         later = max(landing.possible, possible), max(landing.certain, typical)

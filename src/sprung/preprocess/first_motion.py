@@ -74,9 +74,10 @@ def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
     -------
     bool
     """
-    body = np.array([sensor.on == "body" for sensor in campaign.sensors])
+    accelerometers = np.array([sensor.reads_gravity for sensor in campaign.sensors])
+    body = accelerometers & np.array([sensor.on == "body" for sensor in campaign.sensors])
     gained, at_once = (_gained(prepared, len(body), span) for span in (_AFTER, _AT_ONCE))
-    return _rises(gained[:, body]) or _rises(at_once[:, ~body])
+    return _rises(gained[:, body]) or _rises(at_once[:, accelerometers & ~body])
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:
@@ -123,7 +124,9 @@ def is_first_motion_consistent(
     counts = np.array([[len(own) for own in ends] for ends in at_ends], dtype=float)
     sides = np.array([[sum(one.side for one in own) for own in ends] for ends in at_ends], dtype=float)
     placed = {
-        i: sensor.position for i, sensor in enumerate(campaign.sensors) if sensor.on == "body" and sensor.position
+        i: sensor.position
+        for i, sensor in enumerate(campaign.sensors)
+        if sensor.on == "body" and sensor.position and sensor.reads_gravity
     }
     x, y, _ = np.array(list(placed.values()), dtype=float).reshape(-1, 3).T
     gained = _gained(prepared, len(campaign.sensors), _AFTER)[:, list(placed)]

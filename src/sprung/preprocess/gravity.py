@@ -12,7 +12,7 @@ from sprung.campaign import Recording
 from sprung.errors import Fault
 from sprung.preprocess.high_pass import AC_LEVEL
 from sprung.preprocess.release import Release
-from sprung.units import STANDARD_GRAVITY, acceleration_factor
+from sprung.units import STANDARD_GRAVITY, si_factor
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -32,7 +32,7 @@ _FARTHEST = 3.0
 
 _UNITS = (
     (1.0, "", ""),
-    *((acceleration_factor(unit), f"in {unit}", unit) for unit in ("g", "mg", "mm/s^2", "cm/s^2", "ft/s^2", "in/s^2")),
+    *((si_factor(unit), f"in {unit}", unit) for unit in ("g", "mg", "mm/s^2", "cm/s^2", "ft/s^2", "in/s^2")),
     (1 / STANDARD_GRAVITY, "in m/s^2, not in g", "m/s^2"),
 )
 """Factor that corrects a channel's unit, what the numbers are then, and the unit to write for the sensor."""
@@ -63,7 +63,7 @@ def check_gravity(
 
     Notes
     -----
-    Only sensors that read gravity can be checked, and only where they agree in every drop with a rest. A unit is changed
+    Only accelerometers that read gravity can be checked, and only where they agree in every drop with a rest. A unit is changed
     where gravity is about 1 in another one and the channel then moves more like its neighbours, a sign where most of the
     sensors that read gravity read it the other way. The sign of an AC-coupled sensor does not show at rest.
     """
@@ -71,6 +71,7 @@ def check_gravity(
     if not rests:
         return list(recordings), list(releases), tuple(sensors)
     levels = np.array(rests) / STANDARD_GRAVITY
+    levels[:, [not sensor.reads_gravity for sensor in sensors]] = np.nan
     known: Flags = np.logical_not(np.isnan(levels).all(axis=0))
     usual = np.full(len(sensors), np.nan)
     usual[known] = [np.median(level[~np.isnan(level)]) for level in levels.T[known]]
@@ -134,8 +135,9 @@ def _recognise_units(
         return best
     peaks = _mean_ranges(recordings)
     on_body = np.array([sensor.on == "body" for sensor in sensors])
+    accelerometers = np.array([sensor.reads_gravity for sensor in sensors])
     for channel, chosen in enumerate(best):
-        others = (on_body == on_body[channel]) & (np.array(best) != chosen) & (peaks > 0)
+        others = accelerometers & (on_body == on_body[channel]) & (np.array(best) != chosen) & (peaks > 0)
         if chosen and others.any():
             ratio = np.log(peaks[channel] / np.median(peaks[others]))
             if abs(ratio + np.log(_UNITS[chosen][0])) > abs(ratio):

@@ -95,9 +95,9 @@ def measure_suspension_force(
     window = slice(release.sample, release.sample + max(int(np.ceil(_JUMP * rate)), 2))
     forces: dict[Wheel, float] = {}
     for channel, sensor in enumerate(sensors):
-        if sensor.on is not None and sensor.on != "body" and sensor.on in dropped:
+        if sensor.wheel is not None and sensor.wheel in dropped and sensor.reads_gravity:
             lowest = float(values[channel, window].min() - release.level[channel])
-            forces[sensor.on] = max(-lowest - STANDARD_GRAVITY, 0.0)
+            forces[sensor.wheel] = max(-lowest - STANDARD_GRAVITY, 0.0)
     return forces
 
 
@@ -135,11 +135,11 @@ def detect_landing(
         None where no wheel with a sensor left the ground and came back, or too few body sensors have a position.
     """
     whole = np.logical_not(np.isnan(values).any(axis=1))
-    body = [i for i, sensor in enumerate(sensors) if sensor.position is not None and whole[i]]
+    body = [i for i, one in enumerate(sensors) if one.position is not None and one.reads_gravity and whole[i]]
     wheels: list[tuple[int, Wheel]] = [
-        (i, sensor.on)
+        (i, sensor.wheel)
         for i, sensor in enumerate(sensors)
-        if sensor.on is not None and sensor.on != "body" and sensor.on in suspension and whole[i]
+        if sensor.wheel is not None and sensor.wheel in suspension and sensor.reads_gravity and whole[i]
     ]
     stations = [STATIONS[wheel] for _, wheel in wheels]
     # Where front and rear, or left and right, are not told apart, the body does not turn so.

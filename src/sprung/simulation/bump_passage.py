@@ -14,7 +14,7 @@ from sprung.simulation.ground import tyre_rates
 from sprung.simulation.half_sine_bump import drive_over_half_sine_bump
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import STATIONS, Load, Sensor, Vehicle, Wheel
+from sprung.vehicle import STATIONS, Load, Sensor, Vehicle, Wheel, after_rest
 
 
 def half_sine_bumps(
@@ -76,10 +76,10 @@ def half_sine_bumps(
     problems.raise_if_any()
 
     before, samples = round(rest * rate), round(duration * rate)
-    drops, accelerations = [], []
+    drops, motions = [], []
     for load in setup.loads:
         matrices = vehicle.matrices(load)
         motion, _ = drive_over_half_sine_bump(matrices, tyre_rates(vehicle), wheels, height, passage, 1 / rate, samples)
         drops.append(Drop(load=load.name, wheels=wheels, start=before / rate + passage))
-        accelerations.append(np.hstack([np.zeros((len(motion.acceleration), before)), motion.acceleration]))
-    return setup.campaign(name_files(drops, "bump"), accelerations, "half-sine bump", np.random.default_rng(seed))
+        motions.append(after_rest(motion, before))
+    return setup.campaign(name_files(drops, "bump"), motions, "half-sine bump", np.random.default_rng(seed))

@@ -89,5 +89,4 @@ def free_decays(
         motions = simulate_nonlinear_decays(vehicle, loads_of, states_of, 1 / rate, samples)
     else:
         motions = [free_decay(vehicle.matrices(load), state, 1 / rate, samples) for load, state in cases]
-    accelerations = [motion.acceleration for motion in motions]
-    return setup.campaign(name_files(drops, "decay"), accelerations, "free decay", random)
+    return setup.campaign(name_files(drops, "decay"), motions, "free decay", random)

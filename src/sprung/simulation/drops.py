@@ -17,7 +17,7 @@ from sprung.simulation.linear_drop import drop_from_blocks
 from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_drops
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, nonlinear_elements
+from sprung.vehicle import Load, Sensor, Vehicle, after_rest, nonlinear_elements
 
 
 def simulate(
@@ -136,15 +136,8 @@ def simulate(
         progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
         blocks = [BlockSupport(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, after, first, gravity)
-    accelerations = [np.pad(motion.acceleration, ((0, 0), (before, 0))) for motion in motions]
-    displacements = [np.pad(motion.displacement, ((0, 0), (before, 0)), "edge") for motion in motions]
-    campaign = setup.campaign(
-        released,
-        accelerations,
-        "drop from blocks",
-        np.random.default_rng(seed),
-        displacements if sensor_errors else None,
-    )
+    recorded = (after_rest(motion, before) for motion in motions)
+    campaign = setup.campaign(released, recorded, "drop from blocks", np.random.default_rng(seed), sensor_errors)
     return (
         campaign
         if file is None

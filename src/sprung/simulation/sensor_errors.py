@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Row, Rows, Sensor, Vehicle
+from sprung.vehicle import Motion, Readout, Row, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
 
@@ -49,9 +49,7 @@ class SensorErrors:
             delay * random.standard_normal(number),
         )
 
-    def readings(
-        self, vehicle: Vehicle, sensors: Sequence[Sensor], acceleration: Array, displacement: Array, rate: float
-    ) -> Array:
+    def readings(self, vehicle: Vehicle, sensors: Sequence[Sensor], motion: Motion, rate: float) -> Array:
         """Return what the sensors read of a motion, without gravity at rest.
 
         Parameters
@@ -60,25 +58,25 @@ class SensorErrors:
             Whose motion it is.
         sensors
             As stated.
-        acceleration, displacement
-            Of the coordinates, SI, shape (coordinate, time).
+        motion
+            Of the coordinates, SI, shape (coordinate, time) each.
         rate
             Samples per second.
 
         Returns
         -------
         ndarray
-            m/s², positive up, shape (channel, time).
+            SI, positive up, shape (channel, time).
         """
         moved = [_moved(sensor, *place.tolist()) for sensor, place in zip(sensors, self.place, strict=True)]
-        parameters = vehicle.parameters
-        rows = Rows.of([sensor.row for sensor in moved], tuple(parameters)).at(list(parameters.values()))
-        readings = np.cos(np.linalg.norm(self.tilt, axis=1))[:, None] * (rows @ acceleration)
-        angles = Rows.of([Row({"theta": 1.0}), Row({"phi": 1.0})], tuple(parameters)).at(list(parameters.values()))
-        pitch, roll = STANDARD_GRAVITY * (angles @ displacement)
-        by_pitch, by_roll = angles @ acceleration
+        names, values = tuple(vehicle.parameters), list(vehicle.parameters.values())
+        readings = Readout.of(moved, names).read(values, motion)
+        readings *= np.cos(np.linalg.norm(self.tilt, axis=1))[:, None]
+        angles = Rows.of([Row({"theta": 1.0}), Row({"phi": 1.0})], names).at(values)
+        pitch, roll = STANDARD_GRAVITY * (angles @ motion.displacement)
+        by_pitch, by_roll = angles @ motion.acceleration
         for channel, (sensor, (forward, left)) in enumerate(zip(sensors, np.sin(self.tilt), strict=True)):
-            if sensor.position is not None:
+            if sensor.position is not None and sensor.reads_gravity:
                 # Nose down and left side up are positive: what is above the axis then moves forward and to the right.
                 height = 0.0 if vehicle.cg_height is None else sensor.position[2] - vehicle.cg_height
                 readings[channel] += forward * (height * by_pitch - pitch)

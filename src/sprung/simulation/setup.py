@@ -26,7 +26,7 @@ from sprung.simulation.arguments import check_unique, default_drops, default_sen
 from sprung.simulation.sensor_errors import SensorErrors
 from sprung.simulation.sensor_model import Sensing
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, STATIONS, Load, Rows, Sensor, Vehicle
+from sprung.vehicle import EMPTY, Load, Motion, Readout, Sensor, Vehicle
 
 Array = NDArray[np.float64]
 
@@ -85,7 +85,10 @@ class SimulationSetup:
             Takes what does not fit.
         """
         chosen_sensors = default_sensors(vehicle) if sensors is None else records(Sensor, "sensors", sensors, problems)
-        placed = [sensor.on in STATIONS or sensor.position is not None for sensor in chosen_sensors]
+        placed = [
+            sensor.on is not None and not (sensor.needs_position and sensor.position is None)
+            for sensor in chosen_sensors
+        ]
         for i, known_place in enumerate(placed):
             if not known_place:
                 do = "A body sensor needs its position = [x, y, z], m; a wheel sensor its station."
@@ -139,10 +142,10 @@ class SimulationSetup:
     def campaign(
         self,
         drops: Sequence[Drop],
-        accelerations: Iterable[Array],
+        motions: Iterable[Motion],
         what: str,
         random: np.random.Generator,
-        displacements: Iterable[Array] | None = None,
+        sensor_errors: bool = False,
     ) -> Campaign:
         """Return the campaign that the sensors would have recorded.
 
@@ -150,27 +153,24 @@ class SimulationSetup:
         ----------
         drops
             One for each recording, with a file name.
-        accelerations
-            In each of them, of the coordinates, (coordinate, time), m/s² and rad/s².
+        motions
+            In each of them, of the coordinates, from static equilibrium with the load, SI, shape (coordinate, time).
         what
             What was simulated, for the history.
         random
             Where noise and offsets come from.
-        displacements
-            Of the coordinates, m and rad, of the same shapes, where the sensors deviate from what is stated of them.
+        sensor_errors
+            Whether the sensors deviate from what is stated of them.
         """
         sensors, rate = self.sensing.sensors, self.sensing.rate
-        if displacements is None:
-            parameters = self.vehicle.parameters
-            S = Rows.of([sensor.row for sensor in sensors], tuple(parameters)).at(list(parameters.values()))
-            seen = [S @ acceleration for acceleration in accelerations]
-        else:
+        if sensor_errors:
             # A generator of their own: noise is the same with them and without.
             errors = SensorErrors.drawn(sensors, random.spawn(1)[0])
-            seen = [
-                errors.readings(self.vehicle, sensors, *motion, rate)
-                for motion in zip(accelerations, displacements, strict=True)
-            ]
+            seen = [errors.readings(self.vehicle, sensors, motion, rate) for motion in motions]
+        else:
+            parameters = self.vehicle.parameters
+            readout = Readout.of(sensors, tuple(parameters))
+            seen = [readout.read(list(parameters.values()), motion) for motion in motions]
         recorded = [
             drop.with_recording(
                 Recording(

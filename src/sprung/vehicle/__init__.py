@@ -64,11 +64,11 @@ from sprung.vehicle.parameters import (
     terms_of,
     with_separate_tracks,
 )
-from sprung.vehicle.readout import Readout
-from sprung.vehicle.response import Motion, affine_response, free_decay
+from sprung.vehicle.readout import Readout, sensor_rows
+from sprung.vehicle.response import Motion, affine_response, after_rest, free_decay
 from sprung.vehicle.segments import integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
-from sprung.vehicle.sensor import Sensor, SensorPlace, uncertainties_of
+from sprung.vehicle.sensor import PADS, Sensor, SensorPlace, uncertainties_of
 from sprung.vehicle.stepping import Stepper, Trajectory
 from sprung.vehicle.tyre_rates import differentiate_tyre_rates_at_rest, with_tyre_rates_at_rest
 from sprung.vehicle.vehicle import Vehicle
@@ -89,6 +89,7 @@ __all__ = [
     "LOAD_MASS",
     "MOTION_RATIOS",
     "NEUTRAL",
+    "PADS",
     "PARAMETERS",
     "REFINED",
     "SCHOOL_BUS",
@@ -132,6 +133,7 @@ __all__ = [
     "VehicleModel",
     "Wheel",
     "affine_response",
+    "after_rest",
     "all_names",
     "body_sinking",
     "checked_record",
@@ -158,6 +160,7 @@ __all__ = [
     "problems_of_record",
     "second_order_readings",
     "segments_of",
+    "sensor_rows",
     "sensor_unknown",
     "separate_track_names",
     "state_matrix",

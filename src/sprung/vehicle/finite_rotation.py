@@ -22,6 +22,7 @@ from sprung.vehicle.heights import Heights
 from sprung.vehicle.layout import WHEELS, LinearLaw, Tracks, Wheel, half_distances
 from sprung.vehicle.load import Load
 from sprung.vehicle.model import LinearModel, Rows, highest_derivatives
+from sprung.vehicle.readout import sensor_rows
 from sprung.vehicle.sensor import Sensor
 
 Array = NDArray[np.float64]
@@ -111,9 +112,12 @@ def second_order_readings(
     inputs = np.zeros((len(A), directions.shape[1]))
     inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, directions)
     rows = np.zeros((len(sensors), len(A)))
-    rows[:, n:] = Rows.of([sensor.row for sensor in sensors], model.names).at(values)[:, :m]
+    # The others read a motion, not the rate of a velocity: to them the second order is of no account.
+    accelerometers = np.array([sensor.reads_gravity for sensor in sensors])[:, None]
+    rows[:, n:] = accelerometers * sensor_rows(sensors, model.names).at(values)[:, :m]
     readings = _forced_rates(A, inputs, np.vstack([series for _, series in forces]), rows, step, ends)
-    return np.split(readings + _sensor_rotation(model, heights, sensors, values, signals), ends, axis=1)
+    turning = accelerometers * _sensor_rotation(model, heights, sensors, values, signals)
+    return np.split(readings + turning, ends, axis=1)
 
 
 def _sensor_rotation(

@@ -74,6 +74,10 @@ class Row:
         slopes = {name: _combine(self.slopes.get(name, {}), other.slopes.get(name, {}), -1.0) for name in names}
         return Row(_combine(self.constant, other.constant, -1.0), slopes)
 
+    def times(self, name: str, factor: float) -> Row:
+        """Return the row, if no parameter is in it, times a parameter and a factor: the force of a spring by its rate."""
+        return Row({}, {name: {coordinate: factor * value for coordinate, value in self.constant.items()}})
+
     def referred_to_front_axle(self, wheelbase: float) -> Row:
         """Return the row over coordinates with the body's vertical motion above the front axle, not at its centre of gravity.
 

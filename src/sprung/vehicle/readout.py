@@ -5,43 +5,55 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
-from sprung.vehicle.kinematics import body_point
+from sprung.vehicle.kinematics import Row, body_point
 from sprung.vehicle.model import Rows
 from sprung.vehicle.nuisances import SENSOR_UNKNOWNS, sensor_unknown
+from sprung.vehicle.response import Motion
 from sprung.vehicle.sensor import Sensor
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Part = TypeVar("Part", bound=NDArray[Any])
 
 _GAIN, _X, _Y, _DELAY = range(len(SENSOR_UNKNOWNS))
+
+_NOTHING = Row({})
 
 
 @shown
 @dataclass(frozen=True, eq=False)
 class Readout:
-    """Rows of the accelerations that several sensors read, their gains, places and delays being unknown or exact.
+    """Rows of what several sensors read of a motion, their gains, places and delays being unknown or exact.
 
-    A channel reads (1 + γ) (S + x S_x + y S_y) Ẍ(t - δ), with the row S of its place as stated, a gain γ, what it sits further
-    forward and left, x and y, and a delay δ. None of them changes the motion: no derivative of it is needed.
+    A channel reads (1 + γ) (S + x S_x + y S_y) Z(t - δ), with the row S of its place as stated, a gain γ, what it sits further
+    forward and left, x and y, and a delay δ. Z holds, one below the other, those of X, Ẋ and Ẍ that any of the sensors reads.
+    None of them changes the motion: no derivative of it is needed.
 
     Attributes
     ----------
     names
         The parameters: the vehicle's, masses of loads, then the unknowns of the sensors.
     rows
-        The sensors' rows as stated, over all parameters but those of the sensors.
+        The sensors' rows as stated, over all parameters but those of the sensors; columns are those of Z.
+    orders
+        Derivatives of X by time of which Z consists: 0, 1 or 2, ascending.
     positions
         Position of each sensor's gain, x, y and delay among the parameters, -1 for what is exact; shape (channel, 4).
+    places
+        Changes of the rows by a metre forward, and by a metre to the left, of each sensor; 2 channel rows.
     """
 
     names: tuple[str, ...]
     rows: Rows
+    orders: tuple[int, ...]
     positions: Index
+    places: Rows
 
     @classmethod
     def of(cls, sensors: Sequence[Sensor], names: Sequence[str]) -> Readout:
@@ -64,8 +76,12 @@ class Readout:
             [[index.get(sensor_unknown(quantity, one.channel), -1) for quantity in SENSOR_UNKNOWNS] for one in sensors],
             dtype=np.int64,
         ).reshape(-1, len(SENSOR_UNKNOWNS))
-        own = len(names) - int(np.sum(positions >= 0))
-        return cls(tuple(names), Rows.of([sensor.row for sensor in sensors], names[:own]), positions)
+        own = names[: len(names) - int(np.sum(positions >= 0))]
+        read = [sensor.rows(own) for sensor in sensors]
+        orders = tuple(sorted({order for one in read for order in one})) or (2,)
+        origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
+        placed = [dict.fromkeys(one, row - origin) for row in moved for one in read]
+        return cls(tuple(names), _stacked(read, orders, own), orders, positions, _stacked(placed, orders, own))
 
     @classmethod
     def with_unknowns(cls, sensors: Sequence[Sensor], names: Sequence[str]) -> Readout:
@@ -104,10 +120,12 @@ class Readout:
 
     @cached_property
     def _angles(self) -> Mapping[int, Array]:
-        """Changes of the rows by a metre forward and a metre to the left, for x and y where any sensor has them as unknowns."""
-        origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
-        changes = Rows.of([one - origin for one in moved], self.names[: self.shared]).affine[:, :, 0]
-        return {kind: change for kind, change in zip((_X, _Y), changes, strict=True) if self._has[kind]}
+        """Changes of the rows by a metre forward and a metre to the left, for x and y where any sensor has them as unknowns.
+
+        Each of shape (channel, column).
+        """
+        changes = zip((_X, _Y), self.place_slopes, strict=True)
+        return {kind: change for kind, change in changes if self._has[kind]}
 
     def _placed(self, values: Array) -> Array:
         """Return the rows with their places, without gains."""
@@ -117,7 +135,7 @@ class Readout:
         return rows
 
     def at(self, values: ArrayLike) -> Array:
-        """Return the rows, 1 and m, at parameter values of shape (..., parameter); shape (..., channel, coordinate)."""
+        """Return the rows at parameter values of shape (..., parameter); shape (..., channel, column of Z)."""
         values = np.asarray(values, dtype=float)
         placed = self._placed(values)
         return placed * (1 + self._unknown(_GAIN, values)[..., None]) if self._has[_GAIN] else placed
@@ -133,7 +151,7 @@ class Readout:
         Returns
         -------
         ndarray
-            Shape (channel, parameter, coordinate).
+            Shape (channel, parameter, column of Z).
         """
         if not self._has.any():
             return self.rows.slopes
@@ -146,5 +164,75 @@ class Readout:
             slopes[which, self.positions[which, _GAIN]] = self._placed(values)[which]
         for kind, row in self._angles.items():
             which = np.flatnonzero(self.positions[:, kind] >= 0)
-            slopes[which, self.positions[which, kind]] = gains[which, None] * row
+            slopes[which, self.positions[which, kind]] = gains[which, None] * row[which]
         return slopes
+
+    def observed(self, displacements: Part, velocities: Part, accelerations: Part, axis: int = -2) -> Part:
+        """Return Z from X, Ẋ and Ẍ, whose coordinates are along an axis."""
+        motions = (displacements, velocities, accelerations)
+        if len(self.orders) == 1:
+            return motions[self.orders[0]]
+        return cast("Part", np.concatenate([motions[order] for order in self.orders], axis=axis))
+
+    def read(self, values: ArrayLike, motion: Motion) -> Array:
+        """Return what the sensors read of a motion at parameter values, SI, shape (channel, time); delays are not in it."""
+        return np.asarray(self.at(values) @ self.observed(*motion), dtype=np.float64)
+
+    def observed_of_states(self, highest: Array, massive: int) -> Array:
+        """Return Z as a linear function of the state {X, Ẋ} and of what follows it.
+
+        Parameters
+        ----------
+        highest
+            The highest derivatives likewise, shape (coordinate, state + further); see `LinearModel.accelerations`.
+        massive
+            Number of coordinates that move a mass.
+
+        Returns
+        -------
+        ndarray
+            Shape (column of Z, state + further).
+        """
+        n = len(highest)
+        unit = np.eye(n + massive, highest.shape[1])
+        rates = np.concatenate([unit[n:], highest[massive:]])
+        return self.observed(unit[:n], rates, highest)
+
+    @cached_property
+    def place_slopes(self) -> Array:
+        """Change of each row by a metre forward, and by a metre to the left; shape (2, channel, column of Z)."""
+        return np.array(np.split(self.places.affine[:, :, 0], 2))
+
+    def of_accelerations(self, rows: Array) -> Array:
+        """Return the part of rows that multiplies Ẍ, of shape (..., channel, column of Z); (..., channel, coordinate)."""
+        size = rows.shape[-1] // len(self.orders)
+        return rows[..., -size:] if self.orders[-1:] == (2,) else np.zeros_like(rows[..., :size])
+
+    @cached_property
+    def reads_accelerations(self) -> NDArray[np.bool_]:
+        """Which channels are those of accelerometers, shape (channel,)."""
+        return np.asarray(self.of_accelerations(self.rows.affine[:, :, 0]).any(axis=1))
+
+
+def _stacked(rows: Sequence[Mapping[int, Row]], orders: Sequence[int], names: Sequence[str]) -> Rows:
+    """Return rows, each by the order of the derivative, over all orders beside each other."""
+    blocks = [Rows.of([one.get(order, _NOTHING) for one in rows], names).affine for order in orders]
+    return Rows(np.concatenate(blocks, axis=1)) if blocks else Rows.of([], names)
+
+
+def sensor_rows(sensors: Sequence[Sensor], names: Sequence[str]) -> Rows:
+    """Return the rows of the displacements that sensors observe, themselves or by a derivative of theirs.
+
+    Parameters
+    ----------
+    sensors
+        In the order of the channels.
+    names
+        Parameters of the vehicle.
+
+    Returns
+    -------
+    Rows
+        One for each sensor; of a force that by the displacement.
+    """
+    return Rows.of([next(iter(sensor.rows(names).values())) for sensor in sensors], names)

@@ -37,6 +37,13 @@ class Motion(NamedTuple):
         return cls(states[:coordinates], rates[:coordinates], (A @ rates)[:coordinates])
 
 
+def after_rest(motion: Motion, samples: int) -> Motion:
+    """Return a motion after a rest of so many samples, at the displacements with which it begins."""
+    before = ((0, 0), (samples, 0))
+    still = (np.pad(part, before) for part in motion[1:])
+    return Motion(np.pad(motion.displacement, before, "edge"), *still)
+
+
 def affine_response(A: ArrayLike, constant: ArrayLike, state: ArrayLike, step: float, samples: int) -> Array:
     """Solve Ẏ = A Y + constant at equal steps, exactly.
 

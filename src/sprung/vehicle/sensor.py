@@ -1,24 +1,35 @@
-"""Accelerometers: their places and directions, the rows of their displacements, and how well they are known."""
+"""Sensors: what they measure and where, their readings as functions of the motion, and how well they are known."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from sprung.errors import InputError, Problem
 from sprung.uncertainty import KnownValue
+from sprung.units import SI_UNITS, Quantity, quantity_name, si_factor
 from sprung.vehicle import kinematics
 from sprung.vehicle.checked_record import checked_record
 from sprung.vehicle.kinematics import Row
+from sprung.vehicle.layout import STATIONS, Wheel, parameter_name
 from sprung.vehicle.load import Finite, Positive
 from sprung.vehicle.nuisances import SensorQuantity, sensor_unknown
 
-SensorPlace = Literal["body", "fl", "fr", "rl", "rr", "front", "rear", "left", "right", "wheel"]
-"""The body, or a wheel station."""
+Pad = Literal["pad fl", "pad fr", "pad rl", "pad rr", "pad front", "pad rear", "pad left", "pad right", "pad wheel"]
+"""A pad under the tyre of a wheel station."""
+
+SensorPlace = Literal["body", "fl", "fr", "rl", "rr", "front", "rear", "left", "right", "wheel"] | Pad
+"""The body, a wheel station, or a pad under a tyre."""
+
+PADS: Mapping[str, Wheel] = {f"pad {wheel}": wheel for wheel in STATIONS}
+"""Wheel station over each pad."""
+
+_ORDERS: Mapping[Quantity, int] = {"displacement": 0, "velocity": 1, "angular-rate": 1, "acceleration": 2}
+"""Which derivative of a displacement by time each quantity is."""
 
 LARGEST_PLACE = 1.0
 """Largest standard uncertainty of a position, m."""
@@ -33,18 +44,25 @@ _PENDULUM = 0.16
 
 @checked_record
 class Sensor:
-    """One accelerometer, as a campaign file describes it."""
+    """One sensor, as a campaign file describes it: an accelerometer unless it says otherwise."""
 
     # In a draft whose places are not known yet, `on` is None for a wheel station, and a body sensor has no position.
 
     channel: Annotated[str, Field(min_length=1)]
     """Column or channel name in the recordings."""
     on: SensorPlace | None
-    """The body, or a wheel station."""
+    """The body, a wheel station, or a pad under a tyre."""
+    quantity: Quantity = "acceleration"
+    """What it measures."""
+    axis: Literal["vertical", "pitch", "roll"] = "vertical"
+    """Axis about which a gyroscope on the body turns: pitch is positive nose down, roll positive left side up."""
+    relative_to: Wheel | None = None
+    """Wheel station from which a sensor on the body measures: suspension travel, positive in rebound."""
     position: tuple[Finite, Finite, Finite] | None = None
-    """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""
+    """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only; suspension travel is
+    measured over its wheel unless a position is stated."""
     unit: str | None = None
-    """Unit; overrides that of the file; m/s² if neither states one."""
+    """Unit; overrides that of the file; m/s² for an acceleration if neither states one."""
     direction: Literal["up", "down"] = "up"
     """Direction of a positive reading."""
     range: Positive | None = None
@@ -64,21 +82,101 @@ class Sensor:
     delay_std: Annotated[float, Field(ge=0, le=0.1)] = 0.0
     """Standard uncertainty of its delay against the other channels, s; 0 means exact."""
 
+    @model_validator(mode="after")
+    def _consistent(self) -> Sensor:
+        if self.quantity == "angular-rate" and self.axis == "vertical":
+            raise ValueError('an angular rate needs axis = "pitch" or axis = "roll"')
+        if self.quantity != "angular-rate" and self.axis != "vertical":
+            raise ValueError(
+                f'axis = "{self.axis}" is for an angular rate; write quantity = "angular-rate", or leave it out'
+            )
+        if self.quantity == "angular-rate" and self.on not in ("body", None):
+            raise ValueError('an angular rate is that of the body; write on = "body"')
+        if self.quantity == "force" and self.on is not None and self.on not in PADS:
+            raise ValueError('a force is measured by a pad under a tyre; write on = "pad fl" or another pad')
+        if self.quantity not in ("displacement", "force") and self.on in PADS:
+            raise ValueError(f"a pad's displacement or force is measured, not its {quantity_name(self.quantity)}")
+        if self.relative_to is not None and (self.on != "body" or self.quantity not in ("displacement", "velocity")):
+            raise ValueError(
+                'suspension travel is a displacement, or a velocity, of the body relative to a wheel; write on = "body" and '
+                'quantity = "displacement"'
+            )
+        return self
+
     @property
-    def row(self) -> Row:
-        """Row of the displacement whose second derivative it measures, positive up.
+    def needs_position(self) -> bool:
+        """Whether its reading depends on a position on the body that nothing else states."""
+        return self.on == "body" and self.relative_to is None and self.quantity != "angular-rate"
+
+    @property
+    def wheel(self) -> Wheel | None:
+        """Wheel station that it is on; None for one on the body, on a pad, or where it is not known."""
+        return None if self.on is None or self.on == "body" or self.on in PADS else cast("Wheel", self.on)
+
+    @property
+    def pad(self) -> Wheel | None:
+        """Wheel station over the pad that it is on; None for any other place."""
+        return PADS.get(self.on or "")
+
+    @property
+    def reads_gravity(self) -> bool:
+        """Whether gravity is a part of what it reads at rest."""
+        return self.quantity == "acceleration"
+
+    @property
+    def si_factor(self) -> float:
+        """SI units in one of its own unit.
+
+        Raises
+        ------
+        ValueError
+            If that is no unit of what it measures.
+        """
+        return si_factor(self.unit or SI_UNITS[self.quantity], self.quantity)
+
+    def rows(self, names: Collection[str]) -> dict[int, Row]:
+        """Return what it reads of a vehicle: rows of displacements, of their rates and of their second derivatives.
+
+        Parameters
+        ----------
+        names
+            Parameters of the vehicle: they say what lies over a wheel, and how a tyre presses.
+
+        Returns
+        -------
+        dict of int to Row
+            By the order of the derivative, 0, 1 or 2; the reading is their sum. Positive up, in rebound, about the stated axis,
+            and for a force as it presses up on the tyre.
 
         Raises
         ------
         InputError
             If its place is not known.
         """
-        if self.on is not None and self.on != "body":
-            return kinematics.wheel(self.on)
+        if self.quantity == "force":
+            _, axle, *_ = STATIONS[PADS[str(self.on)]]
+            below = kinematics.wheel(PADS[str(self.on)])
+            of_tyre = {0: parameter_name("k_t", axle), 1: parameter_name("c_t", axle)}
+            return {order: below.times(name, -1.0) for order, name in of_tyre.items() if name in names}
+        return {_ORDERS[self.quantity]: self._row(names)}
+
+    def _row(self, names: Collection[str]) -> Row:
+        """Return the row of the displacement, or the angle, that it observes itself or by a derivative."""
+        if self.wheel is not None:
+            return kinematics.wheel(self.wheel)
+        if self.axis == "pitch":
+            return kinematics.pitch()
+        if self.axis == "roll":
+            return kinematics.roll()
+        if self.relative_to is not None and self.position is None:
+            _, axle, *_ = STATIONS[self.relative_to]
+            possible = (parameter_name("t", axle, "2"), parameter_name("t", axle))
+            return kinematics.travel(self.relative_to, next((name for name in possible if name in names), possible[-1]))
         if self.on is None or self.position is None:
             found, expected = ("no position", "[x, y, z], m") if self.on else ("no wheel station", "fl, fr, rl or rr")
             raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "State the place of the sensor.")])
-        return kinematics.body_point(self.position[0], self.position[1])
+        own = kinematics.body_point(self.position[0], self.position[1])
+        return own if self.relative_to is None else own - kinematics.wheel(self.relative_to)
 
     @property
     def exact(self) -> Sensor:
@@ -100,7 +198,7 @@ class Sensor:
         -------
         Sensor
         """
-        if self.position is None:
+        if self.position is None or not self.reads_gravity:
             return self
         beside = math.radians(self.tilt_std) * (self.position[2] - height)
         return replace(self, position_std=min(math.hypot(self.position_std, beside), LARGEST_PLACE))
@@ -117,7 +215,8 @@ class Sensor:
         sat τ g/ω² elsewhere. That is 0.16 m at 1.25 Hz, and nothing at wheel hop. What a height adds is for `at_height_above`.
         """
         tilt = math.radians(self.tilt_std)
-        place = math.hypot(self.position_std, tilt * _PENDULUM) if self.position is not None else 0.0
+        pendulum = _PENDULUM if self.reads_gravity else 0.0
+        place = math.hypot(self.position_std, tilt * pendulum) if self.position is not None else 0.0
         known: dict[SensorQuantity, KnownValue] = {
             "gain": KnownValue(-(tilt**2), math.hypot(self.gain_std, _TAIL * tilt**2)),
             "x": KnownValue(0.0, place),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 from scipy.optimize import linear_sum_assignment
 
-from sprung.vehicle import COORDINATES, LAYOUTS, Layout, Matrices, Rows, Sensor, VehicleModel
+from sprung.vehicle import COORDINATES, LAYOUTS, Layout, Matrices, Sensor, VehicleModel, sensor_rows
 from sprung.vibration.modes import Mode, eigenmodes, group_real_pairs, modal_assurance_criterion
 
 Real = NDArray[np.float64]
@@ -238,9 +238,14 @@ def expand_to_coordinates(modes: Sequence[Mode], sensors: Sequence[Sensor], a: f
     if a is None:
         a = -float(places[:, 0].min() + places[:, 0].max()) / 2 if len(places) else 0.0
     names = _TELLING[_layout_at(sensors).model]
-    rows = Rows.of([sensor.row for sensor in sensors], names).at([a if name == "a" else 0.0 for name in names])
-    inverse = np.linalg.pinv(rows)
-    return tuple(replace(mode, shape=inverse @ mode.shape, name=None, uncertainty=None) for mode in modes)
+    rows = sensor_rows(sensors, names).at([a if name == "a" else 0.0 for name in names])
+    inverse, orders = np.linalg.pinv(rows), np.array([max(sensor.rows(names)) for sensor in sensors])
+    # Accelerations of the coordinates, whatever the sensors read.
+    accelerations = [mode.shape * mode.pole ** (2 - orders) for mode in modes]
+    return tuple(
+        replace(mode, shape=inverse @ shape, name=None, uncertainty=None)
+        for mode, shape in zip(modes, accelerations, strict=True)
+    )
 
 
 def name_modes_at_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: float | None = None) -> tuple[Mode, ...]:
@@ -271,7 +276,7 @@ def name_modes_at_sensors(modes: Sequence[Mode], sensors: Sequence[Sensor], a: f
 
 def _layout_at(sensors: Sequence[Sensor]) -> Layout:
     """Return the layout whose wheel stations sensors are on; that of a whole vehicle where none is on a wheel."""
-    stations = {sensor.on for sensor in sensors} - {"body", None}
+    stations = {wheel for sensor in sensors for wheel in (sensor.wheel, sensor.relative_to) if wheel is not None}
     return next(layout for layout in LAYOUTS.values() if stations <= {*layout.wheels})
 
 

@@ -57,11 +57,15 @@ def _nearest(place: Place, places: Sequence[Place]) -> Place:
 
 def with_stations(campaign: Campaign, other: Mapping[Wheel, Wheel]) -> tuple[Campaign, tuple[str, ...]]:
     """Put the wheels' sensors on other wheels; give the campaign and the channels."""
-    sensors = tuple(
-        one if one.on is None or one.on == "body" else replace(one, on=other.get(one.on, one.on))
-        for one in campaign.sensors
-    )
-    return replace(campaign, sensors=sensors), tuple(one.channel for one in campaign.sensors if one.on != "body")
+
+    def elsewhere(one: Sensor) -> Sensor:
+        on = one.on if one.wheel is None else other.get(one.wheel, one.wheel)
+        relative_to = None if one.relative_to is None else other.get(one.relative_to, one.relative_to)
+        return replace(one, on=on, relative_to=relative_to)
+
+    sensors = tuple(elsewhere(one) for one in campaign.sensors)
+    changed = tuple(one.channel for one in campaign.sensors if one.on != "body" or one.relative_to is not None)
+    return replace(campaign, sensors=sensors), changed
 
 
 def join_names(channels: tuple[str, ...]) -> str:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from sprung.campaign import Campaign
 from sprung.results import Result
 from sprung.uncertainty import round_by_uncertainty
-from sprung.vehicle import EMPTY, Load, Sensor, SensorPlace, half_distances
+from sprung.vehicle import EMPTY, Load, Sensor, Wheel, half_distances
 
 _FINEST = 0.01
 """Smallest standard uncertainty for rounding, m: lengths are rounded to 1 mm at most."""
@@ -97,7 +97,7 @@ class Geometry:
     blank: bool = False
 
 
-_DRAWN_AT: Mapping[SensorPlace | None, SensorPlace] = {
+_DRAWN_AT: Mapping[Wheel, Wheel] = {
     "left": "fl",
     "right": "fr",
     "front": "fl",
@@ -105,6 +105,14 @@ _DRAWN_AT: Mapping[SensorPlace | None, SensorPlace] = {
     "wheel": "fl",
 }
 """Where on a whole vehicle the wheel stations of a part of it are drawn."""
+
+
+def _drawn(sensor: Sensor) -> Sensor:
+    """Return a sensor where it is drawn on a whole vehicle: what measures suspension travel over its wheel."""
+    station = sensor.wheel or sensor.pad or (sensor.relative_to if sensor.position is None else None)
+    if station is None:
+        return sensor
+    return Sensor(channel=sensor.channel, on=_DRAWN_AT.get(station, station))
 
 
 def geometry_of(source: Campaign | Result) -> Geometry:
@@ -182,7 +190,7 @@ def _geometry(
         cg_height=Length(heights.get("cg_height")),
         wheel_height=Length(heights.get("wheel_height")),
         roll_axis_height=Length(heights.get("roll_axis_height")),
-        sensors=tuple(replace(sensor, on=_DRAWN_AT.get(sensor.on, sensor.on)) for sensor in sensors),
+        sensors=tuple(_drawn(sensor) for sensor in sensors),
         loads=tuple(load for load in loads if load.name != EMPTY.name),
         identified=identified,
     )

@@ -90,8 +90,8 @@ def mark_placer(
         for sensor in sorted(drawn.geometry.sensors, key=lambda sensor: stations.index(sensor.on)):
             if sensor.position is not None:
                 placed.append(Mark(frame.at(*project(sensor.position)), shortened(sensor.channel), "sensor"))
-            elif sensor.on is not None and sensor.on != "body":
-                placed.append(Mark(frame.at(*wheel(sensor.on)), shortened(sensor.channel), "sensor", False))
+            elif sensor.wheel is not None:
+                placed.append(Mark(frame.at(*wheel(sensor.wheel)), shortened(sensor.channel), "sensor", False))
         for load in drawn.geometry.loads:
             for item in load.items:
                 text = shortened(f"{load.name} {item.mass:.4g} kg")
